@@ -25,6 +25,9 @@ from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
 from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution, load_tubes
+from cosserat_casadi.codegen.tubes.sources import export_tubes
+from cosserat_casadi.codegen.tubes.status import TubeStatus
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -67,6 +70,8 @@ __all__ = [
     "CompiledContactSolution",
     "CompiledMotionStage",
     "CompiledStep",
+    "CompiledTubes",
+    "CompiledTubesSolution",
     "CosseratError",
     "Discretisation",
     "EquilibriumPath",
@@ -101,6 +106,7 @@ __all__ = [
     "TubeOutcome",
     "TubePath",
     "TubeSolution",
+    "TubeStatus",
     "Tuning",
     "acados_expressions",
     "all_equilibria",
@@ -111,6 +117,7 @@ __all__ = [
     "equilibria_result",
     "export",
     "export_page",
+    "export_tubes",
     "follow_path",
     "follow_scene_path",
     "follow_tubes",
@@ -123,6 +130,7 @@ __all__ = [
     "linearise",
     "load",
     "load_in_contact",
+    "load_tubes",
     "modes_of",
     "modes_of_scene",
     "modes_result",

@@ -114,6 +114,11 @@ CONCEPTS = (
             "TubePath",
             "TubeEvent",
             "TubeModel",
+            "export_tubes",
+            "load_tubes",
+            "CompiledTubes",
+            "CompiledTubesSolution",
+            "TubeStatus",
         ),
     ),
     Concept(

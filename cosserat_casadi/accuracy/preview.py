@@ -302,7 +302,7 @@ class Preview:
             quaternions.append(_unit(world_quaternion))
         cables = []
         for name, rod_length in watched_cables(self.model).items():
-            _, cable_length, _ = system.actuator(name)
+            _, cable_length, _ = system.actuators.state(name)
             cables.append(float(_numbers(cable_length)[0, 0]) / rod_length)
         return Watched(np.concatenate(positions), np.concatenate(quaternions), np.array(cables))
 

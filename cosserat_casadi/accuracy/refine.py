@@ -17,9 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
-import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
@@ -35,25 +33,19 @@ from cosserat_casadi.accuracy.assess import (
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import MOST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
-from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, prolong, with_estimate
+from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
-from cosserat_casadi.accuracy.preview import SAMPLES
 from cosserat_casadi.accuracy.resolution import Resolution
-from cosserat_casadi.accuracy.signals import signal_modes
-from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY, can_relax
+from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable, solve, stabilised
-from cosserat_casadi.maths.numbers import known
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable
+from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
-from cosserat_casadi.rod.discretisation import Discretisation
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -66,12 +58,6 @@ DECIDING_TOLERANCE = 1e-5
 
 MARGIN = 1.02
 """Factor on the distance to a reference solution whose own error is known."""
-
-TIGHT = 1e-6
-"""Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
-
-SLOW_MODES = 7
-"""Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
 
 MOST_FAILURES = 2
 """Levels without an equilibrium after which the next one ends the search."""
@@ -106,16 +92,18 @@ def solve_scene(
         report: told the discretisation being solved.
 
     Raises:
-        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
+        SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
+            would have to hold a free rod.
     """
     refuse_tubes(scene)
+    refuse_held_by_contact(scene)
     if stable:
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
     # Parameters have the scene's values: what is solved is one scene.
     scene = scene.baked()
-    solver = _SceneSolver(scene, values, stable, progress, report)
+    solver = SceneSolver(scene, values, stable, progress, report)
     if scene.touches_exactly:
         transport = scene.accuracy.rotation or solver.reference_transport
         in_contact = solve_contact_scene(scene, values, transport, progress, report)
@@ -128,109 +116,6 @@ def solve_scene(
     if stable and solution.converged and not solution.stable:
         solution = _with_note(solution, NONE_STABLE)
     return solution
-
-
-@dataclass
-class _SceneSolver:
-    """Solves one scene at one set of inputs, on one discretisation after the other.
-
-    Attributes:
-        scene: the scene.
-        values: inputs by name.
-        stable: whether a stable equilibrium is wanted of a free rod too.
-        progress: told the share of the load path that is done.
-        report: told what is being tried.
-        relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
-        relaxing_failed: whether descent was tried in vain; it is not tried again.
-        iterations: Newton steps so far, on all discretisations.
-    """
-
-    scene: scenes.Scene
-    values: Mapping[str, npt.ArrayLike] | None
-    stable: bool
-    progress: Progress | None
-    report: Report | None
-    relaxed: bool = False
-    relaxing_failed: bool = False
-    iterations: int = 0
-
-    @property
-    def tolerance(self) -> float:
-        """Wanted error of the tip poses."""
-        return self.scene.accuracy.tolerance
-
-    @property
-    def reference_transport(self) -> str:
-        """Rotation integrator of a reference solution that suits the tolerance."""
-        if self.tolerance < TIGHT or self.is_held:
-            return "magnus8"
-        return "magnus6"
-
-    @cached_property
-    def is_held(self) -> bool:
-        """Whether rods are held at both ends, so that several equilibria are near each other, and can relax."""
-        if not self.scene.supports:
-            return False
-        coarsest = build(self.scene, discretise(self.scene, 1, 2))
-        return can_relax(coarsest)
-
-    @cached_property
-    def unloaded_turn(self) -> float:
-        """Bound of the angle through which an unloaded rod turns from end to end, rad."""
-        turns = [_unloaded_turn(rod) for rod in self.scene.rods]
-        return max(turns)
-
-    @cached_property
-    def signal_modes(self) -> int:
-        """Modes below which a level is blind to what the scene puts along its rods."""
-        return signal_modes(self.scene)
-
-    @property
-    def wave_modes(self) -> int:
-        """The same where they are waves, 0 where all that the scene puts along its rods varies slowly."""
-        if self.signal_modes > SLOW_MODES:
-            return self.signal_modes
-        return 0
-
-    def build(self, discretisation: dict[str, Discretisation]) -> Model:
-        """The model on a discretisation, which is reported."""
-        model = build(self.scene, discretisation)
-        if self.report is not None:
-            most_nodes = max(d.nodes for d in discretisation.values())
-            self.report(f"{model.size} unknowns, {most_nodes} intervals")
-        return model
-
-    def solve(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
-        """Solution on a discretisation, from one with fewer modes where that is near, else from the unloaded scene."""
-        model = self.build(discretisation)
-        if coarser is not None:
-            # Stays on the branch of the coarser solution, and costs a few Newton steps only.
-            corrected = _corrected(model, prolong(coarser, model), coarser.inputs)
-            if corrected is not None:
-                self.iterations += corrected.iterations
-                return corrected
-        solution = solve(model, self.values, progress=self.progress)
-        self.iterations += solution.iterations
-        self.relaxed = False
-        if solution.outcome is Outcome.LOAD_STALLED:
-            return self.relax(solution)
-        return solution
-
-    def relax(self, solution: Solution) -> Solution:
-        """A stable solution where one is wanted and can be found, else the same.
-
-        A held rod is always wanted stable: what leads to its supports are springs of our own, not loads of the scene.
-        """
-        wanted_stable = self.stable or bool(self.scene.supports)
-        if not wanted_stable or self.relaxing_failed or solution.stable:
-            return solution
-        if not solution.model.has_potential(solution.inputs):
-            return solution
-        relaxed = stabilised(solution, ContinuationSettings(), self.progress)
-        self.iterations += relaxed.iterations - solution.iterations
-        self.relaxed = bool(relaxed.stable)
-        self.relaxing_failed = not relaxed.stable
-        return relaxed
 
 
 @dataclass(frozen=True)
@@ -248,7 +133,7 @@ class _Reference:
     resolution: Resolution
 
 
-def _with_tolerance(solver: _SceneSolver) -> Solution:
+def _with_tolerance(solver: SceneSolver) -> Solution:
     """The cheapest solution found whose estimated error is below the tolerance.
 
     Levels are refined as the verdicts ask until one solution can serve as a reference. Without one, the last failure,
@@ -263,13 +148,13 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     return found
 
 
-def _for_tolerance(solver: _SceneSolver, tolerance: float) -> _Reference | Solution:
+def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Solution:
     """A reference for a tolerance, refined from the level that it begins with; or a failure."""
     first = Level.first(tolerance, solver.signal_modes)
     return _refined(solver, first, tolerance)
 
 
-def _of_held_rod(solver: _SceneSolver) -> _Reference | Solution:
+def _of_held_rod(solver: SceneSolver) -> _Reference | Solution:
     """A reference for the tolerance, refined from the equilibrium that is meant; or a failure."""
     found = _for_tolerance(solver, DECIDING_TOLERANCE)
     if isinstance(found, _Reference):
@@ -283,7 +168,7 @@ def _of_held_rod(solver: _SceneSolver) -> _Reference | Solution:
 
 
 def _refined(
-    solver: _SceneSolver, first: Level, tolerance: float, on_first: Solution | None = None
+    solver: SceneSolver, first: Level, tolerance: float, on_first: Solution | None = None
 ) -> _Reference | Solution:
     """A solution that can serve as a reference; without one the last failure, or the finest solution as UNRESOLVED.
 
@@ -319,7 +204,7 @@ def _refined(
     return _unresolved(coarser)
 
 
-def _blind(solver: _SceneSolver) -> Solution:
+def _blind(solver: SceneSolver) -> Solution:
     """The solution on the first level, UNRESOLVED where it is an equilibrium."""
     solution = _at_level(solver, Level.first(solver.tolerance), None)
     if not solution.converged:
@@ -344,7 +229,7 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
             return level
 
 
-def _at_level(solver: _SceneSolver, level: Level, coarser: Solution | None) -> Solution:
+def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> Solution:
     """The solution on a level, on intervals enough for how far the rods turned on the level before."""
     turn = solver.unloaded_turn
     if coarser is not None:
@@ -354,7 +239,7 @@ def _at_level(solver: _SceneSolver, level: Level, coarser: Solution | None) -> S
     return solver.solve(discretisation, coarser)
 
 
-def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
+def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
     """The cheapest solution near a reference; the reference itself where none is near enough to it."""
     reference = resolution.preview.reference
     reference_error = resolution.modes_error + resolution.grid_error
@@ -362,7 +247,7 @@ def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
         bound = share * solver.tolerance - reference_error
         coarsened = Coarsening(resolution.preview, bound, solver.wave_modes).run()
         model = solver.build(coarsened.discretisation)
-        solution = _corrected(model, coarsened.start, reference.inputs)
+        solution = corrected_from(model, coarsened.start, reference.inputs)
         if solution is not None:
             solver.iterations += solution.iterations
         if solution is None or not solution.converged:
@@ -381,7 +266,7 @@ def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
     return replace(reference, error_estimate=reference_error + ROUNDING)
 
 
-def _with_fixed(solver: _SceneSolver) -> Solution:
+def _with_fixed(solver: SceneSolver) -> Solution:
     """The solution on the discretisation that the scene asks for, with its error estimated by a finer one."""
     accuracy = solver.scene.accuracy
     modes = DEFAULT_MODES if accuracy.modes is None else accuracy.modes
@@ -416,7 +301,7 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     return _unresolved(judged)
 
 
-def _meant(solver: _SceneSolver) -> Solution | None:
+def _meant(solver: SceneSolver) -> Solution | None:
     """The equilibrium of a held rod that is meant; None where nothing holds it, or none is found."""
     if not solver.is_held or solver.signal_modes > REFERENCE_MODES[-1]:
         return None
@@ -426,22 +311,6 @@ def _meant(solver: _SceneSolver) -> Solution | None:
     # The modes of the user may have an equilibrium all the same, and one to relax to.
     solver.relaxing_failed = False
     return None
-
-
-def _corrected(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | None:
-    """Newton from a near start; None where it does not stay near, so that it may be another branch."""
-    settings = ContinuationSettings().newton
-    result = correct(model, inputs, start, settings)
-    if result is None:
-        return None
-    return judge(model, inputs, result.x, result.outcome, result.iterations, 1.0, settings.tolerance)
-
-
-def _unloaded_turn(rod: scenes.Rod) -> float:
-    """Largest curvature of an unloaded rod times its length, rad."""
-    intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
-    curvature = np.linalg.norm(intrinsic, axis=1)
-    return float(curvature.max()) * rod.length
 
 
 def _unresolved(solution: Solution) -> Solution:

@@ -35,7 +35,7 @@ from cosserat_casadi.equilibrium.load_path import continuation_limits, first_ste
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
-from cosserat_casadi.numerics.continuation import MOST_BENT
+from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
@@ -212,7 +212,16 @@ def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict
 
 
 def _solver_constants(model: Model) -> dict[str, Any]:
-    limits = continuation_limits(model)
+    return solver_constants(continuation_limits(model), near=MAX_DISTANCE)
+
+
+def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
+    """What the templates say of the limits of the solver.
+
+    Args:
+        limits: of a continuation.
+        near: how far two solutions may be apart on one branch.
+    """
     return {
         "tolerance": limits.newton.tolerance,
         "iterations": limits.newton.iterations,
@@ -223,7 +232,7 @@ def _solver_constants(model: Model) -> dict[str, Any]:
         "steps": limits.steps,
         "grow_below": limits.grow_below,
         "reject_above": limits.reject_above,
-        "near": MAX_DISTANCE,
+        "near": near,
         "reuse_decrease": newton.REUSE_DECREASE,
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
@@ -235,8 +244,12 @@ def _solver_constants(model: Model) -> dict[str, Any]:
 
 
 def input_words(model: Model, names: Names) -> dict[str, str]:
-    """What the templates say of inputs: macros, struct, table, default values."""
-    entries = input_entries(model)
+    """What the templates say of the inputs of a model: macros, struct, table, default values."""
+    return words_of_inputs(input_entries(model), names)
+
+
+def words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:
+    """What the templates say of inputs as they are in the manifest: macros, struct, table, default values."""
     macros = list[str]()
     rows = list[str]()
     for entry in entries:

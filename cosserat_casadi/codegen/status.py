@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.tubes.status import STATUSES as TUBE_STATUSES
 from cosserat_casadi.numerics.outcome import Outcome
 
 OUTCOMES = tuple(outcome for outcome in Outcome if outcome is not Outcome.CONTACT_UNSETTLED)
@@ -46,6 +47,17 @@ def motion_status_words(names: Names) -> dict[str, str]:
         "motion_status_names": "\n".join(defined),
         "motion_text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
         "motion_label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
+    }
+
+
+def tube_status_words(names: Names) -> dict[str, str]:
+    """What the templates of concentric tubes say of statuses."""
+    symbols = {status: f"{names.macro}_{status.name}" for status in TUBE_STATUSES}
+    return {
+        "status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
+        "status_names": "\n".join(f"#define SOLVER_{status.name} {symbol}" for status, symbol in symbols.items()),
+        "text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
+        "label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
     }
 
 

@@ -14,6 +14,7 @@ from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import (
     Stability,
+    Variations,
     admissible_spectrum,
     second_variation,
     stability_of,
@@ -130,7 +131,7 @@ def _with_stability(solution: Solution) -> Solution:
     if stability.neutral:
         smallest_first = np.argsort(np.abs(eigenvalues))
         neutral = admissible[:, smallest_first[: stability.zero]]
-        critical = not _leads_to_equilibria_alike(solution, neutral)
+        critical = not _leads_to_equilibria_alike(solution, jacobian, neutral)
     return replace(
         solution,
         smallest_eigenvalue=stability.smallest_eigenvalue,
@@ -152,31 +153,41 @@ def stability_note(stability: Stability, critical: bool) -> str:
     return f" It is unstable: {stability.negative} independent variations release energy."
 
 
-def _leads_to_equilibria_alike(solution: Solution, neutral: FloatArray) -> bool:
+def _leads_to_equilibria_alike(solution: Solution, jacobian: FloatArray, neutral: FloatArray) -> bool:
     """Whether each variation that costs no energy, n×k, leads to equilibria alike and not just away from this one."""
-    return all(_is_alike_beside(solution, variation) for variation in neutral.T)
+    return all(_is_alike_beside(solution, jacobian, variation) for variation in neutral.T)
 
 
-def _is_alike_beside(solution: Solution, variation: FloatArray) -> bool:
+def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatArray) -> bool:
     """Whether an equilibrium alike lies a little way along a variation, shape (n,)."""
     model = solution.model
     inputs = solution.inputs
     allowed = variations(model)
     start = solution.x.copy()
     start[allowed.free] += ASIDE * variation
+    # In a rod that is held tight they are large: Newton must not have to turn them after the strains.
+    start[allowed.held] += ASIDE * _multipliers_along(jacobian, allowed, variation)
     full_load = input_path(model, start, inputs, inputs)
     few_steps = NewtonSettings(iterations=ASIDE_STEPS)
     beside = newton(full_load.at(1.0), start, few_steps)
     if beside.outcome is not Outcome.CONVERGED:
         return False
     # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation. Multipliers turn
-    # along, and are large in a rod that is held tight: they do not count.
+    # along and do not count.
     moved = beside.x - solution.x
     distance = length_of(moved[allowed.free])
     if not ASIDE / 2 <= distance <= 2 * ASIDE:
         return False
     jacobian = model.path_jacobian(beside.x, inputs, 1.0).full()
     return second_variation(jacobian, allowed).neutral
+
+
+def _multipliers_along(jacobian: FloatArray, allowed: Variations, variation: FloatArray) -> FloatArray:
+    """Rates of the multipliers, shape (m,), with which a variation that costs no energy leaves all in balance."""
+    forces = jacobian[np.ix_(allowed.free, allowed.free)] @ variation
+    by_multipliers = jacobian[np.ix_(allowed.free, allowed.held)]
+    rates, *_ = np.linalg.lstsq(by_multipliers, -forces, rcond=None)
+    return np.asarray(rates)
 
 
 def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: NewtonSettings) -> NewtonResult | None:

@@ -24,8 +24,14 @@ from cosserat_casadi.numerics.descent import DescentSettings, Energy, descend
 from cosserat_casadi.numerics.newton import NewtonSettings, newton
 from cosserat_casadi.numerics.progress import Progress
 
-SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 10))
+SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 14))
 """Stiffnesses of the springs for supports, stage by stage: EI/ℓ³ for a force, EI/ℓ for a moment."""
+
+STIFF = 4.0**9
+"""Stiffness after which the stages end where the rod is near its supports; one that is drawn tight is not yet."""
+
+NEAR = 1e-3
+"""Largest constraint residual, relative to the length or about an angle in rad, that Newton closes at once."""
 
 SIDES = (1.0, -1.0)
 """Sides on which a saddle is left, one try after the other."""
@@ -128,7 +134,7 @@ def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
     """Unknowns of a held rod, multipliers included, that has relaxed at every stage of its springs."""
     model = solution.model
     q = attempt.start
-    load_factor = 0.0
+    x = solution.x
     for spring in SPRINGS:
         # λ gap + (1 − λ) multiplier = 0 is a spring of stiffness λ / (1 − λ).
         load_factor = spring / (1.0 + spring)
@@ -138,7 +144,11 @@ def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
             return None
         # The next stage begins where this one has ended: the springs pull the rod in without a jump.
         q = minimum
-    return _with_multipliers(model, solution.inputs, load_factor, q)
+        x = _with_multipliers(model, solution.inputs, load_factor, q)
+        largest_gap = float(np.abs(x[len(q) :]).max()) / spring
+        if spring >= STIFF and largest_gap <= NEAR:
+            break
+    return x
 
 
 def energy_at(model: Model, inputs: FloatArray, load_factor: float) -> Energy:

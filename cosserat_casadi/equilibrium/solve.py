@@ -24,6 +24,7 @@ from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint, follow
 from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
@@ -120,7 +121,8 @@ def solve(
         raise_on_failure: raise instead of returning what did not converge.
 
     Raises:
-        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
+        SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
+            would have to hold a free rod.
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
         ValueError: unknown method, or a start of another model.
     """
@@ -172,8 +174,10 @@ def _in_contact(
     """Equilibrium of a scene with obstacles on the modes and nodes of its model.
 
     Raises:
+        SceneError: contact alone would have to hold a free rod.
         ValueError: a method, or a start, that knows of no contact.
     """
+    refuse_held_by_contact(model.scene)
     if method != "continuation":
         raise ValueError(f"contact is found by continuation, not by {method!r}")
     if start is not None and not isinstance(start, Solution):

@@ -121,13 +121,13 @@ def _pose(site: Site) -> Matrix:
 
 @measures("tension")
 def _tension(site: Site) -> Matrix:
-    tension = site.system.actuator(site.record.actuator)[0]
+    tension = site.system.actuators.state(site.record.actuator)[0]
     return ca.repmat(tension, 1, site.sections) - site.measured
 
 
 @measures("length")
 def _length(site: Site) -> Matrix:
-    length = site.system.actuator(site.record.actuator)[1]
+    length = site.system.actuators.state(site.record.actuator)[1]
     return ca.repmat(length, 1, site.sections) - site.measured
 
 

@@ -169,7 +169,7 @@ class Assembly:
         """Residual of every cable of given length, at the load factor."""
         rows = []
         for cable in self.discrete.cables:
-            equation = self.system.cable_lengths[cable.tendon.name]
+            equation = self.system.actuators.cable_lengths[cable.tendon.name]
             rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
         return rows
 
@@ -440,7 +440,7 @@ class Assembly:
 
     def _add_cable(self, blocks: Blocks, cable: CableOfLength) -> None:
         """Row of a cable of given length, and its tension's column in the residual of its rod."""
-        equation = self.system.cable_lengths[cable.tendon.name]
+        equation = self.system.actuators.cable_lengths[cable.tendon.name]
         strains = self.unknowns.strain(equation.rod)
         tension = self.discrete.tension(cable)
         blocks.add(strains, tension, equation.pull)

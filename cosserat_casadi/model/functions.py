@@ -252,7 +252,7 @@ class ModelFunctions:
         Tension and length of a tendon, pressure and volume of a chamber.
         The derivative is what a unit of effort does.
         """
-        return [ca.densify(ca.MX(value)) for value in written.system.actuator(written.owner)]
+        return [ca.densify(ca.MX(value)) for value in written.system.actuators.state(written.owner)]
 
     @owned_functions(
         Owner.BODY,

@@ -95,9 +95,9 @@ class MotionEnergy:
         """
         powers = []
         for actuator in self.system.discrete.scene.actuators:
-            effort, _, _ = self.system.actuator(actuator.name)
-            _, conjugate = self.system.conjugate(actuator.name)
-            rate = self.system.pull(actuator.name).T @ self._motion.v + conjugate.rate(self._by_inputs)
+            effort, _, _ = self.system.actuators.state(actuator.name)
+            _, conjugate = self.system.actuators.conjugate(actuator.name)
+            rate = self.system.actuators.pull(actuator.name).T @ self._motion.v + conjugate.rate(self._by_inputs)
             sign = EFFECTS[actuator.kind].energy_sign
             powers.append(-sign * effort * rate)
         stacked: Matrix = ca.vertcat(*powers)

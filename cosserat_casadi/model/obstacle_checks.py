@@ -49,6 +49,29 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
         raise SceneError(Problem("obstacles", problem, remedy))
 
 
+def refuse_held_by_contact(scene: scenes.Scene) -> None:
+    """Refuse to look for the equilibrium of free rods that only contact that is exact would hold.
+
+    Raises:
+        SceneError: with all such rods.
+    """
+    problems = list(held_by_contact(scene))
+    if problems:
+        raise SceneError(*problems)
+
+
+def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
+    """Free rods that touch obstacles exactly, or whose bodies do."""
+    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
+    remedy = "give its base a place; or let it move: simulate the scene"
+    for obstacle in scene.obstacles:
+        for rod in scene.rods:
+            concerned = obstacle.concerns(rod.name) or bool(obstacle.bodies)
+            if rod.base.free and concerned and not obstacle.is_smooth:
+                problem = f"the rod {rod.name!r} is free: at rest contact alone would have to hold it"
+                yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
+
+
 def _held_by(scene: scenes.Scene, body: str, rod: scenes.Rod, radius: float) -> dict[str, tuple[FloatArray, float]]:
     """How a rod is held by a body: the place of its tip in the axes of the body, and the radius of it."""
     held = {}

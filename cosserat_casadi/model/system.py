@@ -14,25 +14,20 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength, Elasticity
 from cosserat_casadi.constraints.section_constraint import Poses
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.constraints import PlacedConstraint
-from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
-from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
+from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
-from cosserat_casadi.model.load_inputs import input_value, input_values
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import written_base_pose
-from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
@@ -42,9 +37,6 @@ from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
-
-CORNER = 0.01
-"""Smoothing, relative to the rod's length, of the corner between slack and taut in the unloaded scene."""
 
 ROUNDING = 1e-16
 """Entry of a rotation matrix below which it is rounding."""
@@ -123,6 +115,13 @@ class System:
             q = self.arguments.x[self.discrete.unknowns.strain(name)]
             shapes[name] = shape(rod, q, ratio_of(self.discrete, name, self.arguments))
         return shapes
+
+    @cached_property
+    def actuators(self) -> SceneActuators:
+        """Actuators of all rods at the load factor."""
+        return SceneActuators(
+            self.discrete, self.arguments.x, self.arguments.inputs, self.arguments.load_factor, self.shapes
+        )
 
     @cached_property
     def motions(self) -> dict[str, RodMotion]:
@@ -270,47 +269,6 @@ class System:
         """Unknowns of a floating frame, 7×1."""
         return self.arguments.x[self.discrete.deviation(name)]
 
-    def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
-        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
-        actuator, conjugate = self.conjugate(name)
-        member = EFFECTS[actuator.kind]
-        effort = self._effort(actuator)
-        # The smooth complementarity leaves a slack cable a tension of either sign, as small as its smoothing.
-        if member.may_go_slack(actuator):
-            effort = ca.fmax(effort, 0.0)
-        gradient = self._among_unknowns(actuator.rod, conjugate.gradient)
-        return effort, conjugate.value, gradient.T
-
-    def conjugate(self, name: str) -> tuple[scenes.Actuator, Conjugate]:
-        """An actuator, and what it works on."""
-        actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
-        return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
-
-    def pull(self, name: str) -> Matrix:
-        """Generalised force of a unit of an actuator's effort on the unknowns, size×1."""
-        actuator, conjugate = self.conjugate(name)
-        return self._among_unknowns(actuator.rod, conjugate.pull)
-
-    def _quantity(self, actuator: scenes.Actuator) -> Quantity:
-        """What an actuator works on, for the inputs."""
-        values = input_values(self.discrete.layout, actuator, self.arguments.inputs)
-        grid = self.discrete.rods[actuator.rod].grid
-        quantity: Quantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
-        return quantity
-
-    def _effort(self, actuator: scenes.Actuator) -> Matrix:
-        """Effort of an actuator: an input, or unknown where the scene gives what it works on."""
-        member = EFFECTS[actuator.kind]
-        if member.prescribes_conjugate(actuator):
-            return self._unknown_tension(self._cable(actuator.name))
-        effort = input_value(self.discrete.layout, actuator, member.effort, self.arguments.inputs)
-        if effort is None:
-            return ca.DM(0.0)
-        return effort
-
-    def _cable(self, name: str) -> CableOfLength:
-        return next(cable for cable in self.discrete.cables if cable.tendon.name == name)
-
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
         given_position, given_quaternion = written_base_pose(self.discrete.records[rod])
@@ -421,56 +379,12 @@ class System:
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
 
-    @cached_property
-    def cable_lengths(self) -> dict[str, CableLength]:
-        """Equations of the cables of given length by the names of their tendons."""
-        return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
-
-    def _cable_length(self, cable: CableOfLength) -> CableLength:
-        tendon = cable.tendon
-        wanted = input_value(self.discrete.layout, tendon, "length", self.arguments.inputs)
-        # The scene's rules let no tendon of given length have the length zero.
-        assert wanted is not None
-        member = EFFECTS[tendon.kind]
-        by_length, at_base = member.compliance(tendon)
-        _, routed = self.conjugate(tendon.name)
-        assert isinstance(routed, RoutedCable), "only cables have a length"
-        return CableLength(
-            cable=routed,
-            elasticity=Elasticity(by_length, at_base, member.resting_effort(tendon)),
-            wanted=wanted,
-            tension=self.arguments.x[self.discrete.tension(cable)],
-            slack=member.may_go_slack(tendon),
-            softness=cable.softness,
-            smoothing=smoothing_at(CORNER, SMOOTHING, self.arguments.load_factor),
-        )
-
-    def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:
-        """Columns on the coordinates of one rod, among those of all unknowns."""
-        entries = self.discrete.unknowns.strain(rod)
-        count = columns.shape[1]
-        zeros = type(columns)
-        before = zeros(entries.start, count)
-        after = zeros(self.discrete.size - entries.stop, count)
-        return ca.vertcat(before, columns, after)
-
     def _rod(self, name: str) -> InverseGeometricModel:
         """Balance of a rod under its loads, the wrenches of its constraints, its actuators and its cables."""
         constraints = self.discrete.constraints_on(name)
         wrenches = [self._constraint_wrench(placed) for placed in constraints]
         loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
-        return InverseGeometricModel(Statics(self.shapes[name], loads), self._actuation(name))
-
-    def _actuation(self, rod: str) -> tuple[Actuation, ...]:
-        """Actuators on a rod: the efforts that are given, at the load factor, then the unknown tensions."""
-        given = rod_actuation(self.discrete, rod, self.arguments.inputs)
-        efforts = [scaled_effort(actuation, self.arguments.load_factor) for actuation in given]
-        for cable in self.discrete.cables:
-            # An unknown tension is what its length asks for at this load factor: it is not scaled.
-            if cable.tendon.rod == rod:
-                tension = self._unknown_tension(cable)
-                efforts.append(Actuation(self._quantity(cable.tendon), tension))
-        return tuple(efforts)
+        return InverseGeometricModel(Statics(self.shapes[name], loads), self.actuators.on_rod(name))
 
     def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:
         """Wrench of a constraint on its section, in the axes of the rod's base."""
@@ -496,12 +410,6 @@ class System:
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
         return Poses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
-
-    def _unknown_tension(self, cable: CableOfLength) -> Matrix:
-        """Tension of a cable of given length, N."""
-        unit = self.discrete.tension_unit(cable.tendon.rod)
-        tension = self.arguments.x[self.discrete.tension(cable)]
-        return unit * tension
 
     def _base_R_world(self, rod: str) -> Matrix:
         """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""

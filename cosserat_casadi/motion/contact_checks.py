@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
@@ -35,42 +35,34 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
         what = f"exact contact in motion does not go with cables that may go slack: {', '.join(slack)}"
         yield Problem("obstacles", what, remedy)
     yield from _too_thin(model)
-    touching = {rod for rod, _ in pairs(model.scene)}
-    if any(obstacle.bodies for obstacle in model.scene.obstacles):
-        yield Problem("obstacles", "exact contact in motion is for rods, not for bodies", remedy)
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
     if moving:
         what = (
             f"exact contact in motion is with obstacles that stand still, not with those on bodies: {', '.join(moving)}"
         )
         yield Problem("obstacles", what, remedy)
-    assembled = [rod for rod in touching if _is_assembled(model, rod)]
-    if assembled:
-        names = ", ".join(sorted(assembled))
-        what = f"exact contact in motion is for rods on their own, not for those of assemblies: {names}"
-        yield Problem("obstacles", what, remedy)
 
 
 def _too_thin(model: Model) -> Iterator[Problem]:
-    """Balls and bars about which a rod turns so sharply that steps would be without end."""
+    """Balls and bars about which a rod, or a body, turns so sharply that steps would be without end."""
+    met = []
     for rod, obstacle in pairs(model.scene):
+        properties = model.discrete.rods[rod].properties
+        own = float(section_radius(properties, np.array([0.0, 1.0])).min())
+        met.append((obstacle, f"the section of {rod!r}", own, properties.length))
+    for body, obstacle in body_pairs(model.scene):
+        met.append(
+            (obstacle, f"the ball of {body.name!r}", ball_radius(body), model.discrete.body_frame(body.name).length)
+        )
+    for obstacle, whose, own, length in met:
         radius = getattr(obstacle, "radius", None)
         if obstacle.kind not in ROUND or radius is None:
             continue
-        properties = model.discrete.rods[rod].properties
-        thinnest = radius + float(section_radius(properties, np.array([0.0, 1.0])).min())
-        least = THINNEST * properties.length
+        thinnest = radius + own
+        least = THINNEST * length
         if thinnest < least:
-            what = f"with the section of {rod!r} it is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
+            what = f"with {whose} it is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
             yield Problem(f"obstacles.{obstacle.name}.radius", what, "give a larger radius, or a width, m")
-
-
-def _is_assembled(model: Model, rod: str) -> bool:
-    """Whether a rod is carried, carries others, or is held by a joint."""
-    scene = model.scene
-    (record,) = [one for one in scene.rods if one.name == rod]
-    carries = any(one.base.rod == rod for one in scene.rods)
-    return record.base.rod is not None or carries or any(joint.rod == rod for joint in scene.joints)
 
 
 def too_deep(history: History, duration: float) -> str:
@@ -90,7 +82,7 @@ def too_deep(history: History, duration: float) -> str:
 
 
 def told_inside(history: History, duration: float, deepest: float) -> str:
-    """A sentence where a section is inside an obstacle that has no width, with the time and the place; else nothing.
+    """A sentence where a section or a body is inside an obstacle without a width, with time and place; else nothing.
 
     Args:
         history: the motion.
@@ -106,7 +98,8 @@ def told_inside(history: History, duration: float, deepest: float) -> str:
     worst = found[number]
     if worst.depth <= deepest:
         return ""
+    what = f"the body {worst.rod!r}" if worst.of_body else f"the section X = {worst.place:.4g} of {worst.rod!r}"
     return (
-        f"At t = {times[number]:.6g} s the section X = {worst.place:.4g} of {worst.rod!r} is {worst.depth:.2g} of the "
+        f"At t = {times[number]:.6g} s {what} is {worst.depth:.2g} of the "
         f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there."
     )

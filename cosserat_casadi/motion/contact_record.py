@@ -11,7 +11,8 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_sections import Facing, facings
+from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facing import Facing
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.touching import Follower, Touches
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -24,31 +25,35 @@ class MotionContact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod.
-        at: abscissa X of the section.
+        rod: name of the rod, or of the body.
+        at: abscissa X of the section; 0 of a body.
         force: on the rod, world axes, shape (3,), N.
+        of_body: whether it is a body that touches.
     """
 
     obstacle: str
     rod: str
     at: float
     force: FloatArray
+    of_body: bool = False
 
 
 class Inside(NamedTuple):
-    """A section, and how deep it is inside an obstacle.
+    """A section, or a body, and how deep it is inside an obstacle.
 
     Attributes:
         depth: over the length of the rod; negative outside.
-        rod: name of the rod.
+        rod: name of the rod, or of the body.
         obstacle: name of the obstacle.
-        place: abscissa X of the section.
+        place: abscissa X of the section; 0 of a body.
+        of_body: whether it is a body.
     """
 
     depth: float
     rod: str
     obstacle: str
     place: float
+    of_body: bool
 
 
 @dataclass(frozen=True)
@@ -93,8 +98,9 @@ class ContactRecord:
         places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
         found = []
         for facing, place, gap, force in zip(follower.facings, places, gaps, instant.x[size:], strict=True):
-            total = force * self.model.discrete.tension_unit(facing.rod) * gap.normal
-            found.append(MotionContact(facing.obstacle.name, facing.rod, min(max(place, 0.0), 1.0), total))
+            total = force * facing.force_unit * gap.normal
+            within = min(max(place, 0.0), 1.0)
+            found.append(MotionContact(facing.obstacle.name, facing.rod, within, total, facing.of_body))
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
@@ -114,8 +120,9 @@ class ContactRecord:
             follower = Follower(self._facings, touches)
             _, gaps = follower.gaps(x, inputs.value)
             for facing, gap, force in zip(follower.facings, gaps, instant.x[size:], strict=True):
-                unit = self.model.discrete.tension_unit(facing.rod) * facing.length
-                powers[number] -= force * unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
+                powers[number] -= (
+                    force * facing.energy_unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
+                )
         return powers
 
     def deepest(self, x: FloatArray, inputs: FloatArray) -> Inside:
@@ -123,7 +130,7 @@ class ContactRecord:
         found = []
         for facing in self._facings:
             minimum = facing.deepest(facing.nodes(x, inputs))
-            found.append(Inside(-minimum.gap, facing.rod, facing.obstacle.name, minimum.place))
+            found.append(Inside(-minimum.gap, facing.rod, facing.obstacle.name, minimum.place, facing.of_body))
         return max(found)
 
     @cached_property

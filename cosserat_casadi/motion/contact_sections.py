@@ -1,8 +1,6 @@
-"""The surface of a rod in motion against one obstacle: gaps along it, where they are least, and their derivatives.
+"""The surface of a rod in motion against one obstacle: gaps along it, and where they are least.
 
-Positions between the nodes are those of the polynomials through the nodes, as results have them. The least gap over a
-stretch of the rod is a function of the unknowns alone: its gradient is that of the gap at the place where it is least,
-and its second derivative is less by what that place slides (E. Polak, *Optimization*, Springer 1997, section 3.1).
+Positions between the nodes are those of the polynomials through the nodes, as results have them.
 """
 
 from __future__ import annotations
@@ -11,21 +9,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
-import casadi as ca
 import numpy as np
 
-from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.contact_bodies import BodyFacing
+from cosserat_casadi.motion.facing import Facing, Gap, Minimum, Rows
+from cosserat_casadi.motion.meeting_ends import watched_ends
+from cosserat_casadi.motion.moving_points import centre_of, nodes_of
 
 SECTIONS_IN_ELEMENT = 200
 """Sections of an element at which gaps are looked at first."""
@@ -49,139 +46,15 @@ BEYOND = 0.05
 """How far beyond the ends of a rod its polynomials are followed, over the length."""
 
 
-class Sections:
-    """World positions of the nodes of one rod, as functions of the unknowns and inputs of a model.
-
-    Args:
-        model: the model, built for a motion.
-        rod: name of the rod.
-    """
-
-    def __init__(self, model: Model, rod: str) -> None:
-        x = ca.MX.sym("x", model.size)
-        inputs = ca.MX.sym("inputs", model.inputs.size)
-        system = System(model.discrete, Arguments(x, inputs))
-        base = system.base(rod)
-        shape = system.shapes[rod]
-        turned = quaternion_to_matrix(base.quaternion) @ shape.position
-        positions = ca.densify(ca.vec(ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned))
-        weights = ca.MX.sym("weights", positions.shape[0])
-        total = ca.dot(weights, positions)
-        gradient = ca.densify(ca.gradient(total, x))
-        self.positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]))
-        self.gradient = RepeatedCall(ca.Function("gradient", [x, inputs, weights], [gradient]))
-        self._symbols = [x, inputs, weights]
-        self._written = (positions, total, gradient)
-
-    @cached_property
-    def by_inputs(self) -> RepeatedCall:
-        """(x, inputs, weights) ↦ derivative of the weighted sum of the positions with the inputs, shape (m,)."""
-        derivative = ca.densify(ca.gradient(self._written[1], self._symbols[1]))
-        return RepeatedCall(ca.Function("by_inputs", self._symbols, [derivative]))
-
-    def straight_on(
-        self, x: FloatArray, inputs: FloatArray, v: FloatArray, rate: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Velocities and accelerations of the nodes while unknowns and inputs change evenly, shape (M, 3) each."""
-        first, second = np.split(self._straight_on(x, inputs, v, rate), 2)
-        return first.reshape(-1, 3), second.reshape(-1, 3)
-
-    def hessian(self, x: FloatArray, inputs: FloatArray, weights: FloatArray) -> FloatArray:
-        """Second derivative of the weighted sum of the positions with the unknowns, shape (n, n)."""
-        stacked = self._hessian(x, inputs, weights)
-        return stacked.reshape(len(x), len(x))
-
-    def jacobian(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Derivative of the positions with the unknowns, shape (nodes, 3, n)."""
-        stacked = self._jacobian(x, inputs)
-        return stacked.reshape(len(x), -1, 3).transpose(1, 2, 0)
-
-    @cached_property
-    def _straight_on(self) -> RepeatedCall:
-        x, inputs, _ = self._symbols
-        v = ca.MX.sym("v", x.shape[0])
-        rate = ca.MX.sym("rate", inputs.shape[0])
-        state = ca.vertcat(x, inputs)
-        change = ca.vertcat(v, rate)
-        at_once = ca.MX.sym("state", state.shape[0])
-        positions = ca.graph_substitute(
-            self._written[0], [x, inputs], ca.vertsplit(at_once, [0, x.shape[0], at_once.shape[0]])
-        )
-        first = ca.jtimes(positions, at_once, change)
-        second = ca.jtimes(first, at_once, change)
-        written = ca.Function("moved", [at_once, v, rate], [ca.densify(ca.vertcat(first, second))])
-        return RepeatedCall(ca.Function("straight_on", [x, inputs, v, rate], [written(state, v, rate)]))
-
-    @cached_property
-    def _hessian(self) -> RepeatedCall:
-        second = ca.densify(ca.jacobian(self._written[2], self._symbols[0]))
-        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]))
-
-    @cached_property
-    def _jacobian(self) -> RepeatedCall:
-        first = ca.densify(ca.jacobian(self._written[0], self._symbols[0]))
-        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]))
-
-
-class Rows(NamedTuple):
-    """Weights of the nodes for the position of a section, and for its first two derivatives with X, shape (M,) each."""
-
-    value: FloatArray
-    first: FloatArray
-    second: FloatArray
-
-
-class Gap(NamedTuple):
-    """A gap at one section, over the length of the rod, and what its derivatives are made of.
-
-    Attributes:
-        value: the gap.
-        slope: its derivative with X.
-        bend: its second derivative with X.
-        rows: of the section.
-        normal: of the obstacle, shape (3,).
-        curvature: second derivative of the distance with the point, shape (3, 3), 1/m.
-        tangent: derivative of the position with X, shape (3,), m.
-    """
-
-    value: float
-    slope: float
-    bend: float
-    rows: Rows
-    normal: FloatArray
-    curvature: FloatArray
-    tangent: FloatArray
-
-
-class Minimum(NamedTuple):
-    """A section whose gap is the least about it.
-
-    Attributes:
-        place: abscissa X.
-        gap: over the length.
-        inside: whether it is no end of the rod.
-    """
-
-    place: float
-    gap: float
-    inside: bool
-
-
 @dataclass(frozen=True)
-class Facing:
+class RodFacing(Facing):
     """A rod and an obstacle that it may touch.
 
     Attributes:
-        model: the model, built for a motion.
-        rod: name of the rod.
-        obstacle: the obstacle.
-        sections: of the rod.
+        watched_ends: whether base and tip may be where it touches; not where they are held, or another rod has them.
     """
 
-    model: Model
-    rod: str
-    obstacle: scenes.ObstacleRecord
-    sections: Sections
+    watched_ends: tuple[bool, bool]
 
     @cached_property
     def length(self) -> float:
@@ -196,10 +69,6 @@ class Facing:
         for start, end in pairwise(ends):
             parts.append(np.linspace(start, end, SECTIONS_IN_ELEMENT + 1))
         return np.unique(np.concatenate(parts))
-
-    def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """World positions of the nodes, shape (M, 3), m."""
-        return self.sections.positions(x, inputs).reshape(-1, 3)
 
     def gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections looked at, over the length, shape (k,)."""
@@ -247,16 +116,19 @@ class Facing:
         found = [self._refined(nodes, i) for i in near]
         return [minimum for minimum in found if minimum.gap <= below]
 
-    def lowest(self, nodes: FloatArray, but: Sequence[float]) -> float:
+    def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:
         """The least gap over the length but for those in the valleys of some abscissae; infinite where there is none.
 
         Args:
             nodes: positions, shape (M, 3), m.
             but: these abscissae.
+            ends: ends of the rod that are left out where they are lower than all beside them.
         """
         gaps = self._level(nodes)
         left_out = [self._downhill(gaps, place) for place in but]
-        others = [i for i in self._lowest(gaps) if all(abs(i - one) > 1 for one in left_out)]
+        others = [
+            i for i in self._lowest(gaps) if self.looked_at[i] not in ends and all(abs(i - one) > 1 for one in left_out)
+        ]
         if not others:
             return float("inf")
         return self._refined(nodes, min(others, key=lambda i: float(gaps[i]))).gap
@@ -265,56 +137,6 @@ class Facing:
         """The section whose gap is the least of all, the base included."""
         gaps = self.gaps(nodes)
         return self._refined(nodes, int(np.argmin(gaps)))
-
-    def gradient(self, x: FloatArray, inputs: FloatArray, gap: Gap) -> FloatArray:
-        """Derivative of a gap with the unknowns, shape (n,)."""
-        return self.sections.gradient(x, inputs, self._weights(gap)) / self.length
-
-    def by_inputs(self, x: FloatArray, inputs: FloatArray, gap: Gap) -> FloatArray:
-        """Derivative of a gap with the inputs, shape (m,)."""
-        return self.sections.by_inputs(x, inputs, self._weights(gap)) / self.length
-
-    def hessian(self, x: FloatArray, inputs: FloatArray, gap: Gap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap with the unknowns, shape (n, n).
-
-        Args:
-            x: unknowns, shape (n,).
-            inputs: stacked inputs, shape (m,).
-            gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
-        """
-        by_nodes = self.sections.jacobian(x, inputs)
-        moved = np.einsum("k,kin->in", gap.rows.value, by_nodes)
-        second = self.sections.hessian(x, inputs, self._weights(gap)) + moved.T @ gap.curvature @ moved
-        if slides:
-            turned = np.einsum("k,kin->in", gap.rows.first, by_nodes)
-            slope = gap.normal @ turned + gap.tangent @ gap.curvature @ moved
-            second = second - np.outer(slope, slope) / (gap.bend * self.length)
-        return np.asarray(second / self.length)
-
-    def rates(
-        self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: Gap, *, slides: bool
-    ) -> tuple[float, float]:
-        """Rate of a gap, 1/s, and its second derivative without the part of the accelerations of the unknowns, 1/s².
-
-        Args:
-            x: unknowns, shape (n,).
-            v: their rates, likewise, 1/s.
-            inputs: the stacked inputs, their rates and their accelerations, shape (m,) each.
-            gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
-        """
-        value, rate, acceleration = inputs
-        velocities, accelerations = self.sections.straight_on(x, value, v, rate)
-        velocity = gap.rows.value @ velocities
-        first = float(gap.normal @ velocity)
-        second = float(gap.normal @ (gap.rows.value @ accelerations) + velocity @ gap.curvature @ velocity)
-        if slides:
-            slope = float(gap.normal @ (gap.rows.first @ velocities) + gap.tangent @ gap.curvature @ velocity)
-            second -= slope**2 / (gap.bend * self.length)
-        if np.any(acceleration):
-            second += self.length * float(self.by_inputs(x, value, gap) @ acceleration)
-        return first / self.length, second / self.length
 
     def _stationary(self, nodes: FloatArray, near: float) -> float:
         """Newton's method for a place where the slope is zero; not a number where it leads nowhere."""
@@ -347,13 +169,15 @@ class Facing:
     def _lowest(self, gaps: FloatArray) -> list[int]:
         """Numbers of the sections that are no higher than their neighbours, of equal ones the first and the last.
 
-        The base of a rod that is held has a gap that does not change: it is left out.
+        An end that is held has a gap that does not change, and one that is another rod's too is watched there.
         """
         padded = np.concatenate([[np.inf], gaps, [np.inf]])
         falls = padded[:-2] - gaps
         rises = padded[2:] - gaps
         lowest = np.flatnonzero((falls >= 0.0) & (rises >= 0.0) & (falls + rises > 0.0))
-        return [int(i) for i in lowest if self._floats or i > 0]
+        last = len(gaps) - 1
+        base, tip = self.watched_ends
+        return [int(i) for i in lowest if (base or i > 0) and (tip or i < last)]
 
     def _refined(self, nodes: FloatArray, index: int) -> Minimum:
         """The minimum next to a section that is looked at."""
@@ -403,10 +227,6 @@ class Facing:
         return base, tip
 
     @cached_property
-    def _floats(self) -> bool:
-        return self.model.discrete.unloaded.floating_base(self.rod) is not None
-
-    @cached_property
     def _derivatives(self) -> tuple[FloatArray, FloatArray]:
         intervals = self._grid.intervals
         return chebyshev.differentiation_matrix(intervals), chebyshev.differentiation_matrix(intervals, 2)
@@ -426,10 +246,6 @@ class Facing:
         rows[2, own] = local @ second / width**2
         return Rows(*rows)
 
-    def _weights(self, gap: Gap) -> FloatArray:
-        """Weights of the positions of the nodes, stacked node by node, whose sum varies as the gap does."""
-        return np.outer(gap.rows.value, gap.normal).ravel()
-
 
 def _step_down(gaps: FloatArray, index: int) -> float:
     """How much lower than a section that is looked at the minimum next to it may be."""
@@ -438,11 +254,21 @@ def _step_down(gaps: FloatArray, index: int) -> float:
 
 
 def facings(model: Model) -> list[Facing]:
-    """Every rod with every obstacle that it may touch exactly."""
-    found = []
+    """Every rod and every body with every obstacle that it may touch exactly."""
+    found: list[Facing] = []
+    exact = [obstacle for obstacle in model.scene.obstacles if not obstacle.is_smooth]
     for rod in model.scene.rods:
-        concerned = [one for one in model.scene.obstacles if one.concerns(rod.name) and not one.is_smooth]
-        if concerned:
-            sections = Sections(model, rod.name)
-            found += [Facing(model, rod.name, obstacle, sections) for obstacle in concerned]
+        concerned = [obstacle for obstacle in exact if obstacle.concerns(rod.name)]
+        if not concerned:
+            continue
+        points = nodes_of(model, rod.name)
+        for obstacle in concerned:
+            ends = watched_ends(model, rod.name, obstacle)
+            found.append(RodFacing(model, rod.name, obstacle, points, False, ends))
+    for body in model.scene.bodies:
+        concerned = [obstacle for obstacle in exact if obstacle.concerns_body(body.name)]
+        if not concerned:
+            continue
+        points = centre_of(model, body.name)
+        found += [BodyFacing(model, body.name, obstacle, points, True, ball_radius(body)) for obstacle in concerned]
     return found

@@ -17,7 +17,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_sections import Facing, facings
+from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facing import Facing
+from cosserat_casadi.motion.meeting_ends import MeetingEnds
 from cosserat_casadi.motion.moving_inputs import InputState, Piece
 from cosserat_casadi.motion.restart import ContactEvent, Restart
 from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
@@ -60,8 +62,13 @@ class ExactContacts:
 
     @cached_property
     def facings(self) -> list[Facing]:
-        """Rods and obstacles that may touch."""
+        """Rods and bodies, with the obstacles that they may touch."""
         return facings(self.model)
+
+    @cached_property
+    def meeting_ends(self) -> MeetingEnds:
+        """Which ends of the rods are one point."""
+        return MeetingEnds(self.facings)
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Touches:
         """What touches at a state."""
@@ -95,15 +102,26 @@ class ExactContacts:
             inputs = piece.at(instant.time).value
             places, gaps = follower.follow(x, inputs)
             forces = instant.x[size:]
-            ends = [_within(touch, place, gap.slope) for touch, place, gap in zip(phases, places, gaps, strict=True)]
+            touches = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
+            ends = [self._within(touch, x, inputs) for touch in touches]
             bends = [gap.bend - FLATTEST if touch.slides else 1.0 for touch, gap in zip(phases, gaps, strict=True)]
+            beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
             others = []
             for number, facing in enumerate(self.facings):
-                own = [place for touch, place in zip(phases, places, strict=True) if touch.facing == number]
-                others.append(min(1.0, facing.lowest(facing.nodes(x, inputs), own)))
+                own = [touch.place for touch in touches if touch.facing == number]
+                left_out = [X for other, X in beside if other == number]
+                others.append(min(1.0, facing.lowest(facing.nodes(x, inputs), own, left_out)))
             return np.concatenate([forces, ends, bends, others])
 
         return values
+
+    def _within(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> float:
+        """How far a place is from the ends of the rod; of an end, how fast the gap rises towards all rods there."""
+        if touch.slides:
+            return min(touch.place, 1.0 - touch.place)
+        if self.facings[touch.facing].of_body:
+            return 1.0
+        return self.meeting_ends.rise(touch, x, inputs)
 
     def restarted(
         self,
@@ -141,7 +159,7 @@ class ExactContacts:
             before: state before the event.
             inputs: at its time.
         """
-        places, gaps = Follower(self.facings, phases).gaps(before.x, inputs)
+        places, _ = Follower(self.facings, phases).gaps(before.x, inputs)
         held = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
         kind, number = _guarded(guard, len(phases))
         if kind == FORCE:
@@ -150,13 +168,16 @@ class ExactContacts:
         if kind == BEND:
             return _Known(tuple(held), lying=held[number])
         if kind == END:
-            # An end that is left where the gap is flat leaves no section for another.
-            is_flat = not held[number].slides and gaps[number].bend <= FLATTEST
-            moved = _past_end(held[number])
+            end = held[number]
+            moved = self.meeting_ends.gone_on(end, before.x, inputs)
             held[number] = moved
-            if is_flat:
+            # An end that is left where the gap is flat leaves no section for another.
+            facing = self.facings[moved.facing]
+            if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place).bend <= FLATTEST:
                 return _Known(tuple(held), lying=moved)
             name = "slide_from_end" if moved.slides else "slide_to_end"
+            if moved.facing != end.facing:
+                name = "slide_over_joint"
             return _Known(tuple(held), events=(self._event(name, before.time, moved),))
         return _Known(tuple(held))
 
@@ -165,7 +186,7 @@ class ExactContacts:
         before = stretch.before
         touching = self._touching(before.x, stretch.inputs.value, (*known.held, *known.left))
         new = touching[len(known.held) + len(known.left) :]
-        after = stretch.after_impact(touching)
+        after = stretch.after_impact(touching, len(known.held))
         if after is None:
             return stretch.stopped(known.events, self._undecided(touching, before.time))
         v, impulses, remaining = after
@@ -173,7 +194,7 @@ class ExactContacts:
         lost = 0.0
         for touch, speed in zip(touching, stretch.rates(touching, before.v), strict=True):
             facing = self.facings[touch.facing]
-            impulse = impulses[touch] * self.model.discrete.tension_unit(facing.rod)
+            impulse = impulses[touch] * facing.force_unit
             # Half the impulse times the speed that it takes: of sections that touched before that is none.
             energy = max(0.0, float(-0.5 * impulse * speed * facing.length))
             lost += energy
@@ -190,20 +211,21 @@ class ExactContacts:
 
     def _touching(self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch]) -> Touches:
         """Known contacts, and all others that touch at a state."""
-        touches = list(known)
+        found: list[Touch] = []
         for number, facing in enumerate(self.facings):
             nodes = facing.nodes(x, inputs)
             own = [touch.place for touch in known if touch.facing == number]
-            touches += [
+            found += [
                 Touch(number, minimum.place, minimum.inside)
                 for minimum in facing.minima(nodes, TOUCHING)
                 if all(abs(minimum.place - place) > SAME_PLACE for place in own)
             ]
-        return tuple(touches)
+        return self.meeting_ends.distinct(tuple(known), tuple(found), SAME_PLACE)
 
     def _event(self, kind: str, time: float, touch: Touch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
         facing = self.facings[touch.facing]
-        return ContactEvent(kind, time, facing.rod, facing.obstacle.name, touch.place, energy, impulse)
+        name = facing.obstacle.name
+        return ContactEvent(kind, time, facing.rod, name, touch.place, energy, impulse, facing.of_body)
 
     def _lies_down(self, touch: Touch, time: float) -> str:
         facing = self.facings[touch.facing]
@@ -277,17 +299,20 @@ class _Stretch:
         x = _padded(self.before.x, pressing)
         return consistent_start(equations, self.before.time, x, _padded(v, pressing), self.interval)
 
-    def after_impact(self, touching: Touches) -> tuple[FloatArray, dict[Touch, float], Touches] | None:
+    def after_impact(self, touching: Touches, held: int) -> tuple[FloatArray, dict[Touch, float], Touches] | None:
         """Velocities after an impact, its impulses, and what still touches; None where nothing settles it.
 
         Impulses are in EI/ℓ² s.
 
         Args:
             touching: sections without a gap.
+            held: number of the first of them, which have touched all along.
         """
         if not touching:
             return self.before.v, {}, ()
         speeds = self.rates(touching, self.before.v)
+        # Steps keep their gaps at zero, and the rates of these to the error of the steps alone.
+        speeds[:held] = 0.0
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
         if speeds.min() >= -still:
             return self.before.v, dict.fromkeys(touching, 0.0), self._staying(touching, speeds, still)
@@ -376,16 +401,3 @@ def _guarded(guard: int | None, count: int) -> tuple[int | None, int]:
         return None, 0
     kind = min(guard // count, GAP) if count else GAP
     return kind, guard - kind * count
-
-
-def _within(touch: Touch, place: float, slope: float) -> float:
-    """How far a place is from the ends of the rod; of an end, how much the gap rises towards the rod."""
-    if touch.slides:
-        return min(place, 1.0 - place)
-    return -slope if touch.place > 0.5 else slope
-
-
-def _past_end(touch: Touch) -> Touch:
-    """A contact whose place has come to an end of the rod stays there; one that has left it slides."""
-    end = 1.0 if touch.place > 0.5 else 0.0
-    return Touch(touch.facing, end, not touch.slides)

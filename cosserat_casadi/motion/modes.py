@@ -17,7 +17,8 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong
-from cosserat_casadi.accuracy.refine import FINER_MODES, TIGHT, solve_scene
+from cosserat_casadi.accuracy.refine import FINER_MODES, solve_scene
+from cosserat_casadi.accuracy.scene_solver import TIGHT
 from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.solution import Solution

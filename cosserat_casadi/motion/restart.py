@@ -17,13 +17,14 @@ class ContactEvent:
     """A change of contact in a motion.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end" or "slide_from_end".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end" or "slide_over_joint".
         time: s.
-        rod: name of the rod.
+        rod: name of the rod, or of the body.
         obstacle: name of the obstacle.
-        place: abscissa X of the section.
+        place: abscissa X of the section; 0 of a body.
         energy: kinetic energy that the impact took, J; zero of the others.
         impulse: of the obstacle on the rod, along its normal there, N s; zero of the others.
+        of_body: whether it is a body that touches.
     """
 
     kind: str
@@ -33,6 +34,7 @@ class ContactEvent:
     place: float
     energy: float = 0.0
     impulse: float = 0.0
+    of_body: bool = False
 
 
 @dataclass(frozen=True)

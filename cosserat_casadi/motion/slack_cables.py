@@ -185,7 +185,7 @@ class SlackCables:
     def _sag_rows(self) -> Matrix:
         """What the wanted length of each cable, stretched by its tension, exceeds its own by, over the rod's length."""
         x, inputs = self._symbols
-        lengths = System(self.model.discrete, Arguments(x, inputs)).cable_lengths
+        lengths = System(self.model.discrete, Arguments(x, inputs)).actuators.cable_lengths
         return ca.densify(ca.vertcat(*[lengths[cable.tendon.name].sag for cable in self.cables]))
 
 

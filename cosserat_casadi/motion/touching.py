@@ -1,7 +1,7 @@
 """Contacts in force during a stretch of a motion: their unknown forces, and what they add to the equations of motion.
 
-A contact is the stretch of a rod about the section where its gap to an obstacle is least. That least gap is a function
-of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
+A contact is a body, or the stretch of a rod about the section where its gap to an obstacle is least. That least gap is
+a function of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import Facing, Gap
+from cosserat_casadi.motion.facing import Facing, Gap
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
@@ -24,7 +24,7 @@ class Touch(NamedTuple):
     Attributes:
         facing: number of the rod and obstacle among those that may touch.
         place: abscissa X of the section that touches, where the contact was last looked at.
-        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod.
+        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod, or a body.
     """
 
     facing: int
@@ -105,7 +105,11 @@ class Follower:
 
 
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
-    """Equations of motion with the forces of contacts as further unknowns, in EI/ℓ², and their gaps as further rows.
+    """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
+
+    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it. In whatever assembly
+    they are, gaps depend on the strains and on the base of their rod alone, or on the pose of their body: it does to
+    these balances, which are in units of the same energy, what its gap gains from these unknowns.
 
     Args:
         plain: those of the model.

@@ -19,6 +19,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
@@ -192,11 +193,12 @@ def follow_path(
         progress: receives the largest factor reached.
 
     Raises:
-        SceneError: the input is unknown, or a value is refused.
+        SceneError: the input is unknown, a value is refused, or contact alone would have to hold a free rod.
     """
     model = model.at()
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
+        refuse_held_by_contact(model.scene)
         path = follow_contact_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )

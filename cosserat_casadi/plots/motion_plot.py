@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
@@ -162,14 +164,26 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
 
 
 def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
-    """Mark the sections that touch obstacles without a width in the shapes that are drawn."""
+    """Mark where obstacles without a width are touched in the shapes that are drawn."""
     label: str | None = "contact"
     for row in rows:
         for contact in motion.contacts[row] if motion.contacts else ():
-            point = motion.section(contact.rod, [contact.at]).position[row]
-            canvas.markers(point, marker="o", markersize=5, color="black", zorder=9, label=label)
+            canvas.markers(
+                _touching_point(motion, contact, row), marker="o", markersize=5, color="black", zorder=9, label=label
+            )
             # The legend names contacts once.
             label = None
+
+
+def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
+    """Centre of the section that touches, or where the ball of a body does, shape (1, 3), m."""
+    if not contact.of_body:
+        section: FloatArray = motion.section(contact.rod, [contact.at]).position[row]
+        return section
+    (body,) = [body for body in motion.model.scene.bodies if body.name == contact.rod]
+    normal = contact.force / np.linalg.norm(contact.force)
+    centre: FloatArray = motion.body(body.name).position[row : row + 1]
+    return centre - ball_radius(body) * normal
 
 
 def shown_rows(times: FloatArray) -> list[int]:

@@ -125,6 +125,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "obstacle": [contact.obstacle for contact in contacts],
         "rod": [contact.rod for contact in contacts],
         "at": np.array([contact.at for contact in contacts]),
+        "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
         "events": {
             name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__

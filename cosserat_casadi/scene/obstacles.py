@@ -116,7 +116,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that are not round, bodies without radius; where contact is exact rods that shear, and free ones."""
+        """Rods that are not round, bodies without radius; where contact is exact rods that shear."""
         named = given.get("rods", [] if "bodies" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
@@ -125,10 +125,6 @@ class ObstacleRecord(Entry):
             )
             yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
         yield from _unfit_bodies(given, scene)
-        if exact and given.get("bodies"):
-            for name, (_, rod) in scene.named("rods").items():
-                if _is_free(rod):
-                    yield Fault((), *_held_by_contact_alone(name))
         for name, (_, rod) in scene.named("rods").items():
             if isinstance(named, list | tuple) and name not in named:
                 continue
@@ -181,21 +177,6 @@ def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
         problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
         remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
         yield Fault((), problem, remedy)
-    if _is_free(rod):
-        yield Fault((), *_held_by_contact_alone(name))
-
-
-def _is_free(rod: Table) -> bool:
-    """Whether nothing in the scene holds the base of a rod."""
-    base = rod.get("base")
-    return isinstance(base, Mapping) and base.get("free") is True
-
-
-def _held_by_contact_alone(name: str) -> tuple[str, str]:
-    """What is wrong with a free rod, and what to do."""
-    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
-    problem = f"the rod {name!r} is free: at rest contact alone would have to hold it"
-    return problem, f"give its base a place; or let it move: {SMOOTH_FORM}"
 
 
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")

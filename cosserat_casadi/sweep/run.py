@@ -22,7 +22,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweep.arguments import COMPILED_FROM
@@ -35,6 +35,7 @@ from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
+from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
 from cosserat_casadi.sweep.variants import Variants, variants_of
 from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
@@ -95,6 +96,8 @@ class Plan:
     @property
     def results(self) -> tuple[str, ...]:
         """Names of the numbers that a row is answered with."""
+        if self.scene.tubes:
+            return tube_results(self.scene, stability=self.stability)
         return row_results(self.scene, stability=self.stability)
 
     @property
@@ -136,15 +139,16 @@ def plan_sweep(
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
-        refuse_tubes(scene)
-        plan = Plan(scene, table, variants_of(scene, table), output, samples, stability)
+        refuse_held_by_contact(scene)
+        seen = tube_variants(scene, table) if scene.tubes else variants_of(scene, table)
+        plan = Plan(scene, table, seen, output, samples, stability)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
-    # Rows that look for contact are solved in Python.
-    if not scene.touches_exactly:
+    # Rows that look for contact, and those of tubes, are solved in Python.
+    if not scene.touches_exactly and not scene.tubes:
         # Both raise where a library could not be generated or compiled.
         scene_names(NAME, scene)
         find_compiler()
@@ -245,7 +249,8 @@ def _begun(plan: Plan, store: Store | None, progress: Progress) -> tuple[Choice,
     head = None if store is None else store.head()
     if store is not None and head is not None:
         return Choice.read(head["choice"]), store.resume(len(plan.results))
-    choice = choose(plan.variants, plan.table.values, plan.samples, progress)
+    # Each row of tubes has as many steps as its own tolerance asks for.
+    choice = Choice(None) if plan.scene.tubes else choose(plan.variants, plan.table.values, plan.samples, progress)
     if store is not None:
         store.start({"sweep": plan.identity, "choice": choice.plain()})
     return choice, {}
@@ -300,6 +305,8 @@ def _tasks(
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """What solves a chunk in Python: a model for each variant that it has rows of."""
+    if plan.scene.tubes:
+        return [(TubeRows(scene_text(plan.scene), plan.stability), plan.variants.inputs[chunk.rows])]
     parts: list[Part] = []
     # Text, since models of CasADi do not travel to other processes.
     measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
@@ -322,10 +329,11 @@ def _sweep(
     results = np.full((len(plan.table.values), len(names)), np.nan)
     for chunk in work:
         results[chunk.rows] = done[chunk.number]
-    if plan.stability:
+    if plan.stability and not plan.scene.tubes:
         judged = rows_with_potential(plan.variants, work)
         results[~judged, -len(STABILITY) :] = np.nan
-    checked = check(plan.variants, choice, results, progress)
+    # Rows of tubes are within tolerance each, or do not converge.
+    checked = [] if plan.scene.tubes else check(plan.variants, choice, results, progress)
     result_names = plan.columns[len(plan.table.columns) :]
     result_columns = [names.index(name) for name in result_names]
     sweep = Sweep(
@@ -353,6 +361,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "chosen": choice.plain(),
         "checked": checked,
         "swept": list(sweep.swept),
+        **({"tubes": [tube.name for tube in plan.scene.tubes]} if plan.scene.tubes else {}),
         "parameters": list(plan.variants.parameters),
         "arguments": list(plan.variants.arguments),
         **sobol,

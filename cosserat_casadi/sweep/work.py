@@ -81,8 +81,8 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk
     modelled = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
-        # Compiled C does not look for contact.
-        if few or entry.scene.touches_exactly:
+        # Compiled C does not look for contact; tubes choose their steps row by row.
+        if few or entry.scene.touches_exactly or entry.scene.tubes:
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):

@@ -17,7 +17,7 @@ two; `maths.composition` makes one of order eight of it. See docs/tubes.md.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
 from dataclasses import dataclass
 from functools import cache
 from typing import Self
@@ -28,6 +28,7 @@ from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.maths.magnus import increment
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.tubes.stages import Staged
 
 
 @dataclass(frozen=True)
@@ -98,21 +99,22 @@ class Section:
         chord = length * arc.tangent[:, 2]
         return State(state.angles, torques, state.pose.then(Pose(chord, arc.quaternion)), energy)
 
+    def stage(self, state: State, before: Matrix, length: Matrix) -> State:
+        """A stage of a step along a length, without the last half of what the torques do: the next stage takes it.
+
+        Args:
+            state: where it begins.
+            before: length of the stage before.
+            length: of this one.
+        """
+        return self.bent(self.turned(state, (before + length) / 2), length)
+
     def step(self, state: State, length: Matrix) -> State:
         """A step of order eight along a length, which is negative towards the base."""
-        halves = self._halves([share * length for share in SHARES])
-        for turning, bending in halves[:-1]:
-            state = self.bent(self.turned(state, turning), bending)
-        last, _ = halves[-1]
-        return self.turned(state, last)
-
-    @staticmethod
-    def _halves(stages: Sequence[Matrix]) -> list[tuple[Matrix, Matrix]]:
-        """Lengths that the torques act along, then the angles; halves of neighbouring stages are one."""
-        nothing = ca.DM(0.0)
-        before = [nothing, *stages]
-        after = [*stages, nothing]
-        return [((one + other) / 2, other) for one, other in zip(before, after, strict=True)]
+        stages = [share * length for share in SHARES]
+        for before, own in itertools.pairwise([ca.DM(0.0), *stages]):
+            state = self.stage(state, before, own)
+        return self.turned(state, stages[-1] / 2)
 
 
 @cache
@@ -137,6 +139,23 @@ def twist_step(size: int) -> ca.Function:
     state = State.of(ca.vertcat(twist, START))
     after = _section(section).step(state, length)
     return ca.Function("twist_step", [twist, length, section], [ca.vertcat(after.angles, after.torques)])
+
+
+@cache
+def whole_stages(size: int) -> Staged:
+    """A step of a number of tubes with the frame and the energy, in its stages; arguments are those of `whole_step`."""
+    state = ca.SX.sym("state", 2 * size + 8)
+    before = ca.SX.sym("before")
+    length = ca.SX.sym("length")
+    stacked = ca.SX.sym("section", 2 * size + 2)
+    section = _section(stacked)
+    begun = State.of(state)
+    return Staged(
+        stage=ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked]),
+        last=ca.Function("last", [state, length, stacked], [section.turned(begun, length / 2).stacked]),
+        energy=2 * size + 7,
+        carried=0,
+    )
 
 
 START = ca.DM([0, 0, 0, 1, 0, 0, 0, 0])

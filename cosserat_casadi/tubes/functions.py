@@ -18,7 +18,9 @@ import casadi as ca
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.tubes.changes import Directions, changing_step, changing_width, selected, with_changes
 from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations
 
 NEWTON_TOLERANCE = 1e-12
@@ -26,6 +28,9 @@ NEWTON_TOLERANCE = 1e-12
 
 NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
+
+POSE = 7
+"""Numbers of a pose: position and quaternion."""
 
 
 class AnyState(Protocol):
@@ -113,6 +118,24 @@ class TubeFunctions(ABC):
     def _state(self, stacked: Matrix) -> AnyState:
         """The state of stacked entries of `_whole`."""
 
+    @property
+    @abstractmethod
+    def _staged(self) -> Staged:
+        """A step of such states, in its stages."""
+
+    @property
+    @abstractmethod
+    def _begun(self) -> Matrix:
+        """The stacked state at the tip of the robot, with what is carried along behind it: nothing yet."""
+
+    @abstractmethod
+    def _passing(self, piece: int, stacked: Matrix) -> Matrix:
+        """A stacked state, with what is carried along behind it, beyond the start of a piece, where tubes may end."""
+
+    @abstractmethod
+    def _missed(self, plate: Matrix) -> Matrix:
+        """The residual, where the stacked state at the plate is given."""
+
     # What is asked of the model
 
     @cached_property
@@ -191,17 +214,88 @@ class TubeFunctions(ABC):
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
         follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        x, inputs, _ = self._arguments
-        following = -ca.solve(ca.jacobian(self._residual, x), ca.jacobian(self._residual, inputs))
-        tips = ca.vertcat(*[ca.vertcat(tip.position, tip.quaternion) for tip in self._tips])
-        changes = ca.jacobian(tips, inputs) + ca.jacobian(tips, x) @ following
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments)
+        following = -ca.solve(jacobian, by_inputs)
+        changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
-        for tip, change in zip(self._tips, ca.vertsplit(changes, 7), strict=True):
-            back = quaternion_conjugate(tip.quaternion)
+        for pose, change in zip(ca.horzsplit(poses), ca.vertsplit(changes, POSE), strict=True):
+            back = quaternion_conjugate(pose[3:])
             # δQ = ½ (0, δθ) ⊗ Q.
             turns = [2 * quaternion_product(column, back)[1:] for column in ca.horzsplit(change[3:, :])]
             rows += [ca.horzcat(*turns), change[:3, :]]
         return self._function("tip_jacobian", {"tip_jacobian": ca.vertcat(*rows)})
+
+    @cached_property
+    def sensitivity(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ derivatives of residual and tips, from one integration with all changes.
+
+        Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
+        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
+        """
+        x, inputs, _ = self._arguments
+        directions = Directions(self.robot, self.unknowns)
+        ends = self._changing(directions)
+        plate, plate_changes = ends[-1]
+        at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
+        _, missed = at_plate(plate, x, inputs, plate_changes)
+        # A rotation turns its drive, and changes nothing else.
+        by_rotations = ca.vertcat(-ca.DM.eye(self.size), ca.DM(self.unknowns - self.size, self.size))
+        poses: list[Matrix] = []
+        changes: list[Matrix] = []
+        for index, rank in enumerate(self._ranks):
+            reached = selected(rank, [state for state, _ in ends[:-1]])
+            reached_changes = selected(rank, [change for _, change in ends[:-1]])
+            of_tip = with_changes(self._of_tip(index), directions, {2: directions.of_x})
+            pose, moved = of_tip(plate, reached, x, plate_changes, reached_changes)
+            poses.append(pose)
+            changes.append(moved)
+        moved = ca.vertcat(*changes)
+        outputs = {
+            "jacobian": missed[:, : self.unknowns],
+            "by_inputs": directions.by_inputs(missed, by_rotations),
+            "poses": ca.horzcat(*poses),
+            "poses_by_x": moved[:, : self.unknowns],
+            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.size)),
+        }
+        return self._function("sensitivity", outputs)
+
+    def _changing(self, directions: Directions) -> list[tuple[Matrix, Matrix]]:
+        """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
+        x, inputs, _ = self._arguments
+        staged = self._staged
+        width = changing_width(staged)
+        begun = ca.Function("begun", [x, inputs], [self._begun])
+        state, changes = with_changes(begun, directions, {0: directions.of_x, 1: directions.of_inputs})(x, inputs)
+        ends = [(state, changes)]
+        of_pieces = ca.Function("lengths", [inputs], [ca.vertcat(*self._piece_lengths) / self.steps])
+        lengths, length_changes = with_changes(of_pieces, directions, {0: directions.of_inputs})(inputs)
+        length_changes = length_changes[:, directions.translations]
+        steps = changing_step(staged, directions).mapaccum("changing_steps", self.steps)
+        for piece, sections in enumerate(ca.horzsplit(self._sections, self.steps)):
+            if staged.carried:
+                begin = ca.MX.sym("begin", width)
+                passing = ca.Function("passing", [begin, inputs], [self._passing(piece, begin)])
+                passed = with_changes(passing, directions, {1: directions.of_inputs})
+                state, changes = passed(state, inputs, changes)
+            along = ca.vertcat(lengths[piece], length_changes[piece, :].T)
+            stacked = steps(ca.vertcat(state, ca.vec(changes)), ca.repmat(along, 1, self.steps), sections)[:, -1]
+            state, changes = stacked[:width], ca.reshape(stacked[width:], width, -1)
+            ends.append((state, changes))
+        return [(state[: staged.width], changes[: staged.width, :]) for state, changes in ends]
+
+    @property
+    def _of_plate(self) -> ca.Function:
+        """(state at the plate, x, inputs) ↦ residual."""
+        x, inputs, _ = self._arguments
+        plate = ca.MX.sym("plate", self._staged.width)
+        return ca.Function("of_plate", [plate, x, inputs], [self._missed(plate)])
+
+    def _of_tip(self, index: int) -> ca.Function:
+        """(state at the plate, state at the tip of a tube, x) ↦ its pose in base axes, position and quaternion."""
+        x, _, _ = self._arguments
+        plate, reached = (ca.MX.sym(name, self._staged.width) for name in ("plate", "reached"))
+        pose = self._tip_pose(index, plate, reached)
+        return ca.Function("of_tip", [plate, reached, x], [ca.vertcat(pose.position, pose.quaternion)])
 
     @cached_property
     def stations(self) -> ca.Function:
@@ -232,10 +326,12 @@ class TubeFunctions(ABC):
     @cached_property
     def _lengths(self) -> ca.MX:
         """Lengths of all steps from the tip on, 1×(2 n steps), negative, m."""
-        lengths = []
-        for start, end in itertools.pairwise(self._places):
-            lengths.append(ca.repmat((end - start) / self.steps, 1, self.steps))
-        return ca.horzcat(*lengths)
+        return ca.horzcat(*[ca.repmat(length / self.steps, 1, self.steps) for length in self._piece_lengths])
+
+    @property
+    def _piece_lengths(self) -> list[ca.MX]:
+        """Lengths of the pieces from the tip on, negative, m."""
+        return [end - start for start, end in itertools.pairwise(self._places)]
 
     @cached_property
     def _sections(self) -> Matrix:
@@ -259,8 +355,10 @@ class TubeFunctions(ABC):
         for passed in range(len(places)):
             for index in range(len(places) - 1 - passed):
                 first, second = places[index], places[index + 1]
-                places[index] = ca.fmax(first, second)
-                places[index + 1] = ca.fmin(first, second)
+                # Of places that coincide the first stays so, in derivatives too: those of fmax and fmin are of one.
+                exchanged = first < second
+                places[index] = ca.if_else(exchanged, second, first)
+                places[index + 1] = ca.if_else(exchanged, first, second)
         return [*places, ca.MX(0.0)]
 
     @cached_property
@@ -273,6 +371,22 @@ class TubeFunctions(ABC):
             bend = ca.fmax(tip - self.robot.curved[index], 0.0)
             ends.append((tip, bend))
         return ends
+
+    @cached_property
+    def _ranks(self) -> list[ca.MX]:
+        """Of every tube at which of the sorted places its tip is, 1×1: of those that coincide one each."""
+        unsorted = [place for ends in self._ends for place in ends]
+        ranks = []
+        for index in range(self.size):
+            own = 2 * index
+            rank = ca.MX(0.0)
+            for number, place in enumerate(unsorted):
+                if number < own:
+                    rank = rank + (place >= unsorted[own])
+                elif number > own:
+                    rank = rank + (place > unsorted[own])
+            ranks.append(rank)
+        return ranks
 
     def _section(self, place: ca.MX) -> Matrix:
         """Stacked section at a place: torsion, moments, bending and own energy of the tubes there, (2 n + 2)×1."""
@@ -306,22 +420,24 @@ class TubeFunctions(ABC):
         """A pose in base axes, where it is given in those of the tip's frame."""
         return self._state(self._whole.ends[-1]).pose.seen(pose)
 
+    def _tip_pose(self, index: int, plate: Matrix, reached: Matrix) -> Pose:
+        """Pose of a tube's tip in base axes; its x axis is the direction that the tube would bend towards.
+
+        Args:
+            index: of the tube.
+            plate: stacked state at the plate.
+            reached: stacked state at the tip of the tube.
+        """
+        x, _, _ = self._arguments
+        half = x[index] / 2
+        turn = Pose(ca.DM.zeros(3), ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
+        return self._state(plate).pose.seen(self._state(reached).pose).then(turn)
+
     @cached_property
     def _tips(self) -> list[Pose]:
-        """Pose of every tube's tip in base axes; its x axis is the direction that the tube would bend towards."""
-        x, _, _ = self._arguments
+        """Pose of every tube's tip in base axes."""
         ends = self._whole.ends
-        tips = []
-        for index, (tip, _) in enumerate(self._ends):
-            state = ends[-1]
-            # From the plate outwards, the place of the tip is the last that is not beyond it.
-            for place, there in zip(self._places[-2::-1], ends[-2::-1], strict=True):
-                state = ca.if_else(place <= tip, there, state)
-            reached = self._state(state)
-            half = x[index] / 2
-            turn = Pose(ca.DM.zeros(3), ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
-            tips.append(self._in_base(reached.pose).then(turn))
-        return tips
+        return [self._tip_pose(index, ends[-1], selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
 
     def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
         """A function of unknowns, inputs and load factor."""

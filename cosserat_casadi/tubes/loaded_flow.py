@@ -21,11 +21,11 @@ from typing import Self
 
 import casadi as ca
 
-from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.maths.magnus import increment
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import cross, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.tubes.stages import Staged, composed
 
 TANGENT = ca.DM([0, 0, 1])
 """Of the centre line, in the axes of the frame."""
@@ -170,16 +170,24 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
         spread: whether there are forces per length.
         potential: whether the work of the loads counts in the energy.
     """
+    staged = loaded_stages(size, spread=spread, potential=potential)
+    return composed("loaded_step", staged.stage, staged.last)
+
+
+@cache
+def loaded_stages(size: int, *, spread: bool, potential: bool) -> Staged:
+    """A step of a number of tubes that bear loads, in its stages; arguments are those of `loaded_step`."""
     state = ca.SX.sym("state", 2 * size + 12)
     before = ca.SX.sym("before")
     length = ca.SX.sym("length")
     stacked = ca.SX.sym("section", section_width(size, spread=spread))
     section = section_of(stacked, size, spread=spread, potential=potential)
     begun = LoadedState.of(state)
-    return composed(
-        "loaded_step",
-        ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked]),
-        ca.Function("last", [state, length, stacked], [section.loaded(begun, length / 2).stacked]),
+    return Staged(
+        stage=ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked]),
+        last=ca.Function("last", [state, length, stacked], [section.loaded(begun, length / 2).stacked]),
+        energy=2 * size + 7,
+        carried=section_width(size, spread=spread) - (2 * size + 2),
     )
 
 
@@ -195,22 +203,3 @@ def section_of(stacked: Matrix, size: int, *, spread: bool, potential: bool) -> 
         cuts.append(2 * size + 8)
     torsion, moments, bending, own, force, *weight = ca.vertsplit(stacked, cuts)
     return LoadedSection(torsion, moments, bending, own, force, weight[0] if spread else None, potential)
-
-
-def composed(name: str, stage: ca.Function, last: ca.Function) -> ca.Function:
-    """(state, length, section) ↦ state: a step of order eight, in which one stage is written once and serves all.
-
-    Args:
-        name: of the function.
-        stage: (state, length of the stage before, length, section) ↦ state, as `LoadedSection.stage`.
-        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
-    """
-    whole = ca.MX.sym("length")
-    start = ca.MX.sym("state", stage.size1_in(0))
-    here = ca.MX.sym("section", stage.size1_in(3))
-    shares = ca.DM(SHARES).T
-    shares_before = ca.horzcat(0, shares[:-1])
-    stages = stage.mapaccum("stages", len(SHARES))
-    passed = stages(start, whole * shares_before, whole * shares, ca.repmat(here, 1, len(SHARES)))
-    after = last(passed[:, -1], whole * shares[-1], here)
-    return ca.Function(name, [start, whole, here], [after])

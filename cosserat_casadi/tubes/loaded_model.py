@@ -17,10 +17,11 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.functions import March, TubeFunctions
-from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_step
+from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_stages, loaded_step
 from cosserat_casadi.tubes.loaded_tangent import VECTOR, LoadedTangent, tangent_step
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad
 from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations, of_loaded
 
 FRAME = 4
@@ -161,11 +162,8 @@ class LoadedTubeModel(TubeFunctions):
         Those of other tubes are zero: which tubes end there is found as the function is evaluated.
         """
         _, inputs, _ = self._arguments
-        for index, (tip, _) in enumerate(self._ends):
-            ends_here = self._places[piece] == tip
-            if piece > 0:
-                # Of places that coincide the first counts.
-                ends_here = ca.logic_and(ends_here, self._places[piece - 1] > tip)
+        for index, rank in enumerate(self._ranks):
+            ends_here = rank == ca.MX(piece)
             for number, load in enumerate(self.robot.loads):
                 share = float(load.shares[index])
                 if share == 0.0:
@@ -242,11 +240,30 @@ class LoadedTubeModel(TubeFunctions):
     @cached_property
     def _residual(self) -> Matrix:
         """Angles missed at the drives, the norm of the quaternion, and the frame at the plate, (n + 4)×1."""
+        return self._missed(self._whole.ends[-1])
+
+    def _missed(self, plate: Matrix) -> Matrix:
         x, inputs, _ = self._arguments
-        plate = LoadedState.of(self._whole.ends[-1])
-        missed = plate.angles - self._compliance * plate.torques - self.robot.rotations(inputs)
+        state = LoadedState.of(plate)
+        missed = state.angles - self._compliance * state.torques - self.robot.rotations(inputs)
         norm = (ca.sumsqr(x[self.size :]) - 1) / 2
-        return ca.vertcat(missed, norm, plate.pose.quaternion[1:])
+        return ca.vertcat(missed, norm, state.pose.quaternion[1:])
+
+    @property
+    def _staged(self) -> Staged:
+        return loaded_stages(self.size, spread=self._spread, potential=False)
+
+    @property
+    def _begun(self) -> Matrix:
+        return ca.vertcat(self._tip.stacked, ca.DM.zeros(self._staged.carried))
+
+    def _passing(self, piece: int, stacked: Matrix) -> Matrix:
+        state, force, weight = ca.vertsplit(
+            ca.vertcat(stacked, ca.DM.zeros(2 * VECTOR - self._staged.carried)),
+            [0, self._width, self._width + VECTOR, self._width + 2 * VECTOR],
+        )
+        passed, forces = self._picked_up(piece, LoadedState.of(state), _Forces(force, weight))
+        return ca.vertcat(passed.stacked, forces.force, forces.weight)[: stacked.size1()]
 
     def _state(self, stacked: Matrix) -> LoadedState:
         return LoadedState.of(stacked)

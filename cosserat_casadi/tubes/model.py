@@ -12,8 +12,9 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.flow import START, State, twist_step, whole_step
+from cosserat_casadi.tubes.flow import START, State, twist_step, whole_stages, whole_step
 from cosserat_casadi.tubes.functions import March, TubeFunctions
+from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations, of_angles
 
 
@@ -65,10 +66,9 @@ class TubeModel(TubeFunctions):
     @cached_property
     def _whole(self) -> March:
         """The same with the frame of the centre line and the energy."""
-        x, _, _ = self._arguments
-        return self._marched(whole_step(self.size), ca.vertcat(x, ca.DM.zeros(self.size), START))
+        return self._marched(whole_step(self.size), self._begun)
 
-    def _marched(self, step: ca.Function, state: ca.MX) -> March:
+    def _marched(self, step: ca.Function, state: Matrix) -> March:
         """Take the steps of all pieces from the tip on."""
         steps = step.mapaccum("steps", self.steps)
         lengths = ca.horzsplit(self._lengths, self.steps)
@@ -84,9 +84,24 @@ class TubeModel(TubeFunctions):
     @cached_property
     def _residual(self) -> Matrix:
         """Angles at the drives less the rotations of the inputs, n×1, rad."""
+        return self._missed(self._twist.ends[-1])
+
+    def _missed(self, plate: Matrix) -> Matrix:
         _, inputs, _ = self._arguments
-        angles, torques = ca.vertsplit(self._twist.ends[-1], [0, self.size, 2 * self.size])
+        angles, torques, _ = ca.vertsplit(plate, [0, self.size, 2 * self.size, plate.size1()])
         return angles - self._compliance * torques - self.robot.rotations(inputs)
 
     def _state(self, stacked: Matrix) -> State:
         return State.of(stacked)
+
+    @property
+    def _staged(self) -> Staged:
+        return whole_stages(self.size)
+
+    @property
+    def _begun(self) -> Matrix:
+        x, _, _ = self._arguments
+        return ca.vertcat(x, ca.DM.zeros(self.size), START)
+
+    def _passing(self, piece: int, stacked: Matrix) -> Matrix:
+        return stacked

@@ -66,6 +66,7 @@ class TubeSolution:
         residual_norm: largest angle that the tubes miss their drives by, rad.
         error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
             it was not estimated.
+        iterations: Newton steps of the search with this model; 0 at points of a path.
     """
 
     model: TubeFunctions
@@ -74,6 +75,7 @@ class TubeSolution:
     outcome: TubeOutcome
     residual_norm: float
     error_estimate: float | None
+    iterations: int = 0
 
     @property
     def robot(self) -> Robot:

@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.continuation import Path, follow
+from cosserat_casadi.numerics.continuation import ContinuationResult, Path, PathPoint, follow
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
@@ -55,16 +55,39 @@ def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
         SceneError: the scene has no tubes, or an input is unknown or out of its range.
     """
     robot = robot_of(scene)
-    at = robot.packed(values)
+    return solve_inputs(TubeModels(robot), robot.packed(values))
+
+
+class TubeModels:
+    """Models of a robot by their number of steps, each made once."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self._made: dict[int, TubeFunctions] = {}
+
+    def of(self, steps: int) -> TubeFunctions:
+        """The model with a number of steps."""
+        if steps not in self._made:
+            self._made[steps] = model_of(self.robot, steps)
+        return self._made[steps]
+
+
+def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
+    """As :func:`solve_tubes`, for one set of inputs after the other.
+
+    Args:
+        models: of the robot.
+        at: all inputs, in their range.
+    """
     steps = FEWEST_STEPS
-    found = solve_at(model_of(robot, steps), at)
+    found = solve_at(models.of(steps), at)
     while True:
         steps *= 2
-        finer = solve_at(model_of(robot, steps), at)
+        finer = solve_at(models.of(steps), at)
         error = None
         if found.converged and finer.converged:
             error = tip_error(found, finer)
-        resolved = error is not None and error <= robot.tolerance
+        resolved = error is not None and error <= models.robot.tolerance
         lost = steps >= ENOUGH_STEPS and not found.converged and not finer.converged
         if resolved or lost or steps >= MOST_STEPS:
             return judged(finer, error)
@@ -91,8 +114,31 @@ def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
         # Straight tubes do not twist.
         start=model.robot.rotations(inputs).copy(),
     )
-    end = follow(path)
-    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
+    end = _followed(path)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def _followed(path: Path) -> ContinuationResult:
+    """The end of a path, which passes no place where branches come close to each other from one to another.
+
+    Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step
+    comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed as it
+    goes: where tubes are opposed exactly, by symmetry, it leads to what is not stable.
+    """
+    rough = follow(path)
+    if rough.outcome is Outcome.CONVERGED and _sign(path, (rough.x, 1.0)) == _sign(path, (path.start, 0.0)):
+        return rough
+    careful = follow(replace(path, admits=lambda before, after: _sign(path, before) == _sign(path, after)))
+    if careful.outcome is not Outcome.CONVERGED:
+        return rough
+    return careful
+
+
+def _sign(path: Path, point: PathPoint) -> float:
+    """Sign of the determinant at a point of a path."""
+    jacobian = path.jacobian(*point)
+    assert isinstance(jacobian, np.ndarray)
+    return float(np.linalg.slogdet(jacobian)[0])
 
 
 def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
@@ -107,14 +153,15 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
         rate=lambda x, t: np.ravel(model.input_rate(x, model.robot.with_loads(inputs, t), 1.0, change).full()),
         start=start,
     )
-    end = follow(path)
+    end = _followed(path)
+    iterations = curved.iterations + end.iterations
     if end.outcome is Outcome.CONVERGED:
-        return solution_at(model, inputs, end.x, found=True)
+        return solution_at(model, inputs, end.x, found=True, iterations=iterations)
     # Where the robot snaps under its loads the way goes on beyond the folds.
     traced = trace(Curve(path, DETERMINANT, LOADING))
     if traced.outcome is PathOutcome.CONVERGED:
-        return solution_at(model, inputs, traced.points[-1].x, found=True)
-    return solution_at(model, inputs, end.x, found=False)
+        return solution_at(model, inputs, traced.points[-1].x, found=True, iterations=iterations)
+    return solution_at(model, inputs, end.x, found=False, iterations=iterations)
 
 
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
@@ -124,10 +171,12 @@ def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -
         jacobian=lambda x: model.jacobian(x, inputs, 1.0)[0].full(),
     )
     end = newton(equations, start, NewtonSettings())
-    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
 
 
-def solution_at(model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool) -> TubeSolution:
+def solution_at(
+    model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool, iterations: int = 0
+) -> TubeSolution:
     """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
 
     Args:
@@ -135,10 +184,11 @@ def solution_at(model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, foun
         inputs: of the robot.
         x: its unknowns.
         found: whether they are an equilibrium.
+        iterations: Newton steps of the search.
     """
     outcome = TubeOutcome.NOT_FOUND
     if found:
         outcome = TubeOutcome.CONVERGED
     residual = model.residual(x, inputs, 1.0).full()
     missed = float(np.abs(residual).max())
-    return TubeSolution(model, inputs, x, outcome, missed, None)
+    return TubeSolution(model, inputs, x, outcome, missed, None, iterations)

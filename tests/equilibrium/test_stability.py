@@ -30,6 +30,7 @@ from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from tests.initial_value import integrate
+from tests.reference.held_scenes import held_scene
 from tests.scenes import WEIGHT, push, rod, scene
 
 CRITICAL = np.pi**2 / 4
@@ -283,3 +284,30 @@ def test_a_round_rod_that_a_pin_presses_together_is_neutral() -> None:
     assert solution.converged
     assert "neutral" in solution.message
     assert solution.stable
+
+
+def test_a_round_rod_that_a_force_and_a_pin_press_together_is_neutral() -> None:
+    """It lies in a plane, which turns about the axis; a force of the pin that stays behind turns it too far."""
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 2.0}
+    pressed = {
+        "schema": 1,
+        "rods": [{"name": "rod", "length": 1.0, "strain": "kirchhoff", "stiffness": stiffness}],
+        "supports": [{"rod": "rod", "kind": "pinned", "position": [0.0, 0.0, 0.3]}],
+        "loads": [{"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0.0, 0.0, 0.56]}],
+    }
+    wanted = scene_from_dict(pressed)
+    solution = solve(build(wanted, discretise(wanted, 7, 16)), stable=True)
+    assert solution.converged
+    assert "neutral" in solution.message
+    assert solution.stable
+
+
+def test_a_bent_rod_that_is_drawn_nearly_straight_relaxes() -> None:
+    """Springs that close most gaps leave it far from its clamp, whose force is some hundred times EI/L²."""
+    drawn = held_scene(28)
+    wanted = scene_from_dict(drawn)
+    solution = solve(build(wanted, discretise(wanted, 7, 18)), stable=True)
+    assert solution.converged
+    assert solution.stable
+    distance = np.linalg.norm(solution.tip().position[0] - drawn["supports"][0]["position"])
+    assert_allclose(distance, 0.0, rtol=0, atol=1e-10)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import Enum
 from typing import Any
 
 import numpy as np
 
-from cosserat_casadi import Solution, scene_from_dict, solve_scene
+from cosserat_casadi import Outcome, Solution, scene_from_dict, solve_scene
 from cosserat_casadi.accuracy.metrics import pose_distance
 from tests.reference.held_scenes import held_scene
 
@@ -27,17 +28,47 @@ def solved(seed: int, accuracy: Accuracy) -> Solution:
     return solve_scene(scene_from_dict({**held_scene(seed), "accuracy": accuracy}))
 
 
+def says_unresolved(solution: Solution) -> bool:
+    """Whether a solution is an equilibrium on modes and nodes of a user, and says that these do not resolve it."""
+    return solution.outcome is Outcome.UNRESOLVED and solution.shape_error_estimate is not None
+
+
 def alike(first: Solution, second: Solution) -> bool:
-    """Whether two solutions of a scene end alike: both or none at an equilibrium, and at the same one."""
-    if first.outcome is not second.outcome or first.stable is not second.stable:
-        return False
-    if not first.converged:
-        return True
+    """Whether two solutions of a scene end alike: both or none at an equilibrium, and at the same one.
+
+    What says that its modes do not resolve it is held to its shape, within what it says of its error.
+    """
+    if not says_unresolved(first) and not says_unresolved(second):
+        if first.outcome is not second.outcome or first.stable is not second.stable:
+            return False
+        if not first.converged:
+            return True
     estimates = (first.shape_error_estimate or 0.0) + (second.shape_error_estimate or 0.0)
     return pose_distance(first, second, SECTIONS) <= ALIKE + estimates
 
 
+class Verdict(Enum):
+    """How a scene ends at several accuracies; the value is the sentence shown."""
+
+    ALIKE = "the same at all of them"
+    SAYS_UNRESOLVED = "the same, and not resolved by modes that a user fixes, which says so"
+    NO_EQUILIBRIUM = "no equilibrium found at any, which says so"
+    DIFFERENT = "not the same equilibrium"
+
+
+def verdict(seed: int, accuracies: Sequence[Accuracy]) -> Verdict:
+    """How a drawn scene ends at these accuracies, the last of which is the finest."""
+    solutions = [solved(seed, accuracy) for accuracy in accuracies]
+    finest = solutions[-1]
+    if not all(alike(solution, finest) for solution in solutions):
+        return Verdict.DIFFERENT
+    if not finest.converged:
+        return Verdict.NO_EQUILIBRIUM
+    if any(says_unresolved(solution) for solution in solutions):
+        return Verdict.SAYS_UNRESOLVED
+    return Verdict.ALIKE
+
+
 def all_alike(seed: int, accuracies: Sequence[Accuracy]) -> bool:
     """Whether a drawn scene ends alike at all these accuracies."""
-    solutions = [solved(seed, accuracy) for accuracy in accuracies]
-    return all(alike(solution, solutions[-1]) for solution in solutions)
+    return verdict(seed, accuracies) is not Verdict.DIFFERENT

@@ -9,10 +9,13 @@ from dataclasses import replace
 
 import pytest
 
-from tests.fuzz.held import TOLERANCES, alike, all_alike, solved
+from tests.fuzz.held import TOLERANCES, alike, all_alike, says_unresolved, solved
 
 BUCKLED = 20
 """Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
+
+SHARPLY_BENT = 68
+"""Seed of a rod that nine modes do not resolve."""
 
 
 def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
@@ -32,6 +35,16 @@ def test_fixed_modes_find_the_equilibrium_that_a_tolerance_finds() -> None:
         fixed = solved(BUCKLED, {"modes": modes, "nodes": 2 * modes + 2})
         assert fixed.converged
         assert alike(fixed, fine)
+
+
+@pytest.mark.slow
+def test_modes_that_do_not_resolve_a_rod_are_held_to_its_shape() -> None:
+    coarse = solved(SHARPLY_BENT, {"modes": 9, "nodes": 20})
+    fine = solved(SHARPLY_BENT, {"tolerance": 1e-5})
+    assert says_unresolved(coarse)
+    assert fine.converged
+    assert alike(coarse, fine)
+    assert not alike(replace(coarse, x=-coarse.x), fine)
 
 
 @pytest.mark.slow

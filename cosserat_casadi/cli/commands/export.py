@@ -13,6 +13,7 @@ from rich.markup import escape
 
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.reports.format import print_plain
@@ -29,7 +30,6 @@ from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout
-from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import read_scene
@@ -97,7 +97,20 @@ def export(
         check_fmu(fmu)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
-    refuse_tubes(exported_scene)
+    if exported_scene.tubes:
+        unknown = {
+            "--derivatives": derivatives,
+            "--dynamics": dynamics,
+            "--stability": stability,
+            "--over": over is not None,
+            "--range": bool(ranges),
+            "--page": page is not None,
+            "--fmu": fmu is not None,
+        }
+        _refuse_for_tubes(unknown)
+        assert output is not None
+        export_tube_scene(exported_scene, output, name)
+        return
     cases = None
     if output is not None:
         check_contact(exported_scene, {"derivatives": derivatives, "dynamics": dynamics, "stability": stability})
@@ -151,5 +164,16 @@ def _refuse_without_sources(options: Mapping[str, bool]) -> None:
     """Refuse options that only sources in C know: page and FMU hold what they hold."""
     remedy = "name a folder for them with --output, or leave it out"
     problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
+    if problems:
+        raise ExportError(*problems)
+
+
+def _refuse_for_tubes(options: Mapping[str, bool]) -> None:
+    """Refuse options that are for rods."""
+    problems = [
+        Problem(option, "is for rods, and the scene has concentric tubes", "leave it out")
+        for option, given in options.items()
+        if given
+    ]
     if problems:
         raise ExportError(*problems)

@@ -1,4 +1,4 @@
-"""Concentric tubes: what ``solve``, ``path`` and ``check`` do with a scene of them."""
+"""Concentric tubes: what ``solve``, ``path``, ``export`` and ``check`` do with a scene of them."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from cosserat_casadi.cli.reports.tubes import (
     print_tube_path,
     print_tubes,
     print_tubes_check,
+    print_tubes_export,
     print_tubes_unstable,
 )
+from cosserat_casadi.codegen.tubes.sources import check_tube_names, export_tubes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.maths.typing import FloatArray
@@ -136,6 +138,22 @@ def follow_tube_scene(scene: Scene, name: str, value: FloatArray, outputs: Outpu
     print_tube_path(Console(), path, outputs.files)
     if not path.converged:
         raise typer.Exit(NOT_FOUND)
+
+
+def export_tube_scene(scene: Scene, output: Path, name: str) -> None:
+    """``cosserat export`` of tubes: C sources.
+
+    Raises:
+        ExportError: the name is refused.
+        Exit: no equilibrium was found.
+    """
+    check_tube_names(name, scene)
+    solution = solve_tubes(scene)
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+    export_tubes(scene, solution, output, name)
+    print_tubes_export(Console(), solution, output)
 
 
 def check_tube_scene(scene: Scene) -> None:

@@ -33,7 +33,11 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     tolerance = record["tolerance"]
     print_plain(console, title_line(record["title"]))
     console.print(_outcome_table(sweep))
-    print_plain(console, _choice_sentence(record["chosen"], tolerance), soft_wrap=True)
+    if "tubes" in record:
+        chosen = f"Each row has as many steps as the tolerance {tolerance:g} asks for."
+    else:
+        chosen = _choice_sentence(record["chosen"], tolerance)
+    print_plain(console, chosen, soft_wrap=True)
     for sentence in (*_check_sentences(record["checked"], tolerance), *_stability_sentences(sweep)):
         print_plain(console, sentence, soft_wrap=True)
 

@@ -49,6 +49,17 @@ def print_tubes_unstable(console: Console) -> None:
     )
 
 
+def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
+    """Print what was written, at what accuracy, and how to try it."""
+    robot = solution.robot
+    print_plain(console, title_line(robot.title))
+    sizes = f"{solution.model.unknowns} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
+    print_plain(
+        console, f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}."
+    )
+    print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
+
+
 def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
     """Print all equilibria at the same inputs, and the files that were written."""
     _print_message(console, equilibria.robot.title, equilibria.message, good=equilibria.complete)

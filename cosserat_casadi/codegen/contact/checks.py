@@ -11,6 +11,7 @@ from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.model.obstacle_checks import held_by_contact
 
 SENTENCES = {
     "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
@@ -41,6 +42,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     if scene.bodies:
         problem = "rods in exact contact are exported without rigid bodies"
         problems.append(Problem("bodies", problem, "give each obstacle a width, m, or leave one of the two out"))
+    problems += held_by_contact(scene)
     if problems:
         raise ExportError(*problems)
 

@@ -112,6 +112,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
     inputs = chosen.layout.size
     return {
         "name": names.name,
+        "included": "contact.c",
         "MACRO": names.macro,
         "title": comment(chosen.scene.title or names.name),
         "version": version("cosserat-casadi"),

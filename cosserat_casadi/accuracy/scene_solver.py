@@ -1,0 +1,156 @@
+"""One scene at one set of inputs, solved on one discretisation after the other: what all of them share.
+
+See docs/theory.md, sections 9 and 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.metrics import prolong
+from cosserat_casadi.accuracy.preview import SAMPLES
+from cosserat_casadi.accuracy.signals import signal_modes
+from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.relax import can_relax
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve, stabilised
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.numerics.continuation import ContinuationSettings
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.rod.discretisation import Discretisation
+
+TIGHT = 1e-6
+"""Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
+
+SLOW_MODES = 7
+"""Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
+
+
+@dataclass
+class SceneSolver:
+    """Solves one scene at one set of inputs, on one discretisation after the other.
+
+    Attributes:
+        scene: the scene.
+        values: inputs by name.
+        stable: whether a stable equilibrium is wanted of a free rod too.
+        progress: told the share of the load path that is done.
+        report: told what is being tried.
+        relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
+        relaxing_failed: whether descent was tried in vain; it is not tried again.
+        iterations: Newton steps so far, on all discretisations.
+    """
+
+    scene: scenes.Scene
+    values: Mapping[str, npt.ArrayLike] | None
+    stable: bool
+    progress: Progress | None
+    report: Report | None
+    relaxed: bool = False
+    relaxing_failed: bool = False
+    iterations: int = 0
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted error of the tip poses."""
+        return self.scene.accuracy.tolerance
+
+    @property
+    def reference_transport(self) -> str:
+        """Rotation integrator of a reference solution that suits the tolerance."""
+        if self.tolerance < TIGHT or self.is_held:
+            return "magnus8"
+        return "magnus6"
+
+    @cached_property
+    def is_held(self) -> bool:
+        """Whether rods are held at both ends, so that several equilibria are near each other, and can relax."""
+        if not self.scene.supports:
+            return False
+        coarsest = build(self.scene, discretise(self.scene, 1, 2))
+        return can_relax(coarsest)
+
+    @cached_property
+    def unloaded_turn(self) -> float:
+        """Bound of the angle through which an unloaded rod turns from end to end, rad."""
+        turns = [_unloaded_turn(rod) for rod in self.scene.rods]
+        return max(turns)
+
+    @cached_property
+    def signal_modes(self) -> int:
+        """Modes below which a level is blind to what the scene puts along its rods."""
+        return signal_modes(self.scene)
+
+    @property
+    def wave_modes(self) -> int:
+        """The same where they are waves, 0 where all that the scene puts along its rods varies slowly."""
+        if self.signal_modes > SLOW_MODES:
+            return self.signal_modes
+        return 0
+
+    def build(self, discretisation: dict[str, Discretisation]) -> Model:
+        """The model on a discretisation, which is reported."""
+        model = build(self.scene, discretisation)
+        if self.report is not None:
+            most_nodes = max(d.nodes for d in discretisation.values())
+            self.report(f"{model.size} unknowns, {most_nodes} intervals")
+        return model
+
+    def solve(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
+        """Solution on a discretisation, from one with fewer modes where that is near, else from the unloaded scene."""
+        model = self.build(discretisation)
+        if coarser is not None:
+            # Stays on the branch of the coarser solution, and costs a few Newton steps only.
+            corrected = corrected_from(model, prolong(coarser, model), coarser.inputs)
+            if corrected is not None:
+                self.iterations += corrected.iterations
+                return corrected
+        solution = solve(model, self.values, progress=self.progress)
+        self.iterations += solution.iterations
+        self.relaxed = False
+        if solution.outcome is Outcome.LOAD_STALLED:
+            return self.relax(solution)
+        return solution
+
+    def relax(self, solution: Solution) -> Solution:
+        """A stable solution where one is wanted and can be found, else the same.
+
+        A held rod is always wanted stable: what leads to its supports are springs of our own, not loads of the scene.
+        """
+        wanted_stable = self.stable or bool(self.scene.supports)
+        if not wanted_stable or self.relaxing_failed or solution.stable:
+            return solution
+        if not solution.model.has_potential(solution.inputs):
+            return solution
+        relaxed = stabilised(solution, ContinuationSettings(), self.progress)
+        self.iterations += relaxed.iterations - solution.iterations
+        self.relaxed = bool(relaxed.stable)
+        self.relaxing_failed = not relaxed.stable
+        return relaxed
+
+
+def corrected_from(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | None:
+    """Newton from a near start; None where it does not stay near, so that it may be another branch."""
+    settings = ContinuationSettings().newton
+    result = correct(model, inputs, start, settings)
+    if result is None:
+        return None
+    return judge(model, inputs, result.x, result.outcome, result.iterations, 1.0, settings.tolerance)
+
+
+def _unloaded_turn(rod: scenes.Rod) -> float:
+    """Largest curvature of an unloaded rod times its length, rad."""
+    intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
+    curvature = np.linalg.norm(intrinsic, axis=1)
+    return float(curvature.max()) * rod.length

@@ -1,0 +1,164 @@
+/* Concentric tubes around the solver: translations in their range, and no turn or path that ends beyond a snap.
+
+   Where a robot snaps the determinant of its Jacobian is zero, and beyond it, on the branch that leads back, it has the
+   other sign. A solution on such a branch is near the last one, but no robot that is turned on comes to it. */
+
+static solver_status out_of_range(solver_info *info) {
+  if (info) {
+    *info = no_result();
+    info->status = SOLVER_OUT_OF_RANGE;
+  }
+  return SOLVER_OUT_OF_RANGE;
+}
+
+/* Of a factorised Jacobian; its diagonal holds inverse pivots. */
+static real determinant_of(const jacobian_factors *jacobian) {
+  real product = 1;
+  if (!jacobian->regular) return 0;
+  for (int k = 0; k < N; k++) {
+    product /= jacobian->factors[k * N + k];
+    if (jacobian->pivots[k] != k) product = -product;
+  }
+  return product;
+}
+
+static int sign_of(real value) { return (value > 0) - (value < 0); }
+
+
+real tubes_determinant(const real *x, const real *inputs, solver_workspace *work) {
+  const loads at = full_load(inputs);
+  jacobian_factors *factors = &work->updated_jacobians[0].factors;
+  if (!linearise(x, &at, factors, work)) return NAN;
+  return determinant_of(factors);
+}
+
+/* Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step comes to
+   any of the three. Steps from straight tubes that keep the sign of the determinant, none of which twists the tubes by more
+   than SAME_BRANCH. Zero, and x as it was, where they do not lead to the inputs: tubes that are opposed exactly stay so. */
+static int solve_with_care(const real *inputs, real *x, workspace *work, solver_info *info) {
+  static const newton_limits limits = {
+      .max_iterations = MAX_ITERATIONS, .max_jacobians = MAX_ITERATIONS, .max_halvings = 0, .inexact = 0, .reuse_jacobian = 0};
+  path_point *point = work->points;
+  updated_jacobian *jacobian = work->updated_jacobians;
+  real *trial = work->points[1].x;
+  real step = (real)0.25;
+  memset(point, 0, sizeof *point);
+  for (int k = 0; k < MAX_STEPS && point->t < 1 && step >= MIN_STEP; k++) {
+    const real end = point->t + step > 1 ? 1 : point->t + step;
+    const loads at = {inputs, end};
+    memcpy(trial, point->x, sizeof point->x);
+    residual_at(trial, &at, work->points[1].residual, work);
+    const newton_result result = newton(&at, &limits, trial, work->points[1].residual, jacobian, work);
+    count_work(info, &result);
+    const int is_near = result.status == SOLVER_CONVERGED && shape_distance(trial, point->x) <= SAME_BRANCH;
+    if (!is_near || !linearise(trial, &at, &jacobian->factors, work) || !(determinant_of(&jacobian->factors) > 0)) {
+      step /= 2;
+      continue;
+    }
+    memcpy(point->x, trial, sizeof point->x);
+    point->t = end;
+    info->residual_norm = result.residual_norm;
+    step *= 2;
+  }
+  if (point->t < 1) return 0;
+  memcpy(x, point->x, sizeof point->x);
+  info->status = SOLVER_CONVERGED;
+  info->load_factor = 1;
+  return 1;
+}
+
+solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
+  solver_info found = no_result();
+  if (!in_range(inputs)) return out_of_range(info);
+  const int is_cold = !all_finite(x, N) || is_zero(x);
+  solver_status end = solver_solve(inputs, x, work, &found);
+  const int is_resolved = end != SOLVER_UNRESOLVED && end != SOLVER_NOT_FINITE;
+  if (end == SOLVER_CONVERGED) found.determinant = tubes_determinant(x, inputs, work);
+  if (is_cold && is_resolved && !(found.determinant > 0) && solve_with_care(inputs, x, work, &found)) {
+    end = finish(x, inputs, &found, &found, work);
+    found.determinant = tubes_determinant(x, inputs, work);
+  }
+  if (info) *info = found;
+  return end;
+}
+
+int tubes_solve_batch(int count, const real *inputs, real *x, solver_workspace *workspaces, int workspace_count,
+                      solver_info *info) {
+  const int converged = solver_solve_batch(count, inputs, x, workspaces, workspace_count, info);
+  for (int i = 0; i < count; i++) {
+    const real *own = inputs + (size_t)i * INPUTS;
+    /* None of these has converged: their steps are never called enough. */
+    if (!in_range(own)) (void)out_of_range(info + i);
+    else if (info[i].status == SOLVER_CONVERGED) {
+      info[i].determinant = tubes_determinant(x + (size_t)i * N, own, workspaces);
+    }
+  }
+  return converged;
+}
+
+solver_status tubes_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
+  solver_info found = no_result();
+  if (!in_range(from) || !in_range(inputs)) return out_of_range(info);
+  const int before = sign_of(tubes_determinant(x, from, work));
+  solver_status end = solver_follow(from, inputs, x, work, &found);
+  if (end == SOLVER_CONVERGED) {
+    found.determinant = tubes_determinant(x, inputs, work);
+    if (sign_of(found.determinant) != before) end = SOLVER_LOAD_STALLED;
+    found.status = end;
+  }
+  if (info) *info = found;
+  return end;
+}
+
+solver_status tubes_sensitivity(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
+                                solver_workspace *work) {
+  if (!in_range(inputs)) return SOLVER_OUT_OF_RANGE;
+  return sensitivity(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
+}
+
+/* The determinant at the solution of a turn, whose Jacobian the memory is left with; 0 at a snap. */
+static real determinant_at_end(const real *inputs, const real *x, int has_derivatives, solver_memory *memory, workspace *work) {
+  if (!has_derivatives || !memory->has_jacobian) {
+    const loads at = full_load(inputs);
+    memory->has_jacobian = linearise(x, &at, &memory->jacobian, work) && memory->jacobian.regular;
+    if (!memory->has_jacobian) return 0;
+  }
+  return determinant_of(&memory->jacobian);
+}
+
+solver_status tubes_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
+                          real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
+  solver_info found = no_result();
+  real kept[N];
+  if (!in_range(inputs)) return out_of_range(info);
+  memcpy(kept, x, sizeof kept);
+  work->memory = *memory;
+  solver_status end = solver_track(inputs, x, memory, options, d_x_d_inputs, d_poses_d_inputs, work, &found);
+  if (end == SOLVER_CONVERGED || end == SOLVER_UNRESOLVED) {
+    found.determinant = determinant_at_end(inputs, x, d_x_d_inputs || d_poses_d_inputs, memory, work);
+    const int sign = sign_of(found.determinant);
+    if (memory->sign != 0 && sign != memory->sign) {
+      memcpy(x, kept, sizeof kept);
+      *memory = work->memory;
+      found.status = SOLVER_LOST_TRACK;
+      found.load_factor = 0;
+      end = SOLVER_LOST_TRACK;
+    } else {
+      memory->sign = sign;
+    }
+  }
+  if (info) *info = found;
+  return end;
+}
+
+void tubes_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {
+  solver_residual(x, inputs, residual, work);
+}
+
+void tubes_residual_jacobian(const real *x, const real *inputs, real *jacobian, real *residual, solver_workspace *work) {
+  solver_residual_jacobian(x, inputs, jacobian, residual, work);
+}
+
+void tubes_input_jacobian(const real *x, const real *inputs, real *d_residual_d_inputs, solver_workspace *work) {
+  solver_input_jacobian(x, inputs, d_residual_d_inputs, work);
+}

@@ -1,0 +1,282 @@
+"""An exported folder of concentric tubes, compiled: the solver in C, from Python."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.manifest import MANIFEST, read_manifest
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
+from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+
+POSE_SIZE = 7
+
+
+class TubeInfo(ctypes.Structure):
+    """The struct in C that says how a call ended."""
+
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("iterations", ctypes.c_int),
+        ("jacobians", ctypes.c_int),
+        ("residual_norm", ctypes.c_double),
+        ("load_factor", ctypes.c_double),
+        ("determinant", ctypes.c_double),
+    )
+
+
+class TubeOptions(ctypes.Structure):
+    """The struct in C with the budget of a turn."""
+
+    _fields_ = (("max_iterations", ctypes.c_int), ("max_continuation_steps", ctypes.c_int))
+
+
+@dataclass(frozen=True)
+class CompiledTubesSolution:
+    """What the solver in C found.
+
+    Attributes:
+        status: how it ended.
+        inputs: that it is of, shape (m,).
+        x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
+            the frame at the tip of the robot less 1 0 0 0 behind them.
+        tips: position and quaternion of the tip of each tube, shape (7,); none without a solution.
+        determinant: 1 of tubes that do not twist, 0 where the robot snaps, negative where it cannot stay.
+        iterations: Newton steps.
+        jacobians: Jacobians factorised.
+        residual_norm: relative norm of the residual.
+        load_factor: share of the way that x has come; 1 where it converged.
+        derivatives: of the tip of each tube with the inputs, shape (7, m), where they were asked for.
+        memory: what the next turn begins with.
+    """
+
+    status: TubeStatus
+    inputs: FloatArray
+    x: FloatArray
+    tips: Mapping[str, FloatArray]
+    determinant: float
+    iterations: int
+    jacobians: int
+    residual_norm: float
+    load_factor: float
+    derivatives: Mapping[str, FloatArray] | None = None
+    memory: bytes = field(default=b"", repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is an equilibrium for the inputs."""
+        return self.status is TubeStatus.CONVERGED
+
+    @property
+    def message(self) -> str:
+        """A sentence that says how it ended."""
+        return self.status.value
+
+
+@dataclass(frozen=True)
+class CompiledTubes:
+    """An exported folder of concentric tubes.
+
+    Attributes:
+        library: the shared object.
+        manifest: what the folder says of itself.
+    """
+
+    library: Path
+    manifest: dict[str, Any]
+
+    @cached_property
+    def defaults(self) -> FloatArray:
+        """The scene's own inputs."""
+        return np.concatenate([entry["value"] for entry in self.manifest["inputs"]])
+
+    @property
+    def tubes(self) -> list[str]:
+        """Names of the tubes, in order."""
+        return list(self.manifest[KIND])
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+        return int(self.manifest["unknowns"])
+
+    def solve(
+        self, inputs: npt.ArrayLike | None = None, start: CompiledTubesSolution | None = None
+    ) -> CompiledTubesSolution:
+        """Equilibrium by the solver in C.
+
+        Args:
+            inputs: rotation and translation of each tube, then the loads; the scene's own by default.
+            start: a solution to begin at; straight tubes by default, and where that does not lead to the inputs.
+
+        Raises:
+            ValueError: the inputs are of the wrong size.
+        """
+        given = self._given(inputs)
+        x = self._start(start)
+        info = TubeInfo()
+        status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        return self._answer(STATUSES[status], given, x, info)
+
+    def follow(self, start: CompiledTubesSolution, inputs: npt.ArrayLike) -> CompiledTubesSolution:
+        """Equilibrium on the branch of another, along the straight line between the inputs of both.
+
+        Args:
+            start: the other.
+            inputs: at the end of the line.
+
+        Raises:
+            ValueError: the inputs are of the wrong size.
+        """
+        given = self._given(inputs)
+        x = self._start(start)
+        info = TubeInfo()
+        arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        status = self._function("follow")(*arguments)
+        return self._answer(STATUSES[status], given, x, info)
+
+    def track(
+        self,
+        inputs: npt.ArrayLike,
+        start: CompiledTubesSolution,
+        *,
+        derivatives: bool = True,
+        max_iterations: int | None = None,
+        max_continuation_steps: int | None = None,
+    ) -> CompiledTubesSolution:
+        """One turn of a control loop: the solution and its derivatives, in bounded work.
+
+        Args:
+            inputs: of the turn.
+            start: the solution of the turn before.
+            derivatives: whether those of the tips are wanted.
+            max_iterations: most Newton steps; by default what the header says.
+            max_continuation_steps: most points between the last inputs and these; likewise.
+
+        Raises:
+            ValueError: the inputs are of the wrong size, or one budget is given without the other.
+        """
+        given = self._given(inputs)
+        if (max_iterations is None) != (max_continuation_steps is None):
+            raise ValueError("give both max_iterations and max_continuation_steps, or none")
+        options = None
+        if max_iterations is not None:
+            options = ctypes.byref(TubeOptions(max_iterations, max_continuation_steps))
+        x = self._start(start)
+        memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
+        columns = np.zeros((len(self.tubes), given.size, POSE_SIZE))
+        wanted = pointer(columns) if derivatives else None
+        info = TubeInfo()
+        status = self._function("track")(
+            pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
+        )
+        end = STATUSES[status]
+        found = self._by_tube(columns) if derivatives and end is TubeStatus.CONVERGED else None
+        return self._answer(end, given, x, info, derivatives=found, memory=memory.raw)
+
+    def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
+        """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
+        columns = np.zeros((len(self.tubes), solution.inputs.size, POSE_SIZE))
+        arguments = (pointer(solution.inputs), pointer(solution.x), None, pointer(columns), self._workspace())
+        status = self._function("solve_sensitivity")(*arguments)
+        return None if status != 0 else self._by_tube(columns)
+
+    def residual(self, x: npt.ArrayLike, inputs: npt.ArrayLike) -> FloatArray:
+        """The residual, shape (unknowns,)."""
+        given = self._given(inputs)
+        result = np.zeros(self.unknowns)
+        own = vector(x, self.unknowns, "x")
+        self._function("residual")(pointer(own), pointer(given), pointer(result), self._workspace())
+        return result
+
+    def _given(self, inputs: npt.ArrayLike | None) -> FloatArray:
+        return vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+
+    def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
+        return np.zeros(self.unknowns) if start is None else start.x.copy()
+
+    def _by_tube(self, columns: FloatArray) -> dict[str, FloatArray]:
+        return {tube: own.T for tube, own in zip(self.tubes, columns, strict=True)}
+
+    def _answer(
+        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, **more: Any
+    ) -> CompiledTubesSolution:
+        tips: dict[str, FloatArray] = {}
+        if status in (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED):
+            poses = np.zeros((len(self.tubes), POSE_SIZE))
+            self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
+            tips = dict(zip(self.tubes, poses, strict=True))
+        return CompiledTubesSolution(
+            status=status,
+            inputs=inputs,
+            x=x,
+            tips=tips,
+            determinant=info.determinant,
+            iterations=info.iterations,
+            jacobians=info.jacobians,
+            residual_norm=info.residual_norm,
+            load_factor=info.load_factor,
+            **more,
+        )
+
+    @cached_property
+    def _handle(self) -> ctypes.CDLL:
+        return ctypes.CDLL(str(self.library))
+
+    def _function(self, word: str) -> Any:
+        return getattr(self._handle, f"{self.manifest['name']}_{word}")
+
+    def _workspace(self) -> Any:
+        """Memory for one call, so that several threads may call at once."""
+        return ctypes.create_string_buffer(self._function("workspace_size")())
+
+
+def load_tubes(
+    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
+) -> CompiledTubes:
+    """Compile an exported folder of concentric tubes, once, and load it.
+
+    Args:
+        directory: a folder written by :func:`cosserat_casadi.export_tubes`.
+        compiler: C compiler, as for :func:`cosserat_casadi.load`.
+        progress: told what is compiled, likewise.
+
+    Raises:
+        ExportError: the folder is not one of concentric tubes, there is no compiler, or it fails.
+    """
+    folder = Path(directory)
+    described = read_manifest(folder)
+    if not _is_manifest(described):
+        problem = "is not the manifest of concentric tubes"
+        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
+    name = described["name"]
+    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
+    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
+    headers += [folder / file for file in VERBATIM]
+    return CompiledTubes(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
+
+
+def _is_manifest(described: Any) -> bool:
+    """Whether what is read of a manifest is there."""
+    if not isinstance(described, dict) or not isinstance(described.get(KIND), list):
+        return False
+    try:
+        library_names(described["name"])
+        values = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+        sound = isinstance(described["unknowns"], int)
+    except (ExportError, KeyError, TypeError, ValueError):
+        return False
+    return sound and all(isinstance(tube, str) for tube in described[KIND]) and all(v.ndim == 1 for v in values)

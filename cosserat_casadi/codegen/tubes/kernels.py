@@ -1,0 +1,100 @@
+"""The equations of concentric tubes as functions for C.
+
+Unknown is the twist y: by how much the tip of each tube is turned against its drive, and under loads by how much the
+quaternion of the frame at the tip of the robot differs from one. All zero are straight tubes, and a turn of all drives
+together changes no twist. On the way from straight tubes, t from 0 to 1, the tubes are bent first, and loaded then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.codegen.kernels import loops
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.solve import model_of
+
+RESOLVED = 64.0
+"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
+
+Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
+
+
+@dataclass(frozen=True)
+class TubeKernels:
+    """The functions in C of a robot.
+
+    Attributes:
+        model: the robot, with an even number of steps.
+        name: what their names begin with.
+    """
+
+    model: TubeFunctions
+    name: str
+
+    def all(self) -> list[ca.Function]:
+        """Residual, Jacobian, rate, resolution, poses and sensitivity, with dense results."""
+        y, inputs, t = self._arguments
+        change = ca.MX.sym("inputs_rate", inputs.size1())
+        t_rate = ca.MX.sym("t_rate")
+        residual = self._at(self.model.residual, t)
+        jacobian, _ = self.model.jacobian(*self._given(t))
+        rate = ca.jtimes(residual, ca.vertcat(inputs, t), ca.vertcat(change, t_rate))
+        one = ca.MX(1.0)
+        solution = {"y": y, "inputs": inputs}
+        state = {**solution, "t": t}
+        return [
+            self._function("residual", state, [residual]),
+            self._function("jacobian", state, [jacobian]),
+            self._function("rate", {**state, "inputs_rate": change, "t_rate": t_rate}, [rate]),
+            self._function("resolution_index", solution, [self._resolution_index(one)]),
+            self._function("poses", solution, [ca.vertcat(*self.model.tips(*self._given(one)))]),
+            self._function("sensitivity", solution, self._sensitivity(one)),
+        ]
+
+    @cached_property
+    def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
+        """Twist, inputs, and place t on the way from straight tubes."""
+        return ca.MX.sym("y", self.model.unknowns), ca.MX.sym("inputs", self.model.robot.inputs.size), ca.MX.sym("t")
+
+    def _given(self, t: ca.MX) -> tuple[Matrix, Matrix, Matrix]:
+        """Unknowns, inputs and load factor of the model."""
+        y, inputs, _ = self._arguments
+        robot = self.model.robot
+        frame = ca.DM([1, 0, 0, 0])[: self.model.unknowns - robot.size]
+        x = y + ca.vertcat(robot.rotations(inputs), frame)
+        if not robot.loads:
+            return x, inputs, t
+        of_loads = ca.fmax(2 * t - 1, 0)
+        drives, loads = inputs[: 2 * robot.size], inputs[2 * robot.size :]
+        return x, ca.vertcat(drives, of_loads * loads), ca.fmin(2 * t, 1)
+
+    def _at(self, function: ca.Function, t: ca.MX) -> Matrix:
+        result: Matrix = function(*self._given(t))
+        return result
+
+    def _resolution_index(self, t: ca.MX) -> Matrix:
+        """What the robot with half of the steps misses, relative to what it may: above 1 they are too few."""
+        coarse = model_of(self.model.robot, self.model.steps // 2)
+        missed = self._at(coarse.residual, t)
+        index: Matrix = ca.norm_inf(missed) / (RESOLVED * self.model.robot.tolerance)
+        return index
+
+    def _sensitivity(self, t: ca.MX) -> list[Matrix]:
+        """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both."""
+        jacobian, by_inputs, _, poses_by_x, poses_by_inputs = self.model.sensitivity(*self._given(t))
+        # At the same twist a tip turns with its drive.
+        size = self.model.size
+        turning = ca.DM(self.model.unknowns, self.model.robot.inputs.size)
+        for index in range(size):
+            turning[index, 2 * index] = 1
+        return [jacobian, by_inputs + jacobian @ turning, poses_by_x, poses_by_inputs + poses_by_x @ turning]
+
+    def _function(self, word: str, arguments: Mapping[str, ca.MX], results: Sequence[Matrix]) -> ca.Function:
+        names = [f"{word}_{number}" for number in range(len(results))]
+        function = ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)
+        return loops(function, f"{self.name}_{word}")

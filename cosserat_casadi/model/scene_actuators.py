@@ -1,0 +1,137 @@
+"""Actuators of a scene as expressions of its unknowns and inputs: efforts, what they work on, cables of given length.
+
+See docs/theory.md, sections 6 and 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength, Elasticity
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.actuator_assembly import rod_actuation
+from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
+from cosserat_casadi.model.homotopy import LoadFactor, scaled_effort, smoothing_at
+from cosserat_casadi.model.load_inputs import input_value, input_values
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
+from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.kinematics import Shape
+
+CORNER = 0.01
+"""Smoothing, relative to the rod's length, of the corner between slack and taut in the unloaded scene."""
+
+
+@dataclass(frozen=True)
+class SceneActuators:
+    """Actuators of a scene in given arguments.
+
+    Attributes:
+        discrete: what is constant.
+        x: unknowns.
+        inputs: stacked inputs.
+        load_factor: λ from 0, the unloaded scene, to 1; None for the scene itself.
+        shapes: shape of every rod, in its base frame.
+    """
+
+    discrete: DiscreteScene
+    x: Matrix
+    inputs: Matrix
+    load_factor: LoadFactor
+    shapes: Mapping[str, Shape]
+
+    def state(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
+        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
+        actuator, conjugate = self.conjugate(name)
+        member = EFFECTS[actuator.kind]
+        effort = self._effort(actuator)
+        # The smooth complementarity leaves a slack cable a tension of either sign, as small as its smoothing.
+        if member.may_go_slack(actuator):
+            effort = ca.fmax(effort, 0.0)
+        gradient = self._among_unknowns(actuator.rod, conjugate.gradient)
+        return effort, conjugate.value, gradient.T
+
+    def conjugate(self, name: str) -> tuple[scenes.Actuator, Conjugate]:
+        """An actuator, and what it works on."""
+        actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
+        return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
+
+    def pull(self, name: str) -> Matrix:
+        """Generalised force of a unit of an actuator's effort on the unknowns, size×1."""
+        actuator, conjugate = self.conjugate(name)
+        return self._among_unknowns(actuator.rod, conjugate.pull)
+
+    def on_rod(self, rod: str) -> tuple[Actuation, ...]:
+        """Actuators on a rod: the efforts that are given, at the load factor, then the unknown tensions."""
+        given = rod_actuation(self.discrete, rod, self.inputs)
+        efforts = [scaled_effort(actuation, self.load_factor) for actuation in given]
+        for cable in self.discrete.cables:
+            # An unknown tension is what its length asks for at this load factor: it is not scaled.
+            if cable.tendon.rod == rod:
+                tension = self._unknown_tension(cable)
+                efforts.append(Actuation(self._quantity(cable.tendon), tension))
+        return tuple(efforts)
+
+    @cached_property
+    def cable_lengths(self) -> dict[str, CableLength]:
+        """Equations of the cables of given length by the names of their tendons."""
+        return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
+
+    def _quantity(self, actuator: scenes.Actuator) -> Quantity:
+        """What an actuator works on, for the inputs."""
+        values = input_values(self.discrete.layout, actuator, self.inputs)
+        grid = self.discrete.rods[actuator.rod].grid
+        quantity: Quantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
+        return quantity
+
+    def _effort(self, actuator: scenes.Actuator) -> Matrix:
+        """Effort of an actuator: an input, or unknown where the scene gives what it works on."""
+        member = EFFECTS[actuator.kind]
+        if member.prescribes_conjugate(actuator):
+            return self._unknown_tension(self._cable(actuator.name))
+        effort = input_value(self.discrete.layout, actuator, member.effort, self.inputs)
+        if effort is None:
+            return ca.DM(0.0)
+        return effort
+
+    def _cable(self, name: str) -> CableOfLength:
+        return next(cable for cable in self.discrete.cables if cable.tendon.name == name)
+
+    def _cable_length(self, cable: CableOfLength) -> CableLength:
+        tendon = cable.tendon
+        wanted = input_value(self.discrete.layout, tendon, "length", self.inputs)
+        # The scene's rules let no tendon of given length have the length zero.
+        assert wanted is not None
+        member = EFFECTS[tendon.kind]
+        by_length, at_base = member.compliance(tendon)
+        _, routed = self.conjugate(tendon.name)
+        assert isinstance(routed, RoutedCable), "only cables have a length"
+        return CableLength(
+            cable=routed,
+            elasticity=Elasticity(by_length, at_base, member.resting_effort(tendon)),
+            wanted=wanted,
+            tension=self.x[self.discrete.tension(cable)],
+            slack=member.may_go_slack(tendon),
+            softness=cable.softness,
+            smoothing=smoothing_at(CORNER, SMOOTHING, self.load_factor),
+        )
+
+    def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:
+        """Columns on the coordinates of one rod, among those of all unknowns."""
+        entries = self.discrete.unknowns.strain(rod)
+        count = columns.shape[1]
+        zeros = type(columns)
+        before = zeros(entries.start, count)
+        after = zeros(self.discrete.size - entries.stop, count)
+        return ca.vertcat(before, columns, after)
+
+    def _unknown_tension(self, cable: CableOfLength) -> Matrix:
+        """Tension of a cable of given length, N."""
+        unit = self.discrete.tension_unit(cable.tendon.rod)
+        tension = self.x[self.discrete.tension(cable)]
+        return unit * tension

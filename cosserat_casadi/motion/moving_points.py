@@ -1,0 +1,107 @@
+"""World positions of points of rods and bodies as functions of the unknowns and inputs of a model, with derivatives.
+
+Rods of assemblies and free rods are no special case: a point moves with the strains of its rod and with the pose of its
+base, whichever of the two are unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+
+
+class MovingPoints:
+    """World positions of some points, with what their derivatives are made of.
+
+    Args:
+        model: the model, built for a motion.
+        placed: the positions in a system, 3×M.
+    """
+
+    def __init__(self, model: Model, placed: Callable[[System], Matrix]) -> None:
+        x = ca.MX.sym("x", model.size)
+        inputs = ca.MX.sym("inputs", model.inputs.size)
+        system = System(model.discrete, Arguments(x, inputs))
+        positions = ca.densify(ca.vec(ca.MX(placed(system))))
+        weights = ca.MX.sym("weights", positions.shape[0])
+        total = ca.dot(weights, positions)
+        gradient = ca.densify(ca.gradient(total, x))
+        self.positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]))
+        self.gradient = RepeatedCall(ca.Function("gradient", [x, inputs, weights], [gradient]))
+        self._symbols = [x, inputs, weights]
+        self._written = (positions, total, gradient)
+
+    @cached_property
+    def by_inputs(self) -> RepeatedCall:
+        """(x, inputs, weights) ↦ derivative of the weighted sum of the positions with the inputs, shape (m,)."""
+        derivative = ca.densify(ca.gradient(self._written[1], self._symbols[1]))
+        return RepeatedCall(ca.Function("by_inputs", self._symbols, [derivative]))
+
+    def straight_on(
+        self, x: FloatArray, inputs: FloatArray, v: FloatArray, rate: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Velocities and accelerations of the points while unknowns and inputs change evenly, shape (M, 3) each."""
+        first, second = np.split(self._straight_on(x, inputs, v, rate), 2)
+        return first.reshape(-1, 3), second.reshape(-1, 3)
+
+    def hessian(self, x: FloatArray, inputs: FloatArray, weights: FloatArray) -> FloatArray:
+        """Second derivative of the weighted sum of the positions with the unknowns, shape (n, n)."""
+        stacked = self._hessian(x, inputs, weights)
+        return stacked.reshape(len(x), len(x))
+
+    def jacobian(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Derivative of the positions with the unknowns, shape (M, 3, n)."""
+        stacked = self._jacobian(x, inputs)
+        return stacked.reshape(len(x), -1, 3).transpose(1, 2, 0)
+
+    @cached_property
+    def _straight_on(self) -> RepeatedCall:
+        x, inputs, _ = self._symbols
+        v = ca.MX.sym("v", x.shape[0])
+        rate = ca.MX.sym("rate", inputs.shape[0])
+        state = ca.vertcat(x, inputs)
+        change = ca.vertcat(v, rate)
+        at_once = ca.MX.sym("state", state.shape[0])
+        positions = ca.graph_substitute(
+            self._written[0], [x, inputs], ca.vertsplit(at_once, [0, x.shape[0], at_once.shape[0]])
+        )
+        first = ca.jtimes(positions, at_once, change)
+        second = ca.jtimes(first, at_once, change)
+        written = ca.Function("moved", [at_once, v, rate], [ca.densify(ca.vertcat(first, second))])
+        return RepeatedCall(ca.Function("straight_on", [x, inputs, v, rate], [written(state, v, rate)]))
+
+    @cached_property
+    def _hessian(self) -> RepeatedCall:
+        second = ca.densify(ca.jacobian(self._written[2], self._symbols[0]))
+        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]))
+
+    @cached_property
+    def _jacobian(self) -> RepeatedCall:
+        first = ca.densify(ca.jacobian(self._written[0], self._symbols[0]))
+        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]))
+
+
+def nodes_of(model: Model, rod: str) -> MovingPoints:
+    """The nodes of a rod."""
+
+    def placed(system: System) -> Matrix:
+        base = system.base(rod)
+        turned = quaternion_to_matrix(base.quaternion) @ system.shapes[rod].position
+        return ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned
+
+    return MovingPoints(model, placed)
+
+
+def centre_of(model: Model, body: str) -> MovingPoints:
+    """The origin of a body."""
+    return MovingPoints(model, lambda system: system.frame(FrameName("body", body)).position)

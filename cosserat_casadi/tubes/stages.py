@@ -1,0 +1,51 @@
+"""A step along a robot in its stages, and the step of order eight that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from cosserat_casadi.maths.composition import SHARES
+
+
+@dataclass(frozen=True)
+class Staged:
+    """A step along a robot in its stages.
+
+    Attributes:
+        stage: (state, length of the stage before, length, section) ↦ state.
+        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
+        energy: index of the energy in the state.
+        carried: entries at the end of the section that change with the robot: force, and force per length.
+    """
+
+    stage: ca.Function
+    last: ca.Function
+    energy: int
+    carried: int
+
+    @property
+    def width(self) -> int:
+        """Entries of the state."""
+        return int(self.stage.size1_in(0))
+
+
+def composed(name: str, stage: ca.Function, last: ca.Function) -> ca.Function:
+    """(state, length, section) ↦ state: a step of order eight, in which one stage is written once and serves all.
+
+    Args:
+        name: of the function.
+        stage: (state, length of the stage before, length, section) ↦ state, as `LoadedSection.stage`; with the lengths
+            may come what changes in proportion to them.
+        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
+    """
+    whole = ca.MX.sym("length", stage.size1_in(2))
+    start = ca.MX.sym("state", stage.size1_in(0))
+    here = ca.MX.sym("section", stage.size1_in(3))
+    shares = ca.DM(SHARES).T
+    shares_before = ca.horzcat(0, shares[:-1])
+    stages = stage.mapaccum("stages", len(SHARES))
+    passed = stages(start, whole @ shares_before, whole @ shares, ca.repmat(here, 1, len(SHARES)))
+    after = last(passed[:, -1], whole * shares[-1], here)
+    return ca.Function(name, [start, whole, here], [after])

@@ -1,0 +1,194 @@
+"""Free rods that fall on obstacles: flight, impulses by hand, momentum and energy across impacts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import build, parse_scene, simulate
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.restart import ContactEvent
+from cosserat_casadi.motion.trajectory import Motion
+
+LENGTH = 0.4
+DENSITY = 0.2
+MASS = LENGTH * DENSITY
+GRAVITY = 9.81
+BALL = [0.12, 0.02, -0.1]
+
+THIN = """
+stiffness = { bending_y = 5.0 }
+linear_density = 0.2
+rotary_inertia = [1e-12, 1e-12, 2e-12]
+"""
+
+RUBBER = """
+material = { youngs_modulus = 2e7, poisson_ratio = 0.48, density = 1100.0 }
+section = { shape = "circle", radius = 8e-3 }
+"""
+
+FREE = """
+schema = 1
+accuracy = {{ modes = {modes}, nodes = 10, tolerance = 1e-4 }}
+loads = [{{ name = "weight", kind = "gravity", acceleration = [{along}, 0, -9.81] }}]
+simulation = {{ duration = {duration}, start = "unloaded", frames = 41 }}
+[[rods]]
+name = "rod"
+length = 0.4
+strain = "{strain}"
+{stuff}
+base = {{ position = [0, 0, 0], tangent = [{tangent}], free = true }}
+damping = {{ retardation_time = 1e-3 }}
+"""
+
+FLOOR = """
+[[obstacles]]
+name = "floor"
+kind = "plane"
+point = [0, 0, -0.05]
+normal = [0, 0, 1]
+"""
+
+
+def free_rod(
+    obstacles: str = FLOOR,
+    modes: int = 2,
+    duration: float = 0.1015,
+    tangent: str = "1, 0, 0",
+    along: float = 0.0,
+    strain: str = "planar",
+) -> Model:
+    given = {"modes": modes, "duration": duration, "tangent": tangent, "along": along, "strain": strain}
+    text = FREE.format(stuff=THIN if strain == "planar" else RUBBER, **given) + obstacles
+    return build(parse_scene(text).with_motion_inputs(), moving=True)
+
+
+def momenta(motion: Motion, time: float) -> FloatArray:
+    """Momentum and angular momentum about the origin, shape (6,)."""
+    state = motion.at(time)
+    linear, angular = motion.model.momentum(state.x, state.v, state.inputs, 0.0 * state.inputs)
+    return np.concatenate([linear.full()[:, 0], angular.full()[:, 0]])
+
+
+def impacts(motion: Motion) -> list[ContactEvent]:
+    return [event for event in motion.events if event.kind == "impact"]
+
+
+@pytest.mark.parametrize("modes", [1, 3])
+@pytest.mark.parametrize("slope", [0.0, 0.6])
+def test_the_first_impulse_is_that_of_a_straight_rod_by_hand(modes: int, slope: float) -> None:
+    """A straight rod with k polynomials of curvature has those up to the degree k + 1 as its deflections.
+
+    The sum of their squares at an end over their norms, (k + 2)²/m, is what a unit impulse across the rod gives its
+    end; one along the rod moves it by 1/m.
+    """
+    post = '[[obstacles]]\nname = "post"\nkind = "sphere"\ncentre = [0, 0, -0.08]\nradius = 0.03\n'
+    motion = simulate(free_rod(FLOOR if slope else post, modes=modes, tangent=f"1, 0, {slope}"))
+    first = motion.events[0]
+    assert first.kind == "impact"
+    assert_allclose(first.place, 0.0, rtol=0, atol=1e-15)
+    assert_allclose(first.time, np.sqrt(2 * 0.05 / GRAVITY), rtol=1e-9, atol=0)
+    sine = slope / np.hypot(1.0, slope)
+    inverse_mass = ((1 - sine**2) * (modes + 2) ** 2 + sine**2) / MASS
+    speed = GRAVITY * first.time
+    assert_allclose(first.impulse, speed / inverse_mass, rtol=1e-6, atol=0)
+    assert_allclose(first.energy, 0.5 * speed**2 / inverse_mass, rtol=1e-6, atol=0)
+
+
+def test_both_ends_on_posts_are_struck_together_and_by_hand() -> None:
+    """Of the deflections the even ones move, with 1 + 5 = 6 for two polynomials of curvature."""
+    posts = "".join(
+        f'[[obstacles]]\nname = "{name}"\nkind = "sphere"\ncentre = [{x}, 0, -0.08]\nradius = 0.03\n'
+        for name, x in (("left", 0.0), ("right", LENGTH))
+    )
+    motion = simulate(free_rod(posts, modes=2))
+    left, right = impacts(motion)[:2]
+    assert (left.obstacle, right.obstacle) == ("left", "right")
+    assert_allclose([left.place, right.place], [0.0, 1.0], rtol=0, atol=1e-15)
+    speed = GRAVITY * left.time
+    assert right.time == left.time
+    for struck in (left, right):
+        assert_allclose(struck.impulse, speed * MASS / 12, rtol=1e-6, atol=0)
+
+
+@pytest.fixture(scope="module")
+def thrown() -> Motion:
+    """A soft rod in space that falls on an edge of a ball, off its middle, so that all of it turns and bends."""
+    ball = f'[[obstacles]]\nname = "ball"\nkind = "sphere"\ncentre = {BALL}\nradius = 0.05\n'
+    return simulate(free_rod(ball, modes=1, duration=0.14, tangent="1, 0.2, 0.1", along=1.5, strain="kirchhoff"))
+
+
+def test_it_flies_as_a_stone_until_it_strikes(thrown: Motion) -> None:
+    first = thrown.events[0]
+    before = thrown.times < first.time
+    fallen = (
+        thrown.section("rod", [0.0, 0.5, 1.0]).position[before] - thrown.section("rod", [0.0, 0.5, 1.0]).position[0]
+    )
+    parabola = 0.5 * thrown.times[before][:, None] ** 2 * np.array([1.5, 0.0, -GRAVITY])
+    assert_allclose(fallen, np.repeat(parabola[:, None], 3, axis=1), rtol=0, atol=1e-9)
+
+
+def test_momentum_changes_by_the_impulse_at_the_section_that_is_struck(thrown: Motion) -> None:
+    for event in impacts(thrown):
+        state = thrown.at(event.time)
+        place = thrown.model.fields["rod"](state.x, state.inputs)[0].full()
+        grid = thrown.model.discrete.rods["rod"].grid
+        section = grid.interpolation_matrix(np.array([event.place]))[0] @ place.T
+        normal = (section - BALL) / np.linalg.norm(section - BALL)
+        brief = 1e-9
+        change = momenta(thrown, event.time + brief) - momenta(thrown, event.time)
+        wanted = event.impulse * np.concatenate([normal, np.cross(section, normal)])
+        # Weight and the force of the contact act for the brief time too.
+        assert_allclose(change, wanted, rtol=0, atol=1e-8)
+
+
+def test_energies_balance_and_no_section_is_inside(thrown: Motion) -> None:
+    assert thrown.converged, thrown.message
+    assert len(impacts(thrown)) >= 1
+    assert sum(event.energy for event in impacts(thrown)) > 1e-3
+    assert abs(thrown.energy.imbalance).max() < 3e-4
+    positions = thrown.section("rod", np.linspace(0.0, 1.0, 401)).position
+    distances = np.linalg.norm(positions - BALL, axis=-1) - 0.05
+    assert distances.min() > 8e-3 - 1e-5 * LENGTH
+
+
+def test_a_floor_takes_no_momentum_along_it() -> None:
+    motion = simulate(free_rod(tangent="1, 0, 0.6", along=2.0, duration=0.11, modes=2))
+    assert motion.converged, motion.message
+    assert impacts(motion)
+    for time in motion.times:
+        along = momenta(motion, float(time))[0]
+        assert_allclose(along, 2.0 * MASS * time, rtol=0, atol=5e-7)
+
+
+@pytest.mark.slow
+def test_events_and_tips_converge_with_the_tolerance() -> None:
+    found = []
+    for tolerance in (1e-4, 1e-6, 1e-8):
+        text = FREE.format(modes=2, along=2.0, duration=0.14, strain="planar", stuff=THIN, tangent="1, 0, 0.6")
+        scene = parse_scene(text.replace("tolerance = 1e-4", f"tolerance = {tolerance}") + FLOOR)
+        found.append(simulate(build(scene.with_motion_inputs(), moving=True)))
+    exact = found.pop()
+    errors = [abs(one.tip().position - exact.tip().position).max() / LENGTH for one in found]
+    assert errors[0] < 1e-4
+    assert errors[1] < 1e-6
+    times = [abs(one.events[-1].time - exact.events[-1].time) for one in found]
+    assert times[1] < 0.1 * times[0] + 1e-10
+
+
+def test_a_contact_that_leaves_an_end_goes_on_inside_the_rod() -> None:
+    """Steps leave the rate of its gap a little off zero, which is no lift-off."""
+    stuff = """
+material = { youngs_modulus = 1e9, poisson_ratio = 0.4, density = 1200.0 }
+section = { shape = "circle", radius = 5e-3 }
+"""
+    text = FREE.format(modes=3, along=0.0, duration=0.2, strain="planar", stuff=stuff, tangent="1, 0, 0.3")
+    scene = parse_scene(text + FLOOR.replace("-0.05", "-0.1"))
+    motion = simulate(build(scene.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    kinds = [event.kind for event in motion.events]
+    assert kinds[:5] == ["impact", "lift_off", "impact", "slide_from_end", "lift_off"]
+    assert motion.events[3].place == 1.0
+    assert 0.6 < motion.events[4].place < 0.7

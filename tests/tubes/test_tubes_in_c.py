@@ -1,0 +1,308 @@
+"""Concentric tubes in C against those in Python: equilibria, derivatives, turns of a control loop, snaps, refusals."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import (
+    CompiledTubes,
+    ExportError,
+    Scene,
+    TubeSolution,
+    TubeStatus,
+    export_tubes,
+    follow_tubes,
+    load,
+    load_tubes,
+    parse_scene,
+    read_scene,
+    solve_tubes,
+)
+from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution
+from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.tubes.solution import tip_error
+from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
+from tests.commands import cosserat
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+DIFFERENCE = 1e-6
+
+
+class Robot:
+    """A robot in Python and in C, with the same steps."""
+
+    def __init__(self, scene: Scene, folder: Path) -> None:
+        self.scene = scene
+        self.solution = solve_tubes(scene)
+        self.folder = export_tubes(scene, self.solution, folder, "robot")
+        self.compiled: CompiledTubes = load_tubes(folder)
+
+    def in_python(self, found: CompiledTubesSolution) -> TubeSolution:
+        """The equilibrium in Python that one in C is near to."""
+        robot = self.solution.robot
+        x = found.x.copy()
+        x[: robot.size] += robot.rotations(found.inputs)
+        if x.size > robot.size:
+            x[robot.size] += 1.0
+        return solution_near(self.solution.model, found.inputs, x)
+
+    def inputs(self, seed: int) -> np.ndarray:
+        """Random rotations and translations, and loads like those of the scene."""
+        random = np.random.default_rng(seed)
+        robot = self.solution.robot
+        inputs = robot.inputs.copy()
+        inputs[: 2 * robot.size : 2] = random.uniform(-np.pi, np.pi, robot.size)
+        inputs[1 : 2 * robot.size : 2] = random.uniform(0.0, 1.0, robot.size) * robot.length
+        inputs[2 * robot.size :] *= random.uniform(0.0, 1.0, robot.inputs.size - 2 * robot.size)
+        return inputs
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    """Two tubes without loads."""
+    return Robot(read_scene(EXAMPLES / "concentric_tubes.toml"), tmp_path_factory.mktemp("c") / "robot")
+
+
+@pytest.fixture(scope="module")
+def loaded_robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    """Two tubes with a force at the tip and their weight."""
+    return Robot(read_scene(EXAMPLES / "loaded_tubes.toml"), tmp_path_factory.mktemp("c") / "robot")
+
+
+def agrees(robot: Robot, found: CompiledTubesSolution) -> None:
+    """An equilibrium in C and its derivatives are those of Python."""
+    assert found.converged, found.message
+    expected = robot.in_python(found)
+    assert expected.converged
+    assert_allclose(found.determinant, expected.stability.determinant, rtol=1e-6, atol=0)
+    derivatives = robot.compiled.sensitivity(found)
+    assert derivatives is not None
+    for index, (tube, tip) in enumerate(expected.tips.items()):
+        assert_allclose(found.tips[tube][:3], tip.position, rtol=0, atol=1e-9)
+        assert_allclose(abs(found.tips[tube][3:] @ tip.quaternion), 1.0, rtol=0, atol=1e-9)
+        largest = np.abs(expected.tip_jacobian).max()
+        assert_allclose(derivatives[tube][:3], expected.tip_jacobian[index, 3:], rtol=0, atol=1e-9 * largest)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
+    found = robot.compiled.solve(robot.inputs(seed))
+    agrees(robot, found)
+    # Without loads both come from straight tubes in the same way.
+    expected = solve_tubes(robot.scene, found.inputs)
+    assert_allclose(found.tips["inner"][:3], expected.tip("inner").position, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("reach", [(0.15, 0.15), (0.22, 0.0), (0.0, 0.3), (0.12, 0.26), (0.22, 0.32), (0.1, 0.14)])
+def test_ends_that_coincide_or_lie_in_the_plate(robot: Robot, reach: tuple[float, float]) -> None:
+    agrees(robot, robot.compiled.solve([0.4, reach[0], 1.9, reach[1]]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_loaded_equilibria_are_those_of_python(loaded_robot: Robot, seed: int) -> None:
+    agrees(loaded_robot, loaded_robot.compiled.solve(loaded_robot.inputs(seed)))
+
+
+@pytest.mark.slow
+def test_a_loaded_robot_in_c_snaps_where_it_does_in_python(loaded_robot: Robot) -> None:
+    snap = follow_tubes(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
+    last, lost = turned(loaded_robot, 0.01)
+    assert lost.status is TubeStatus.LOST_TRACK
+    assert last.inputs[2] < snap < lost.inputs[2]
+    assert lost.inputs[2] - last.inputs[2] < 0.011
+
+
+def test_derivatives_vs_differences(robot: Robot) -> None:
+    found = robot.compiled.solve()
+    derivatives = robot.compiled.sensitivity(found)
+    assert derivatives is not None
+    for index in range(found.inputs.size):
+        poses = []
+        for sign in (1, -1):
+            inputs = found.inputs.copy()
+            inputs[index] += sign * DIFFERENCE
+            poses.append(robot.compiled.solve(inputs, found).tips)
+        for tube in robot.compiled.tubes:
+            difference = (poses[0][tube] - poses[1][tube]) / (2 * DIFFERENCE)
+            assert_allclose(derivatives[tube][:, index], difference, rtol=0, atol=1e-7)
+
+
+def turned(robot: Robot, step: float) -> tuple[CompiledTubesSolution, CompiledTubesSolution]:
+    """The last solution while the inner tube is turned by steps, and what the turn after it says."""
+    last = robot.compiled.solve()
+    while last.inputs[2] < 9.0:
+        inputs = last.inputs.copy()
+        inputs[2] += step
+        turn = robot.compiled.track(inputs, last, derivatives=last.inputs[2] > 5.0)
+        if not turn.converged:
+            return last, turn
+        last = turn
+    return last, last
+
+
+@pytest.mark.parametrize("step", [0.003, 0.05, 0.4])
+def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
+    snap = follow_tubes(robot.scene, "inner.rotation", 9.0).events[0].value
+    last, lost = turned(robot, step)
+    assert lost.status is TubeStatus.LOST_TRACK
+    assert last.inputs[2] < snap < lost.inputs[2]
+    assert lost.inputs[2] - last.inputs[2] < 1.001 * step
+    assert last.determinant > 0.0
+    assert_allclose(lost.x, last.x, rtol=0, atol=0)
+    # Memory and unknowns are as they were: the robot turns back from there.
+    back = last.inputs.copy()
+    back[2] -= step
+    agrees(robot, robot.compiled.track(back, last))
+    beyond = robot.compiled.follow(last, lost.inputs)
+    assert beyond.status is TubeStatus.LOAD_STALLED
+    assert beyond.load_factor < 1.0
+    # From straight tubes there is another equilibrium at the same inputs.
+    agrees(robot, robot.compiled.solve(lost.inputs))
+
+
+def test_turns_go_where_the_order_of_ends_changes(robot: Robot) -> None:
+    """The inner tube is drawn into the outer one and pushed out again: its tip and its bend pass those of the other."""
+    last = robot.compiled.solve([0.0, 0.13, 1.0, 0.26])
+    agrees(robot, last)
+    way = np.concatenate([np.linspace(0.26, 0.05, 41), np.linspace(0.05, 0.26, 41)])
+    for translation in way:
+        turn = robot.compiled.track([0.0, 0.13, 1.0, translation], last)
+        assert turn.converged
+        assert turn.derivatives is not None
+        last = turn
+    agrees(robot, last)
+    assert_allclose(last.x, robot.compiled.solve(last.inputs).x, rtol=0, atol=1e-9)
+
+
+def test_a_turn_of_all_drives_takes_no_step(robot: Robot) -> None:
+    found = robot.compiled.solve()
+    turn = robot.compiled.track(found.inputs + np.array([0.7, 0.0, 0.7, 0.0]), found)
+    assert turn.converged
+    assert turn.iterations == 0
+    assert_allclose(turn.x, found.x, rtol=0, atol=0)
+
+
+def test_the_work_of_a_turn_is_bounded(robot: Robot) -> None:
+    found = robot.compiled.solve()
+    far = found.inputs + np.array([0.0, 0.05, 1.5, -0.1])
+    short = robot.compiled.track(far, found, max_iterations=2, max_continuation_steps=1)
+    assert short.status is TubeStatus.LOST_TRACK
+    assert short.iterations <= 4
+    assert_allclose(short.x, found.x, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("translation", [-0.01, 0.33])
+def test_translations_out_of_range_are_refused(robot: Robot, translation: float) -> None:
+    found = robot.compiled.solve()
+    inputs = found.inputs.copy()
+    inputs[3] = translation
+    assert robot.compiled.solve(inputs).status is TubeStatus.OUT_OF_RANGE
+    assert robot.compiled.follow(found, inputs).status is TubeStatus.OUT_OF_RANGE
+    turn = robot.compiled.track(inputs, found)
+    assert turn.status is TubeStatus.OUT_OF_RANGE
+    assert not turn.tips
+    assert_allclose(turn.x, found.x, rtol=0, atol=0)
+
+
+def test_other_inputs_without_an_equilibrium(robot: Robot) -> None:
+    assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).status is TubeStatus.OUT_OF_RANGE
+    assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).status is TubeStatus.NOT_FINITE
+    assert robot.compiled.solve([0.1, np.nan, 0.0, 0.2]).status is not TubeStatus.CONVERGED
+    found = robot.compiled.solve()
+    elsewhere = CompiledTubesSolution(**{**vars(found), "inputs": found.inputs + np.array([0.0, 0.0, 0.3, 0.0])})
+    assert robot.compiled.sensitivity(elsewhere) is None
+
+
+def test_an_unstable_equilibrium_has_a_negative_determinant(robot: Robot) -> None:
+    opposed = robot.compiled.solve([0.0, 0.13, np.pi, 0.2])
+    assert opposed.converged
+    assert opposed.determinant < 0.0
+    assert not robot.in_python(opposed).stable
+
+
+@pytest.mark.parametrize("turn", [3.0, 3.1, 3.14])
+@pytest.mark.parametrize("reach", [0.14, 0.16, 0.24])
+def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, turn: float, reach: float) -> None:
+    """The branch from straight tubes is the one that a robot is on which was turned there from aligned ones."""
+    inputs = {"inner.rotation": turn, "inner.translation": reach}
+    turned_there = robot.compiled.solve([0.0, 0.13, 0.0, reach])
+    for rotation in np.linspace(0.0, turn, 60)[1:]:
+        turned_there = robot.compiled.track([0.0, 0.13, rotation, reach], turned_there, derivatives=False)
+        assert turned_there.converged
+    found = robot.compiled.solve([0.0, 0.13, turn, reach])
+    assert_allclose(found.x, turned_there.x, rtol=0, atol=1e-8)
+    assert found.determinant > 0.0
+    in_python = solve_tubes(robot.scene, inputs)
+    assert in_python.stable
+    assert_allclose(in_python.x - in_python.robot.rotations(in_python.inputs), found.x, rtol=0, atol=1e-5)
+
+
+def test_too_few_steps_are_told(robot: Robot) -> None:
+    """Two steps a piece are enough for some inputs only: those within tolerance of many steps, and not all of them."""
+    tubes = robot.solution.robot
+    resolution = TubeKernels(model_of(tubes, 2), "k").all()[3]
+    assert resolution.name() == "k_resolution_index"
+    enough = []
+    for seed in range(16):
+        inputs = robot.inputs(seed)
+        inputs[1::2] = (0.5 + seed / 32) * tubes.length
+        few = solve_at(model_of(tubes, 2), inputs)
+        twist = few.x - tubes.rotations(inputs)
+        enough.append(float(resolution(twist, inputs)) <= 1.0)
+        many = solution_near(model_of(tubes, 16), inputs, few.x)
+        if enough[-1]:
+            assert tip_error(few, many) <= tubes.tolerance
+    assert 3 < sum(enough) < 13
+
+
+def test_the_demo_prints_what_python_finds(robot: Robot, tmp_path: Path) -> None:
+    sources = ["robot_demo.c", "robot.c", "robot_kernels.c"]
+    demo = tmp_path / "demo"
+    command = [find_compiler(), "-O0", "-std=c99", "-Wall", "-Werror", *sources, "-lm", "-o", str(demo)]
+    subprocess.run(command, cwd=robot.folder, check=True)
+    said = json.loads(subprocess.run([demo], check=True, capture_output=True, text=True).stdout)
+    assert said["status"] == "converged"
+    assert_allclose(said["tips"][1], robot.solution.tip("inner").position, rtol=0, atol=1e-9)
+    refused = subprocess.run([demo, "0", "0.1", "x", "0"], check=False, capture_output=True, text=True)
+    assert refused.returncode == 2
+    far = subprocess.run([demo, "0", "0.1", "0", "0.4"], check=False, capture_output=True, text=True)
+    assert far.returncode == 3
+    assert json.loads(far.stdout)["status"] == "out_of_range"
+
+
+def test_refusals(robot: Robot, tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="no name for a C library"):
+        export_tubes(robot.scene, robot.solution, tmp_path / "folder", "a b")
+    with pytest.raises(ExportError, match="is not the manifest of concentric tubes"):
+        load_tubes(EXAMPLES.parent / "generated" / "nitinol_wire")
+    with pytest.raises(ExportError):
+        load(robot.folder)
+    with pytest.raises(ValueError, match="both max_iterations"):
+        robot.compiled.track(robot.compiled.defaults, robot.compiled.solve(), max_iterations=3)
+
+
+def test_on_the_command_line(tmp_path: Path) -> None:
+    scene = tmp_path / "robot.toml"
+    scene.write_text((EXAMPLES / "concentric_tubes.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    folder = tmp_path / "robot"
+    refused = cosserat("export", "robot.toml", "--output", "robot", "--dynamics", "--stability", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "--dynamics: is for rods" in refused.stderr
+    assert "--stability: is for rods" in refused.stderr
+    assert not folder.exists()
+    written = cosserat("export", "robot.toml", "--output", "robot", cwd=tmp_path)
+    assert written.returncode == 0, written.stderr
+    assert "4 steps a piece" in written.stdout
+    described = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+    assert described["tubes"] == ["outer", "inner"]
+    assert sorted(path.name for path in folder.iterdir()) == described["files"]
+    assert parse_scene((folder / "scene.toml").read_text(encoding="utf-8")).tubes
