@@ -232,5 +232,6 @@ class _Writing:
         if self.origins.is_whole(numbers):
             return self._computed[owner]
         entries = self.origins.entries(owner, numbers)
-        piece: ca.MX = self._computed[owner].nz[entries.tolist()]
+        # Of one entry that is taken several times CasADi makes a row.
+        piece: ca.MX = ca.vec(self._computed[owner].nz[entries.tolist()])
         return piece

@@ -94,10 +94,10 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
 def thinnest(scene: scenes.Scene) -> float:
     """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any.
 
-    One on a body counts half: the body may come to meet the rod.
+    One on a body counts a quarter: the body comes to meet the rod, and neither may come to be beyond its middle.
     """
     thicknesses = [
-        obstacle.thickness if obstacle.body is None else obstacle.thickness / 2
+        obstacle.thickness if obstacle.body is None else obstacle.thickness / 4
         for obstacle in scene.obstacles
         if obstacle.is_smooth
     ]

@@ -105,6 +105,16 @@ def test_every_kind_of_instruction() -> None:
     assert_same(in_loops(function), function, 1e-15)
 
 
+def test_one_number_taken_several_times() -> None:
+    """It is a column beside other entries, as a factor on all of a wrench is."""
+    matrix = ca.MX.sym("matrix", 30, 30)
+    vector = ca.MX.sym("vector", 30)
+    product = matrix @ vector
+    stacked = ca.vertcat(ca.repmat(ca.dot(product, product), 6, 1), product)
+    function = ca.Function("stacked", [matrix, vector], [stacked])
+    assert_same(in_loops(function), function, 1e-15)
+
+
 def test_scalars_stay_as_they_are() -> None:
     x = ca.SX.sym("x")
     function = ca.Function("f", [x], [ca.sin(x)])
