@@ -16,9 +16,13 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.meeting_ends import MeetingEnds, RodEnd, meetings, watched_ends
+from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.plots.motion_plot import save_motion_plot
 
 HEAD = """
@@ -377,3 +381,15 @@ def test_a_head_that_is_shaken_off_the_floor_by_its_handle_does_not_leave_and_to
     heights = motion.body("head").position[:, 2] - 0.03
     assert heights.min() > -1e-4 * 0.4
     assert abs(motion.energy.imbalance).max() < 2e-3
+
+
+@pytest.mark.parametrize(("inside", "allowed"), [(1e-7, 0.0), (1e-3, -1e-3 + 1e-6)])
+def test_what_a_stretch_begins_inside_by_the_error_of_steps_may_leave(inside: float, allowed: float) -> None:
+    floor = FLOOR.format(height=-0.03 + inside * 0.4, who='bodies = ["ball"]')
+    model = moving(head() + rod() + BALL.format(rod="rod") + floor)
+    (piece,) = moving_inputs(model).pieces(0.1)
+    _, guards = ExactContacts(model).arranged(equations_of(model, piece), piece, ())
+    still = np.zeros(model.size)
+    first = guards(Instant(0.0, model.unloaded(), still, still))
+    assert_allclose(first, [allowed], rtol=0, atol=1e-12)
+    assert_allclose(guards(Instant(0.0, model.unloaded(), still, still)), first, rtol=0, atol=0)
