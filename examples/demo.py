@@ -62,6 +62,7 @@ MOTIONS = (
     "seaweed",
     "dropped_rod",
     "bouncing_rod",
+    "rod_hits_floor",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

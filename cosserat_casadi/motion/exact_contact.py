@@ -10,7 +10,7 @@ of accelerations. See docs/contact.md.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -42,6 +42,12 @@ STILL = 1e-9
 
 PUSH = 1e-10
 """Force in EI/ℓ², or impulse over the largest, below zero that counts as none."""
+
+BRIEF = 1e-4
+"""Time, over the interval in which gaps are smooth, after which a section that leaves is back at once."""
+
+LEEWAY = 1e-6
+"""Depth over the length up to which what is on its way out of an obstacle is so by the error of a step."""
 
 FORCE, END, BEND, GAP = range(4)
 """What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch."""
@@ -96,6 +102,8 @@ class ExactContacts:
         """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
         phases = follower.touches
         size = self.model.size
+        # Where a stretch begins an event may have found what is about to leave a little inside.
+        inside: list[float] = []
 
         def values(instant: Instant) -> FloatArray:
             x = instant.x[:size]
@@ -111,6 +119,9 @@ class ExactContacts:
                 own = [touch.place for touch in touches if touch.facing == number]
                 left_out = [X for other, X in beside if other == number]
                 others.append(min(1.0, facing.lowest(facing.nodes(x, inputs), own, left_out)))
+            if not inside:
+                inside.extend(min(0.0, max(gap, -LEEWAY)) for gap in others)
+            others = [gap - least for gap, least in zip(others, inside, strict=True)]
             return np.concatenate([forces, ends, bends, others])
 
         return values
@@ -207,7 +218,15 @@ class ExactContacts:
         if pressing is None:
             stalled = self._undecided(candidates, before.time)
             pressing = ()
-        return Restart(stretch.start(v, pressing), pressing, lost, work, tuple(events), stalled)
+        start = stretch.start(v, pressing)
+        leaving = tuple(touch for touch in touching if touch not in (*remaining, *known.left))
+        back = stretch.back_at_once(leaving, start.instant)
+        if back:
+            slowed = stretch.held_still(v, (*pressing, *back))
+            lost += max(0.0, stretch.kinetic(v) - stretch.kinetic(slowed))
+            pressing = stretch.pressing((*candidates, *back), slowed) or ()
+            start = stretch.start(slowed, pressing)
+        return Restart(start, pressing, lost, work, tuple(events), stalled)
 
     def _touching(self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch]) -> Touches:
         """Known contacts, and all others that touch at a state."""
@@ -361,6 +380,25 @@ class _Stretch:
         if chosen is None:
             return None
         return tuple(candidates[k] for k in chosen)
+
+    def back_at_once(self, leaving: Touches, start: Instant) -> Touches:
+        """Sections that leave so slowly that they are back in next to no time.
+
+        Args:
+            leaving: the sections.
+            start: velocities and accelerations with which they do.
+        """
+        if not leaving:
+            return ()
+        size = self.plain.size
+        rates, turning = self._follower(leaving).rates(self.before.x, start.v[:size], self.inputs)
+        opening = self._gradients(leaving) @ start.a[:size] + turning
+        soon = 2.0 * rates < -opening * BRIEF * self.interval
+        return tuple(touch for touch, is_soon in zip(leaving, soon, strict=True) if is_soon)
+
+    def held_still(self, v: FloatArray, touches: Touches) -> FloatArray:
+        """Velocities nearest to given ones at which some sections neither approach nor leave."""
+        return replace(self, before=replace(self.before, v=v))._impact(touches)[0]
 
     def kinetic(self, v: FloatArray) -> float:
         """Kinetic energy, J."""

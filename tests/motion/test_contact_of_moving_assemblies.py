@@ -16,9 +16,13 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.meeting_ends import MeetingEnds, RodEnd, meetings, watched_ends
+from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.plots.motion_plot import save_motion_plot
 
 HEAD = """
@@ -326,3 +330,66 @@ def test_a_ball_on_a_bar_that_is_too_thin_is_refused() -> None:
     bar = '[[obstacles]]\nname = "bar"\nkind = "capsule"\nfrom = [0.4, -1, -0.2]\nto = [0.4, 1, -0.2]\nradius = 1e-4\n'
     with pytest.raises(SceneError, match=r"obstacles\.bar\.radius.*with the ball of 'ball' it is 0\.0002 m"):
         simulate(moving(text + bar + 'bodies = ["ball"]\n'))
+
+
+CLUB = """
+schema = 1
+accuracy = { modes = 3, nodes = 12, tolerance = 1e-3 }
+simulation = { duration = 0.49, frames = 81, start = "unloaded" }
+loads = [
+    { name = "weight", kind = "gravity", acceleration = [0, 0, -9.81] },
+    { name = "hand", kind = "point_wrench", rod = "handle", at = 0.3, force = [0, 0, 0] },
+]
+[[motions]]
+input = "hand.force"
+times = [0.0, 0.05, 0.1]
+values = [[0, 0, 0], [4.0, 0.0, 3.0], [0, 0, 0]]
+interpolation = "cubic"
+[[rods]]
+name = "handle"
+length = 0.4
+strain = "planar"
+material = { youngs_modulus = 2e8, poisson_ratio = 0.48, density = 1100.0 }
+section = { shape = "circle", radius = 7e-3 }
+base = { position = [0, 0, 0.25], tangent = [1, 0, 0.5], free = true }
+damping = { retardation_time = 4e-3 }
+[[bodies]]
+name = "head"
+mass = 0.08
+inertia = [3e-5, 3e-5, 3e-5]
+radius = 0.03
+[[joints]]
+body = "head"
+rod = "handle"
+kind = "fixed"
+[[obstacles]]
+name = "floor"
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+rods = ["handle"]
+bodies = ["head"]
+"""
+
+
+def test_a_head_that_is_shaken_off_the_floor_by_its_handle_does_not_leave_and_touch_without_end() -> None:
+    """The handle strikes while the head is on the floor: flights of nanoseconds, and dips of less than the error."""
+    motion = simulate(moving(CLUB))
+    assert motion.converged, motion.message
+    assert [event.rod for event in motion.events[:2]] == ["head", "handle"]
+    assert motion.events[1].energy > 100 * sum(event.energy for event in motion.events[2:])
+    heights = motion.body("head").position[:, 2] - 0.03
+    assert heights.min() > -1e-4 * 0.4
+    assert abs(motion.energy.imbalance).max() < 2e-3
+
+
+@pytest.mark.parametrize(("inside", "allowed"), [(1e-7, 0.0), (1e-3, -1e-3 + 1e-6)])
+def test_what_a_stretch_begins_inside_by_the_error_of_steps_may_leave(inside: float, allowed: float) -> None:
+    floor = FLOOR.format(height=-0.03 + inside * 0.4, who='bodies = ["ball"]')
+    model = moving(head() + rod() + BALL.format(rod="rod") + floor)
+    (piece,) = moving_inputs(model).pieces(0.1)
+    _, guards = ExactContacts(model).arranged(equations_of(model, piece), piece, ())
+    still = np.zeros(model.size)
+    first = guards(Instant(0.0, model.unloaded(), still, still))
+    assert_allclose(first, [allowed], rtol=0, atol=1e-12)
+    assert_allclose(guards(Instant(0.0, model.unloaded(), still, still)), first, rtol=0, atol=0)
