@@ -115,7 +115,8 @@ def compiled(model: Model, load_cases: np.ndarray, folder: Path) -> tuple[ctypes
     sources = [folder / file for file in ("turns.c", "rod.c", "rod_kernels.c")]
     library = folder / "turns.so"
     subprocess.run([find_compiler(), "-O2", "-std=c99", "-fPIC", "-shared", *sources, "-lm", "-o", library], check=True)
-    return ctypes.CDLL(str(library)), (folder / "rod_kernels.c").stat().st_size
+    kernels = sum(file.stat().st_size for file in folder.glob("rod_kernels*"))
+    return ctypes.CDLL(str(library)), kernels
 
 
 def row(library: ctypes.CDLL, model: Model, inputs: np.ndarray) -> Row:

@@ -122,26 +122,23 @@ class Level:
         stretched = ceil(self.grid_factor * nodes)
         return max(stretched, self.min_nodes)
 
-    def with_modes(self, modes: int, most_levels: int = len(REFERENCE_MODES)) -> Level | None:
-        """The lowest level above that has so many modes, and the same grid factor.
-
-        Args:
-            modes: the number that is needed.
-            most_levels: the level is at most so many above this one.
-
-        Returns:
-            None where no level has so many.
-        """
+    def with_modes(self, modes: int) -> Level | None:
+        """The lowest level above that has so many modes, and the same grid factor; None where no level has so many."""
         if modes > REFERENCE_MODES[self.finest]:
-            lowest = self.finest + 1
-        else:
-            lowest = _lowest_with(modes)
+            return None
         # Always one up: a level that was just found too coarse is not solved again.
-        above = max(lowest, self.index + 1)
-        index = min(above, self.index + most_levels)
+        index = max(_lowest_with(modes), self.index + 1)
         if index > self.finest:
             return None
         return replace(self, index=index)
+
+    def with_extrapolated_modes(self, modes: int) -> Level | None:
+        """A level above on the way to a number of modes that may be too large; None only above the finest level."""
+        tried = min(modes, REFERENCE_MODES[self.finest])
+        above = self.with_modes(tried)
+        if above is None:
+            return None
+        return replace(above, index=min(above.index, self.index + MOST_LEVELS))
 
     def with_min_nodes(self, nodes: int) -> Level:
         """The same modes on at least so many intervals."""

@@ -32,7 +32,7 @@ from cosserat_casadi.accuracy.assess import (
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
-from cosserat_casadi.accuracy.levels import MOST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import Resolution
@@ -220,7 +220,7 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
         case NoEquilibrium():
             return level.with_modes(level.modes + 1)
         case NeedsModes(modes, extrapolated=True):
-            return level.with_modes(modes, MOST_LEVELS)
+            return level.with_extrapolated_modes(modes)
         case NeedsModes(modes):
             return level.with_modes(modes)
         case NeedsFinerGrid():
@@ -309,7 +309,7 @@ def _meant(solver: SceneSolver) -> Solution | None:
     if isinstance(found, _Reference):
         return found.solution
     # The modes of the user may have an equilibrium all the same, and one to relax to.
-    solver.relaxing_failed = False
+    solver.vain_descents = 0
     return None
 
 

@@ -36,6 +36,9 @@ TIGHT = 1e-6
 SLOW_MODES = 7
 """Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
 
+MOST_VAIN_DESCENTS = 3
+"""Discretisations on which descent is tried in vain: on few modes a rod may have no stable equilibrium."""
+
 
 @dataclass
 class SceneSolver:
@@ -48,7 +51,7 @@ class SceneSolver:
         progress: told the share of the load path that is done.
         report: told what is being tried.
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
-        relaxing_failed: whether descent was tried in vain; it is not tried again.
+        vain_descents: number of discretisations on which descent was tried in vain.
         iterations: Newton steps so far, on all discretisations.
     """
 
@@ -58,7 +61,7 @@ class SceneSolver:
     progress: Progress | None
     report: Report | None
     relaxed: bool = False
-    relaxing_failed: bool = False
+    vain_descents: int = 0
     iterations: int = 0
 
     @property
@@ -129,14 +132,14 @@ class SceneSolver:
         A held rod is always wanted stable: what leads to its supports are springs of our own, not loads of the scene.
         """
         wanted_stable = self.stable or bool(self.scene.supports)
-        if not wanted_stable or self.relaxing_failed or solution.stable:
+        if not wanted_stable or solution.stable or self.vain_descents == MOST_VAIN_DESCENTS:
             return solution
         if not solution.model.has_potential(solution.inputs):
             return solution
         relaxed = stabilised(solution, ContinuationSettings(), self.progress)
         self.iterations += relaxed.iterations - solution.iterations
         self.relaxed = bool(relaxed.stable)
-        self.relaxing_failed = not relaxed.stable
+        self.vain_descents += not relaxed.stable
         return relaxed
 
 

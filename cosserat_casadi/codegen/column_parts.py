@@ -20,6 +20,7 @@ from cosserat_casadi.codegen.columns import (
     ColumnPart,
     columned_jacobian,
     in_groups,
+    on_path,
 )
 from cosserat_casadi.codegen.fours import columns_in_fours
 from cosserat_casadi.codegen.fours_sources import InFours
@@ -69,7 +70,7 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, 
         the parts, and those of their kernels that are by columns; None where entries of one owner depend on the columns
         of several rods, or where an operation has no form in fours.
     """
-    jacobian = columned_jacobian(model)
+    jacobian = columned_jacobian(on_path(model))
     if jacobian is None:
         return None
     _, _, result = jacobian.scalars

@@ -3,7 +3,7 @@
 Column j of the variation of a field follows from the turns of the intervals with the j-th angular coordinate, and from
 nothing else that has a number j (rod/tangent.py). So the Jacobian falls into three parts:
 
-    what has no columns   functions of x, inputs and load factor
+    what has no columns   functions of x, inputs and load factor, or of what else there is given
     columns               functions of those and of a column of turns, which is constant
     what remains          the Jacobian from its columns
 
@@ -12,8 +12,8 @@ Parameters stand behind the inputs, as in all that the solver in C is given.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -31,7 +31,7 @@ LANES = 4
 """Columns that are computed together."""
 
 GIVEN = ["x", "inputs", "load_factor"]
-"""Arguments of the equations."""
+"""Arguments of the equations on the path of loads."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class ColumnForm:
     """A Jacobian, or some entries of one, by the columns of one rod.
 
     Attributes:
-        function: (x, inputs, load_factor, …, columns, turns) ↦ (jacobian, column). The column follows from the turns,
+        function: (arguments, …, columns, turns) ↦ (jacobian, column). The column follows from the turns,
             and the Jacobian from the matrix of all columns, one row of it after the other.
         turns: constant turns of all columns, shape (entries, stride), with zeros behind the last one.
         rows: rows of the matrix of columns.
@@ -82,7 +82,7 @@ class RodColumns:
     """The columns of one rod, each as a function of its turns.
 
     Attributes:
-        of_one: (x, inputs, load_factor, turns) ↦ all rows of one column, as scalars.
+        of_one: (arguments, turns) ↦ all rows of one column, as scalars.
         pattern: sparsity of the matrix of all columns.
         turns: constant turns of all columns, shape (entries, count).
     """
@@ -104,27 +104,57 @@ class RodColumns:
         return padded
 
 
-class ColumnedJacobian:
-    """The Jacobian on the path of loads as a function of the columns of its rods.
+@dataclass(frozen=True)
+class WrittenJacobian:
+    """A Jacobian whose columns may be symbols.
 
     Attributes:
-        model: whose Jacobian it is.
-        rods: columns by the name of their rod, of those rods whose moments pass.
-        of_columns: (x, inputs, load_factor, matrix of columns of each rod …) ↦ Jacobian, as scalars.
+        arguments: symbols that it is written in, by name.
+        system: rods in these symbols.
+        of_system: the same rods, whose columns may be known ↦ Jacobian.
+        gathered: function of the arguments, and of more behind them ↦ that of the arguments that it has in C.
+        given: names of these.
     """
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        discrete = model.discrete
-        self._arguments = Arguments(
-            ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size), ca.MX.sym("load_factor")
-        )
-        tangents = System(discrete, self._arguments).tangents
+    arguments: Mapping[str, ca.MX]
+    system: System
+    of_system: Callable[[System], Matrix]
+    gathered: Callable[[ca.Function], ca.Function]
+    given: Sequence[str]
+
+
+def on_path(model: Model) -> WrittenJacobian:
+    """The Jacobian on the path of loads."""
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    load_factor = ca.MX.sym("load_factor")
+    arguments = {"x": x, "inputs": inputs, "load_factor": load_factor}
+    if model.parameters.size:
+        arguments = {"x": x, "inputs": inputs, PARAMETERS: model.parameters.symbol, "load_factor": load_factor}
+    system = System(model.discrete, Arguments(x, inputs, load_factor))
+    return WrittenJacobian(
+        arguments, system, lambda known: Equations(known).jacobian, with_parameters_behind_inputs, GIVEN
+    )
+
+
+class ColumnedJacobian:
+    """A Jacobian as a function of the columns of its rods.
+
+    Attributes:
+        given: names of its arguments.
+        rods: columns by the name of their rod, of those rods whose moments pass.
+        of_columns: (arguments, matrix of columns of each rod …) ↦ Jacobian, as scalars.
+    """
+
+    def __init__(self, written: WrittenJacobian) -> None:
+        self._written = written
+        self.given = list(written.given)
+        tangents = written.system.tangents
         passing = {name: tangent for name, tangent in tangents.items() if tangent.moments_pass}
         self.rods = {name: self._rod_columns(tangent) for name, tangent in passing.items()}
         symbols = {name: ca.MX.sym("columns", rod.pattern) for name, rod in self.rods.items()}
         known = {name: _unstacked(passing[name], columns) for name, columns in symbols.items()}
-        jacobian = Equations(System(discrete, self._arguments, known)).jacobian
+        jacobian = written.of_system(replace(written.system, columns=known))
         self.of_columns = self._scalar("of_columns", list(symbols.values()), jacobian)
 
     def _rod_columns(self, tangent: Tangent) -> RodColumns:
@@ -135,23 +165,20 @@ class ColumnedJacobian:
         return RodColumns(self._scalar("of_one", [turn], ca.densify(one)), pattern, turns)
 
     def _scalar(self, name: str, further: Sequence[ca.MX], result: Matrix) -> ca.Function:
-        """The map (x, inputs, load_factor, further …) ↦ result as scalars."""
-        arguments = self._arguments
-        symbols = [arguments.x, arguments.inputs, arguments.load_factor, *further]
-        words = [*GIVEN, *(f"further_{i}" for i in range(len(further)))]
-        if self.model.parameters.size:
-            symbols.insert(2, self.model.parameters.symbol)
-            words.insert(2, PARAMETERS)
-        function = ca.Function(name, symbols, [result], words, ["result"])
-        return with_parameters_behind_inputs(function).expand()
+        """The map (arguments, further …) ↦ result as scalars."""
+        arguments = self._written.arguments
+        words = [*arguments, *(f"further_{i}" for i in range(len(further)))]
+        function = ca.Function(name, [*arguments.values(), *further], [result], words, ["result"])
+        return self._written.gathered(function).expand()
 
     @cached_property
     def scalars(self) -> tuple[list[ca.SX], dict[str, ca.SX], ca.SX]:
-        """Symbols of x, inputs and load factor, symbols of the columns by rod, and the Jacobian in them."""
+        """Symbols of the arguments, symbols of the columns by rod, and the Jacobian in them."""
         function = self.of_columns
         symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-        columns = dict(zip(self.rods, symbols[len(GIVEN) :], strict=True))
-        return symbols[: len(GIVEN)], columns, function.call(symbols)[0]
+        count = len(self.given)
+        columns = dict(zip(self.rods, symbols[count:], strict=True))
+        return symbols[:count], columns, function.call(symbols)[0]
 
     def rods_of(self, entries: ca.SX) -> list[str]:
         """Names of the rods whose columns some expressions of :attr:`scalars` depend on."""
@@ -182,7 +209,7 @@ class ColumnedJacobian:
         in_matrix = ca.substitute(entries, ca.vertcat(*replaced), ca.vertcat(*replacing))
         turns = ca.SX.sym("turns", own.turns.shape[0])
         column = own.of_one.call([*given, turns])[0][rows]
-        return ColumnPart([*given, matrix, turns], in_matrix, column, own.padded_turns)
+        return ColumnPart(self.given, [*given, matrix, turns], in_matrix, column, own.padded_turns)
 
 
 @dataclass(frozen=True)
@@ -190,12 +217,14 @@ class ColumnPart:
     """Entries of a Jacobian, and one column of those that they follow from, as scalar expressions.
 
     Attributes:
-        symbols: x, inputs, load factor, matrix of columns, turns of one column.
+        given: names of the arguments.
+        symbols: of the arguments, of the matrix of columns, of the turns of one column.
         entries: the entries.
         column: rows of one column.
         turns: as of :class:`ColumnForm`.
     """
 
+    given: Sequence[str]
     symbols: list[ca.SX]
     entries: ca.SX
     column: ca.SX
@@ -204,29 +233,29 @@ class ColumnPart:
     def form(self, name: str) -> ColumnForm:
         """Both as one scalar function, with common terms shared."""
         shared = ca.cse([self.entries, self.column])
-        words = [*GIVEN, "columns", "turns"]
+        words = [*self.given, "columns", "turns"]
         function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
         return ColumnForm(function, self.turns, self.column.numel())
 
 
-def columned_jacobian(model: Model) -> ColumnedJacobian | None:
-    """The Jacobian on the path of loads by columns; None for a model in which no rod has any."""
-    if any(chosen.transport == "permuted" for chosen in model.discretisation.values()):
+def columned_jacobian(written: WrittenJacobian) -> ColumnedJacobian | None:
+    """A Jacobian by columns; None where no rod has any."""
+    if any(rod.discretisation.transport == "permuted" for rod in written.system.discrete.rods.values()):
         return None
-    jacobian = ColumnedJacobian(model)
+    jacobian = ColumnedJacobian(written)
     return jacobian if jacobian.rods else None
 
 
-def in_columns(model: Model, name: str) -> ColumnForm | None:
-    """The Jacobian of a model of one rod by columns; None for a model that has no such form.
+def in_columns(written: WrittenJacobian, name: str) -> ColumnForm | None:
+    """The Jacobian of one rod by columns; None where it has no such form.
 
     Args:
-        model: whose Jacobian it is.
+        written: the Jacobian.
         name: what the function is called.
     """
-    if len(model.discrete.rods) != 1:
+    if len(written.system.discrete.rods) != 1:
         return None
-    jacobian = columned_jacobian(model)
+    jacobian = columned_jacobian(written)
     if jacobian is None:
         return None
     (rod,) = jacobian.rods

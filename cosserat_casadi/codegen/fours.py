@@ -24,7 +24,17 @@ from cosserat_casadi.codegen.listing import (
     Read,
     UnknownOperationError,
 )
-from cosserat_casadi.codegen.statements import Block, Statement, called, in_parts, number_in_c, on_fours, on_numbers
+from cosserat_casadi.codegen.statements import (
+    LONGEST,
+    LONGEST_OF_NUMBERS,
+    Block,
+    Statement,
+    called,
+    in_parts,
+    number_in_c,
+    on_fours,
+    on_numbers,
+)
 from cosserat_casadi.maths.typing import FloatArray
 
 FEWEST = 3
@@ -121,12 +131,34 @@ class _Writing:
                 tables = _table(f"{self.name}_turns", self.form.turns)
             self._write_columns(self.form)
         self._write_results()
-        head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
-        lines = self.main.lines(self._text)
-        self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
-        self.statements += len(self.main.statements)
+        self._write_main()
         body = "\n".join(self.functions)
         return InFours(self.signature, tables, body, self.reals, self.statements)
+
+    def _write_main(self) -> None:
+        """Write the function itself, which is a row of others where it is long."""
+        given = "const casadi_real **arg, casadi_real **res, casadi_real *w"
+        # What one of them passes on to others stands behind all else.
+        first = self.reals
+        parts, passed = in_parts(self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{first + place}] = {{0}};")
+        self._room(len(passed))
+        lines = []
+        for k, statements in enumerate(parts):
+            own = {statement.made for statement in statements}
+            elsewhere = {value: first + place for value, place in passed.items() if value not in own}
+            block = Block(self.main.type, self.main.letter, statements)
+            lines = block.lines(partial(self._text_in_part, elsewhere))
+            self.statements += len(statements)
+            if len(parts) > 1:
+                self._write(f"{self.name}_part_{k})({given}", lines)
+        if len(parts) > 1:
+            lines = [f"  MADE({self.name}_part_{k})(arg, res, w);" for k in range(len(parts))]
+        head = f"static int MADE({self.name})({given}) {{"
+        self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
+
+    def _text_in_part(self, elsewhere: dict[int, int], number: int) -> str | None:
+        """What a value without columns is called outside of variables of a part."""
+        return f"w[{elsewhere[number]}]" if number in elsewhere else self._text(number)
 
     def _room(self, count: int) -> int:
         """Where so many numbers are that the kernel works in."""
@@ -320,7 +352,8 @@ class _Writing:
 
     def _write_columns(self, form: ColumnForm) -> None:
         """Write what computes four columns, in parts that pass values on, and append its calls."""
-        parts, passed = in_parts(self._statements_of_columns(form))
+        statements = self._statements_of_columns(form)
+        parts, passed = in_parts(statements, LONGEST, lambda place: f"STORE(passed + {LANES * place}, {{0}});")
         room = self._room(LANES * len(passed))
         names = []
         for k, statements in enumerate(parts):

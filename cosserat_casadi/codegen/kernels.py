@@ -8,13 +8,14 @@ import re
 import tempfile
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.columns import in_columns
+from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
@@ -79,29 +80,35 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 
 def _written(model: Model, entry: FunctionInC) -> Kernel:
     """One function of the solver of a scene that has no parts; residual and Jacobian in fours where they can be."""
-    try:
-        if entry.spec.name == "path_jacobian":
-            form = in_columns(model, entry.kernel)
-            if form is not None:
-                columned = columns_in_fours(form, _signature(entry))
-                if columned.n_instructions() <= MOST_IN_COLUMNS:
-                    return columned
-        elif entry.spec.name == "path_residual" and not _literal(model):
-            straight = scalar(entry.function, entry.kernel)
-            # Without calls of intervals there is nothing to make together.
-            if straight.find_functions(0):
-                return in_fours(straight, _signature(entry))
-    except UnknownOperationError:
-        pass
+    if entry.spec.name == "path_jacobian":
+        columned = by_columns(on_path(model), entry.function, entry.kernel)
+        if columned is not None:
+            return columned
+    elif entry.spec.name == "path_residual" and not _literal(model):
+        straight = scalar(entry.function, entry.kernel)
+        # Without calls of intervals there is nothing to make together.
+        if straight.find_functions(0):
+            with suppress(UnknownOperationError):
+                return in_fours(straight, dense(entry.function, entry.kernel))
     return kernel(model, entry.function, entry.kernel, STRAIGHT_BESIDE.get(entry.spec.name, STRAIGHT))
 
 
-def _signature(entry: FunctionInC) -> ca.Function:
-    """A function with the name, the arguments and the dense results of a kernel."""
-    function = entry.function
-    symbols = function.mx_in()
-    results = [ca.densify(result) for result in function.call(symbols)]
-    return ca.Function(entry.kernel, symbols, results, function.name_in(), function.name_out())
+def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> InFours | None:
+    """A Jacobian of one rod by columns; None where it has no such form, or a long one.
+
+    Args:
+        written: the Jacobian.
+        function: the same as it is called in C.
+        name: what it is called there.
+    """
+    form = in_columns(written, name)
+    if form is None:
+        return None
+    try:
+        columned = columns_in_fours(form, dense(function, name))
+    except UnknownOperationError:
+        return None
+    return columned if columned.n_instructions() <= MOST_IN_COLUMNS else None
 
 
 def _literal(model: Model) -> bool:
@@ -120,9 +127,14 @@ def kernel(model: Model, function: ca.Function, name: str, straight_within: int 
 
 def loops(function: ca.Function, name: str) -> ca.Function:
     """A function written for loops in C, with dense outputs."""
+    return in_loops(dense(function, name))
+
+
+def dense(function: ca.Function, name: str) -> ca.Function:
+    """A function under another name, with dense outputs."""
     symbols = function.mx_in()
     results = [ca.densify(result) for result in function.call(symbols)]
-    return in_loops(ca.Function(name, symbols, results, function.name_in(), function.name_out()))
+    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:

@@ -16,8 +16,14 @@ FUNCTIONS = {
     ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",
     ca.OP_ASIN: "asin", ca.OP_ACOS: "acos", ca.OP_ATAN: "atan", ca.OP_ATAN2: "atan2", ca.OP_TANH: "tanh",
     ca.OP_SINH: "sinh", ca.OP_COSH: "cosh", ca.OP_FABS: "fabs", ca.OP_POW: "pow", ca.OP_CONSTPOW: "pow",
+    ca.OP_FMIN: "fmin", ca.OP_FMAX: "fmax",
 }  # fmt: skip
 """Operations that single numbers have besides, as functions of the mathematical library."""
+
+CHOICES = {
+    ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_NOT: "!{0}", ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0",
+}  # fmt: skip
+"""Those that compare and choose: distances from obstacles have some."""
 
 REWRITTEN = {ca.OP_NEG: (ca.OP_MUL, -1.0), ca.OP_TWICE: (ca.OP_MUL, 2.0), ca.OP_INV: (ca.OP_DIV, 1.0)}
 """Operations with one operand as products or quotients of a constant."""
@@ -145,7 +151,7 @@ class Listing:
             return Computed(operation, (self._number(Constant(constant)), operands[0]))
         if code == ca.OP_SQ:
             return Computed(ca.OP_MUL, (operands[0], operands[0]))
-        if code not in BINARY and code not in FUNCTIONS:
+        if code not in BINARY and code not in FUNCTIONS and code not in CHOICES:
             raise UnknownOperationError(f"operation {code}")
         return Computed(code, tuple(operands))
 

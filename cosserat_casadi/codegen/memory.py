@@ -12,7 +12,7 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
-WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:residual|jacobian)$")
+WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$")
 """Names of kernels that are called with a workspace alone, however large it is."""
 
 
@@ -59,8 +59,16 @@ def _locals_in_fours(text: str) -> int:
     largest = 0
     for kernel in re.findall(r"^static int MADE\((\w+)\)", text, flags=re.M):
         own = [_locals(function) for function in functions if f"MADE({kernel})(" in function.partition("{")[0]]
-        called = [_of_fours(function) for function in functions if f"MADE({kernel}_" in function.partition("{")[0]]
-        largest = max(largest, sum(own) + max(called, default=0))
+        # A long kernel is a row of parts, which call the others.
+        parts = []
+        called = []
+        for function in functions:
+            head = function.partition("{")[0]
+            if f"MADE({kernel}_part_" in head:
+                parts.append(_locals(function))
+            elif f"MADE({kernel}_" in head:
+                called.append(_of_fours(function))
+        largest = max(largest, sum(own) + max(parts, default=0) + max(called, default=0))
     return largest
 
 

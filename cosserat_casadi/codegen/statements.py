@@ -6,10 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cosserat_casadi.codegen.columns import LANES
-from cosserat_casadi.codegen.listing import BINARY, FUNCTIONS, UnknownOperationError
+from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, UnknownOperationError
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
+
+LONGEST_OF_NUMBERS = 4000
+"""Statements on numbers in one function: what compilers take grows faster than its length."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,8 @@ def on_numbers(operation: int, operands: Sequence[int], made: int) -> Statement:
     """An operation on single numbers."""
     if operation in BINARY:
         return Statement(f"{{made}} = {{0}} {BINARY[operation]} {{1}};", operands, made)
+    if operation in CHOICES:
+        return Statement(f"{{made}} = {CHOICES[operation]};", operands, made)
     places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
     return Statement(f"{{made}} = {FUNCTIONS[operation]}({places});", operands, made)
 
@@ -89,7 +94,7 @@ def on_fours(operation: int, operands: Sequence[int], made: int) -> Statement:
         UnknownOperationError: fours do not have it.
     """
     if operation not in BINARY:
-        raise UnknownOperationError(FUNCTIONS[operation])
+        raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
     return on_numbers(operation, operands, made)
 
 
@@ -98,13 +103,20 @@ def called(call: str, width: int) -> Statement:
     return Statement(f"EVERY_LANE({call})" if width == LANES else f"{call};", [])
 
 
-def in_parts(statements: Sequence[Statement]) -> tuple[list[list[Statement]], dict[int, int]]:
-    """Statements on fours in parts that are functions of their own.
+def in_parts(
+    statements: Sequence[Statement], longest: int, store: Callable[[int], str]
+) -> tuple[list[list[Statement]], dict[int, int]]:
+    """Statements in parts that are functions of their own.
+
+    Args:
+        statements: the statements.
+        longest: most of them in a part.
+        store: place of a value that is passed on ↦ text of the statement that stores it.
 
     Returns:
-        the parts, with statements that store what others read in ``passed``, and the places of those values there.
+        the parts, with statements that store what others read, and the places of those values.
     """
-    count = max(-(-len(statements) // LONGEST), 1)
+    count = max(-(-len(statements) // longest), 1)
     # A Jacobian that reads no columns has no statements for them.
     size = max(-(-len(statements) // count), 1)
     parts = [statements[first : first + size] for first in range(0, len(statements), size)]
@@ -117,16 +129,15 @@ def in_parts(statements: Sequence[Statement]) -> tuple[list[list[Statement]], di
                 if operand in before:
                     passed.setdefault(operand, len(passed))
         before |= own
-    return [_storing(part, passed) for part in parts], passed
+    return [_storing(part, passed, store) for part in parts], passed
 
 
-def _storing(part: Sequence[Statement], passed: dict[int, int]) -> list[Statement]:
+def _storing(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> list[Statement]:
     statements = []
     for statement in part:
         statements.append(statement)
         if statement.made is not None and statement.made in passed:
-            place = 4 * passed[statement.made]
-            statements.append(Statement(f"STORE(passed + {place}, {{0}});", [statement.made]))
+            statements.append(Statement(store(passed[statement.made]), [statement.made]))
     return statements
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.judge import judge
+from cosserat_casadi.equilibrium.judge import MAX_DISTANCE, judge
 from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import admissible_spectrum, variations
@@ -21,17 +21,14 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, descend
-from cosserat_casadi.numerics.newton import NewtonSettings, newton
+from cosserat_casadi.numerics.newton import NewtonSettings, length_of, newton
 from cosserat_casadi.numerics.progress import Progress
 
-SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 14))
+SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 16))
 """Stiffnesses of the springs for supports, stage by stage: EI/ℓ³ for a force, EI/ℓ for a moment."""
 
 STIFF = 4.0**9
-"""Stiffness after which the stages end where the rod is near its supports; one that is drawn tight is not yet."""
-
-NEAR = 1e-3
-"""Largest constraint residual, relative to the length or about an angle in rad, that Newton closes at once."""
+"""Stiffness from which on Newton may close what is left; a rod that is drawn tight asks for stiffer springs."""
 
 SIDES = (1.0, -1.0)
 """Sides on which a saddle is left, one try after the other."""
@@ -72,10 +69,9 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
     """
     tries = len(SIDES) + RANDOM_TRIES
     for k, attempt in enumerate(_tries(solution)):
-        x = _descended(solution, attempt)
-        if x is not None:
+        for x in _descended(solution, attempt):
             corrected = _corrected(solution, x, settings)
-            if corrected.stable:
+            if corrected.stable and _is_near(corrected, x):
                 return replace(corrected, message=corrected.message + PATH_OF_ENERGY)
         if progress is not None:
             progress((k + 1) / tries)
@@ -116,39 +112,48 @@ def _tries(solution: Solution) -> Iterator[_Try]:
         yield _Try(beside, side)
 
 
-def _descended(solution: Solution, attempt: _Try) -> FloatArray | None:
-    """Unknowns at the minimum that a try leads to; None where it leads to none."""
+def _descended(solution: Solution, attempt: _Try) -> Iterator[FloatArray]:
+    """Unknowns at the minima that a try leads to, one nearer to the supports than the other."""
     if solution.model.discrete.constraints:
-        return _pulled_in(solution, attempt)
-    return _released(solution, attempt)
+        yield from _pulled_in(solution, attempt)
+        return
+    released = _released(solution, attempt)
+    if released is not None:
+        yield released
 
 
 def _released(solution: Solution, attempt: _Try) -> FloatArray | None:
-    """Unknowns of a free rod that has relaxed at the full load."""
+    """Unknowns of a free rod that has relaxed at the full load; None where it comes to no rest."""
     energy = energy_at(solution.model, solution.inputs, 1.0)
     limits = DescentSettings()
     return descend(energy, attempt.start, attempt.side, limits)
 
 
-def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
-    """Unknowns of a held rod, multipliers included, that has relaxed at every stage of its springs."""
+def _pulled_in(solution: Solution, attempt: _Try) -> Iterator[FloatArray]:
+    """Unknowns of a held rod, multipliers included, that has relaxed at every stage of its springs; the stiff ones."""
     model = solution.model
     q = attempt.start
-    x = solution.x
     for spring in SPRINGS:
         # λ gap + (1 − λ) multiplier = 0 is a spring of stiffness λ / (1 − λ).
         load_factor = spring / (1.0 + spring)
         energy = energy_at(model, solution.inputs, load_factor)
         minimum = descend(energy, q, attempt.side, DescentSettings())
         if minimum is None:
-            return None
+            return
         # The next stage begins where this one has ended: the springs pull the rod in without a jump.
         q = minimum
-        x = _with_multipliers(model, solution.inputs, load_factor, q)
-        largest_gap = float(np.abs(x[len(q) :]).max()) / spring
-        if spring >= STIFF and largest_gap <= NEAR:
-            break
-    return x
+        if spring >= STIFF:
+            yield _with_multipliers(model, solution.inputs, load_factor, q)
+
+
+def _is_near(corrected: Solution, x: FloatArray) -> bool:
+    """Whether an equilibrium is the one that a held rod was drawn to, and not some other that Newton met."""
+    if not corrected.model.discrete.constraints:
+        # A free rod has relaxed at the full load: no gap is left that Newton would have to close.
+        return True
+    unknowns = corrected.model.discrete.unknowns
+    moved = corrected.x - x
+    return length_of(moved[unknowns.differential]) <= MAX_DISTANCE
 
 
 def energy_at(model: Model, inputs: FloatArray, load_factor: float) -> Energy:

@@ -12,6 +12,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.exact_contact import ExactContacts
@@ -114,10 +115,12 @@ class History:
         model: the model.
         legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
             contact changes.
+        coordinates: those that the steps are in; None for the unknowns of the model.
     """
 
     model: Model
     legs: tuple[Leg, ...]
+    coordinates: CentredCoordinates | None = None
 
     @property
     def outcome(self) -> StepOutcome:
@@ -190,7 +193,9 @@ class History:
         return tuple(event for leg in self.legs for event in leg.restart.events)
 
     def of_model(self, instant: Instant) -> Instant:
-        """A state without the forces of contacts."""
+        """A state of a step in the unknowns of the model, without the forces of contacts."""
+        if self.coordinates is not None:
+            return self.coordinates.to_model(instant)
         size = self.model.size
         if len(instant.x) == size:
             return instant
@@ -253,14 +258,21 @@ def integrated(
         SceneError: the start contradicts the constraints.
     """
     switching: Switching = ExactContacts(model) if model.scene.touches_exactly else SlackCables(model)
-    keeper = MomentumKeeper(model) if flies_free(model) else None
-    frames = MeanFrames(model) if flies_alone(model) else None
+    # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
+    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
+    to_model = None if coordinates is None else coordinates.to_model
+    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    frames = MeanFrames(model) if flies_alone(model) and coordinates is None else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
+    if coordinates is not None:
+        at = coordinates.from_model(at)
     phases = switching.first_phases(x, pieces[0].at(at.time).value)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
         plain = equations_of(model, piece, p, frames)
+        if coordinates is not None:
+            plain = coordinates.equations(plain)
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
@@ -277,16 +289,16 @@ def integrated(
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin)))
-                return History(model, tuple(legs))
+                return History(model, tuple(legs), coordinates)
             own = _with_forces(settings, equations.size)
             integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled)
             legs.append(Leg(piece, restart, integration))
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
-                return History(model, tuple(legs))
+                return History(model, tuple(legs), coordinates)
             if _chatters(legs, pieces[-1].end):
                 ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
-                return History(model, tuple(legs))
+                return History(model, tuple(legs), coordinates)
             at = integration.end
             guard = integration.guard
             settings = replace(settings, first=integration.next_size)
@@ -294,7 +306,7 @@ def integrated(
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
-    return History(model, tuple(legs))
+    return History(model, tuple(legs), coordinates)
 
 
 def _with_forces(settings: StepSettings, size: int) -> StepSettings:

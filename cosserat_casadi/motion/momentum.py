@@ -8,6 +8,7 @@ what it was, plus the impulse of the loads by the quadrature of the step, which 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import casadi as ca
@@ -63,9 +64,12 @@ class MomentumKeeper:
 
     Args:
         model: of what flies free, see :func:`flies_free`.
+        to_model: a state in the unknowns of the model, from one in those of the steps; None where they are the same.
+            In both a frame moves with what flies free, and its pose has the same entries.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, to_model: Callable[[Instant], Instant] | None = None) -> None:
+        self._to_model = to_model or _itself
         self._loaded = bool(model.scene.loads)
         self._size = model.size
         self._frames = [
@@ -81,14 +85,15 @@ class MomentumKeeper:
 
     def settled(self, step: Step, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
-        wanted = self._momentum_of(step.start, piece) + self._impulse(step, piece)
+        wanted = self._momentum_of(self._to_model(step.start), piece) + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
         end = step.end
         motions = self.rigid_motions(end.x)
+        arrived = self._to_model(end)
         # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
-        inverse = np.linalg.pinv(self._momenta_of(motions, end, piece))
+        inverse = np.linalg.pinv(self._momenta_of(self.rigid_motions(arrived.x), arrived, piece))
         for _ in range(CORRECTIONS):
-            missing = wanted - self._momentum_of(end, piece)
+            missing = wanted - self._momentum_of(self._to_model(end), piece)
             if np.abs(missing).max() <= rounding:
                 break
             end = replace(end, v=end.v + motions @ (inverse @ missing))
@@ -101,7 +106,8 @@ class MomentumKeeper:
         stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
         rates = []
         for time, x, v, a in zip(stages.times, stages.x, stages.v, stages.a, strict=True):
-            rates.append(self._rate(x, v, a, *piece.at(float(time))))
+            at = self._to_model(Instant(float(time), x, v, a))
+            rates.append(self._rate(at.x, at.v, at.a, *piece.at(at.time)))
         return np.asarray(step.size * (step.method.weights @ np.stack(rates)))
 
     def _momentum_of(self, instant: Instant, piece: Piece) -> FloatArray:
@@ -128,6 +134,10 @@ class MomentumKeeper:
         """Momentum of rigid motions, in which it is linear, shape (6, 6)."""
         value = piece.at(instant.time).value
         return np.asarray(self._momenta(instant.x, motions, value, np.zeros(len(value))).full())
+
+
+def _itself(instant: Instant) -> Instant:
+    return instant
 
 
 def _cross(vector: FloatArray) -> FloatArray:

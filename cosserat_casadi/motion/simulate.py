@@ -53,10 +53,10 @@ LEFT_BY_TIGHTER = 0.5
 SLOPE = 0.8
 """Power of a step's tolerance that the error of the paths goes with, at least."""
 
-CLEAR = 0.1
+CLEAR = 0.3
 """Share of the error allowed to steps that they may use where two sets of modes of a free rod are told apart.
 
-Its waves would blur their distance, and its steps, short for Newton's method, cost little more.
+Its waves would blur their distance.
 """
 
 HALVED = 4.0 / 3.0

@@ -17,7 +17,7 @@ from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, nu
 BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes")
 """Keys of a scene that may stand beside tubes."""
 
-LOADS_ON_TUBES = ("tip_wrench", "distributed_wrench", "gravity")
+LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
 """Kinds of loads that act on tubes."""
 
 OF_RODS = ("shape", "modes", "nodes", "rotation", "chosen_for")
@@ -166,6 +166,9 @@ def _load_faults(scene: SceneTables) -> Iterator[Fault]:
         if kind not in LOADS_ON_TUBES:
             remedy = f"on tubes act {', '.join(LOADS_ON_TUBES)}"
             yield Fault(("loads", index, "kind"), f"{shown(kind)} does not act on tubes", remedy)
+        elif kind == "point_wrench" and "moment" in load:
+            problem = "does not act on tubes beside their tips"
+            yield Fault(("loads", index, "moment"), problem, 'give a force, N, or a "tip_wrench"')
         elif kind == "distributed_wrench":
             for fault in _spread_faults(load):
                 yield fault.below(("loads", index))

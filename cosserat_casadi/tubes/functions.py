@@ -9,9 +9,7 @@ from __future__ import annotations
 import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import casadi as ca
 
@@ -19,6 +17,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.changes import Directions, changing_step, changing_width, selected, with_changes
+from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations
@@ -33,39 +32,6 @@ POSE = 7
 """Numbers of a pose: position and quaternion."""
 
 
-class AnyState(Protocol):
-    """What every state along a robot has: angles and torques of the tubes, pose of the frame, energy."""
-
-    @property
-    def angles(self) -> Matrix:
-        """Of the tubes against the frame, n×1, rad."""
-
-    @property
-    def torques(self) -> Matrix:
-        """In the tubes, n×1, N m."""
-
-    @property
-    def pose(self) -> Pose:
-        """Of the frame."""
-
-    @property
-    def energy(self) -> Matrix:
-        """From the tip on, 1×1, J."""
-
-
-@dataclass(frozen=True)
-class March:
-    """A robot, integrated from its tip to the base plate.
-
-    Attributes:
-        ends: stacked states at the ends of the pieces.
-        stations: stacked states at all ends of steps from the tip to the plate, a column each.
-    """
-
-    ends: list[Matrix]
-    stations: Matrix
-
-
 class TubeFunctions(ABC):
     """A robot of concentric tubes with a number of steps.
 
@@ -75,7 +41,8 @@ class TubeFunctions(ABC):
 
     Attributes:
         robot: the tubes.
-        steps: steps of each of the 2 n pieces that the robot has between places where a tube begins to bend, or ends.
+        steps: steps of each of the pieces that the robot has between places where a tube begins to bend or ends, 2 n,
+            and where forces act beside the tips.
     """
 
     def __init__(self, robot: Robot, steps: int) -> None:
@@ -348,9 +315,7 @@ class TubeFunctions(ABC):
         The order is found as the function is evaluated: inputs may change it, and pieces between places that coincide,
         or lie in the housing, have no length.
         """
-        places: list[ca.MX] = []
-        for tip, bend in self._ends:
-            places += [tip, bend]
+        places = list(self._unsorted)
         # Exchanging neighbours sorts whatever the values are, without a branch.
         for passed in range(len(places)):
             for index in range(len(places) - 1 - passed):
@@ -361,6 +326,16 @@ class TubeFunctions(ABC):
                 places[index + 1] = ca.if_else(exchanged, first, second)
         return [*places, ca.MX(0.0)]
 
+    @property
+    def _unsorted(self) -> list[ca.MX]:
+        """Where tubes end and begin to bend, tube after tube, then what else divides the robot."""
+        return [*[place for ends in self._ends for place in ends], *self._loaded_places]
+
+    @property
+    def _loaded_places(self) -> list[ca.MX]:
+        """Where forces act beside the tips."""
+        return []
+
     @cached_property
     def _ends(self) -> list[tuple[ca.MX, ca.MX]]:
         """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
@@ -368,25 +343,26 @@ class TubeFunctions(ABC):
         ends = []
         for index in range(self.size):
             tip = inputs[2 * index + 1]
-            bend = ca.fmax(tip - self.robot.curved[index], 0.0)
+            straight = tip - self.robot.curved[index]
+            # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
+            bend = ca.if_else(straight > 0.0, straight, 0.0)
             ends.append((tip, bend))
         return ends
 
     @cached_property
     def _ranks(self) -> list[ca.MX]:
-        """Of every tube at which of the sorted places its tip is, 1×1: of those that coincide one each."""
-        unsorted = [place for ends in self._ends for place in ends]
-        ranks = []
-        for index in range(self.size):
-            own = 2 * index
-            rank = ca.MX(0.0)
-            for number, place in enumerate(unsorted):
-                if number < own:
-                    rank = rank + (place >= unsorted[own])
-                elif number > own:
-                    rank = rank + (place > unsorted[own])
-            ranks.append(rank)
-        return ranks
+        """Of every tube at which of the sorted places its tip is, 1×1."""
+        return [self._rank(2 * index) for index in range(self.size)]
+
+    def _rank(self, own: int) -> ca.MX:
+        """At which of the sorted places one of `_unsorted` is, 1×1: of those that coincide one each."""
+        rank = ca.MX(0.0)
+        for number, place in enumerate(self._unsorted):
+            if number < own:
+                rank = rank + (place >= self._unsorted[own])
+            elif number > own:
+                rank = rank + (place > self._unsorted[own])
+        return rank
 
     def _section(self, place: ca.MX) -> Matrix:
         """Stacked section at a place: torsion, moments, bending and own energy of the tubes there, (2 n + 2)×1."""

@@ -16,10 +16,11 @@ import numpy as np
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.functions import March, TubeFunctions
+from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_stages, loaded_step
 from cosserat_casadi.tubes.loaded_tangent import VECTOR, LoadedTangent, tangent_step
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad
+from cosserat_casadi.tubes.march import March
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations, of_loaded
@@ -157,20 +158,40 @@ class LoadedTubeModel(TubeFunctions):
         )
 
     def _borne(self, piece: int) -> Iterator[tuple[TubeLoad, ca.MX, int]]:
-        """The loads that the tubes bear whose tips are at the start of a piece, in their own axes, and the tube.
+        """The loads that act at the start of a piece, in their own axes, and the tube that bears them.
 
-        Those of other tubes are zero: which tubes end there is found as the function is evaluated.
+        Those that act elsewhere are zero: which tubes end there is found as the function is evaluated.
         """
         _, inputs, _ = self._arguments
         for index, rank in enumerate(self._ranks):
-            ends_here = rank == ca.MX(piece)
             for number, load in enumerate(self.robot.loads):
                 share = float(load.shares[index])
                 if share == 0.0:
                     continue
                 start = self.robot.load_start(number)
                 value = share * inputs[start : start + COMPONENTS]
-                yield load, ca.if_else(ends_here, value, 0.0), index
+                at = self._point_ranks.get(number, rank)
+                yield load, ca.if_else(at == ca.MX(piece), value, 0.0), index
+
+    @property
+    def _loaded_places(self) -> list[ca.MX]:
+        """Where forces act beside the tips, as far as they do so outside: the housing bears those in it."""
+        places = []
+        for load in self._point_loads.values():
+            tip, _ = self._ends[int(np.argmax(load.shares))]
+            places.append(ca.fmax(tip - load.from_tip, 0.0))
+        return places
+
+    @property
+    def _point_loads(self) -> dict[int, TubeLoad]:
+        """Loads that act beside the tips, by their number."""
+        return {number: load for number, load in enumerate(self.robot.loads) if load.from_tip > 0.0}
+
+    @cached_property
+    def _point_ranks(self) -> dict[int, ca.MX]:
+        """At which of the sorted places each of them acts."""
+        first = 2 * self.size
+        return {number: self._rank(first + index) for index, number in enumerate(self._point_loads)}
 
     def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
         """What is borne beyond the start of a piece, where tubes may end."""

@@ -29,6 +29,7 @@ class TubeLoad:
         is_moment: whether it is a moment, and not a force.
         spread: whether it acts per length from the plate to the tip, and not at the tip.
         follower: whether it turns with the tube, and does not keep its direction in the world.
+        from_tip: how far from the tip of its tube it acts, along the tube, m.
     """
 
     name: str
@@ -38,6 +39,7 @@ class TubeLoad:
     is_moment: bool = False
     spread: bool = False
     follower: bool = False
+    from_tip: float = 0.0
 
     @property
     def has_energy(self) -> bool:
@@ -67,8 +69,12 @@ def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[Tu
         yield TubeLoad(f"{load.name}.acceleration", unit, value, np.array(masses), spread=True)
         return
     # The rules of the scene admit no other kinds beside tubes.
-    assert isinstance(load, scenes.TipWrench | scenes.DistributedWrench)
+    assert isinstance(load, scenes.TipWrench | scenes.PointWrench | scenes.DistributedWrench)
     shares = np.array([float(tube.name == load.rod) for tube in tubes])
+    from_tip = 0.0
+    if isinstance(load, scenes.PointWrench):
+        length = sum(tube.straight + tube.curved for tube in tubes if tube.name == load.rod)
+        from_tip = (1.0 - load.at) * length
     for field, declared in load.inputs.items():
         if field in load.model_fields_set:
             yield TubeLoad(
@@ -79,6 +85,7 @@ def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[Tu
                 is_moment=field == "moment",
                 spread=isinstance(load, scenes.DistributedWrench),
                 follower=load.frame == "body",
+                from_tip=from_tip,
             )
 
 

@@ -13,7 +13,8 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.flow import START, State, twist_step, whole_stages, whole_step
-from cosserat_casadi.tubes.functions import March, TubeFunctions
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.march import March
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import Variations, of_angles
 

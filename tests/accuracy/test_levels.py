@@ -53,10 +53,20 @@ def test_failed_solve_is_no_equilibrium() -> None:
 
 def test_extrapolated_modes_skip_three_levels_at_most() -> None:
     level = Level(1)
-    assert level.with_modes(1000, most_levels=3) == Level(4)
+    assert level.with_extrapolated_modes(1000) == Level(4)
+    assert level.with_extrapolated_modes(REFERENCE_MODES[2]) == Level(2)
     assert level.with_modes(REFERENCE_MODES[1]) == Level(2)
     assert level.with_modes(REFERENCE_MODES[5]) == Level(5)
     assert level.with_modes(REFERENCE_MODES[-1] + 1) is None
+
+
+def test_the_finest_level_is_tried_before_extrapolated_modes_are_given_up() -> None:
+    finest = Level(1).finest
+    below = Level(finest - 1)
+    more = REFERENCE_MODES[finest] + 2
+    assert below.with_modes(more) is None
+    assert below.with_extrapolated_modes(more) == Level(finest)
+    assert Level(finest).with_extrapolated_modes(more) is None
 
 
 def test_what_is_known_of_the_grid_is_kept_with_more_modes() -> None:

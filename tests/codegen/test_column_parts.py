@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Discretisation, Model, build, export, scene_from_dict
 from cosserat_casadi.codegen.assembled import Assembled, assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
-from cosserat_casadi.codegen.columns import LANES, in_columns, in_groups
+from cosserat_casadi.codegen.columns import LANES, in_columns, in_groups, on_path
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import parted
@@ -64,7 +64,7 @@ def in_parts(model: Model) -> Assembled:
 def test_columns_with_parameters_make_the_jacobian() -> None:
     """Parameters that are not the scene's own numbers: the turns of columns are those of any of them."""
     model = with_parameters()
-    form = in_columns(model, "jacobian")
+    form = in_columns(on_path(model), "jacobian")
     assert form is not None
     rng = np.random.default_rng(5)
     x = rng.normal(scale=0.4, size=model.size)

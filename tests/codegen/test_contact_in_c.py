@@ -171,6 +171,12 @@ def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: Cont
     np.testing.assert_allclose(answer["contacts"][0]["force"], wanted.contacts[0].force, rtol=0, atol=1e-8)
 
 
+def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
+    """In contact and without, of a bar whose distance is chosen between its ends and its middle."""
+    columns = (bar.folder / "bar_kernels_in_fours.h").read_text()
+    assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
+
+
 def test_bytes_of_a_library(bar: ContactLibrary) -> None:
     """Each arrangement has its equations; a third more than they are now would be noticed."""
     assert len((bar.folder / "bar_kernels.c").read_bytes()) < 350_000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 from pathlib import Path
 
@@ -11,11 +12,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
-from cosserat_casadi.codegen import kernels
-from cosserat_casadi.codegen.columns import LANES, in_columns
+from cosserat_casadi.codegen import fours, kernels
+from cosserat_casadi.codegen.columns import LANES, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.operations import operations
 from tests.codegen.libraries import gcc, run
@@ -53,7 +56,7 @@ def model_of(strain: str, loads: str, *, elements: int = 1) -> Model:
 
 def by_columns(model: Model, x: FloatArray, load_factor: float) -> FloatArray:
     """The Jacobian from the columns of its form, one after the other."""
-    form = in_columns(model, "jacobian")
+    form = in_columns(on_path(model), "jacobian")
     assert form is not None
     columns = np.zeros((form.rows, form.stride))
     given = [x, model.pack(), load_factor]
@@ -77,7 +80,7 @@ def test_columns_grow_by_groups_of_four() -> None:
     """Code of columns is that of four, however many there are: modes add instructions to straight-line code."""
     scene = model_of("kirchhoff", "dead force and couple at the tip").scene
     model = build(scene, {"rod": Discretisation((8, 8, 8), 10)})
-    form = in_columns(model, "jacobian")
+    form = in_columns(on_path(model), "jacobian")
     assert form is not None
     assert form.stride == 24
     straight = scalar(model.path_jacobian, "jacobian").n_instructions()
@@ -100,12 +103,41 @@ def test_functions_that_look_alike_are_told_apart() -> None:
 def test_what_has_no_form_in_fours() -> None:
     literal = model_of("kirchhoff", "follower at the tip")
     chosen = Discretisation((2, 2, 2), 5, transport="permuted")
-    assert in_columns(build(literal.scene, {"rod": chosen}), "jacobian") is None
+    assert in_columns(on_path(build(literal.scene, {"rod": chosen})), "jacobian") is None
     x = ca.SX.sym("x", 2)
-    choice = ca.Function("choice", [x], [ca.fmax(x[0], x[1])])
+    stairs = ca.Function("stairs", [x], [ca.floor(x[0])])
     with pytest.raises(UnknownOperationError):
-        Listing(choice)
-    assert "sin" in in_fours(ca.Function("sine", [x], [ca.sin(x)]), choice).body
+        Listing(stairs)
+    assert "sin" in in_fours(ca.Function("sine", [x], [ca.sin(x)]), stairs).body
+
+
+@pytest.mark.parametrize("longest", [1000, 3])
+def test_choices_and_parts_compute_what_casadi_does(
+    longest: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Distances from obstacles choose; a long function is a row of parts that pass values on."""
+    monkeypatch.setattr(fours, "LONGEST_OF_NUMBERS", longest)
+    x = ca.SX.sym("x", 3)
+    share = ca.fmin(ca.fmax(x[0], 0.25), x[1])
+    chosen = ca.if_else(x[2] > 0.0, x[0] * share, ca.sin(x[1]))
+    function = ca.Function("choice", [x], [ca.vertcat(share, chosen, ca.gradient(share**2 + chosen, x))])
+    made = in_fours(function, function)
+    assert ("choice_part_1" in made.body) == (longest == 3)
+    for file, text in kernels.kernel_sources([made], library_names("choice"), "choice").items():
+        (tmp_path / file).write_text(text)
+    wrapper = tmp_path / "wrapper.c"
+    wrapper.write_text(
+        '#include "choice.c"\nvoid computed(const double *x, double *made) {\n'
+        f"  const double *given[] = {{x}};\n  double *results[] = {{made}};\n  double w[{made.reals + 1}];\n"
+        "  choice(given, results, 0, w, 0);\n}\n"
+    )
+    target = tmp_path / "choice.so"
+    gcc("-std=c99", "-O1", "-Wall", "-Werror", "-fPIC", "-shared", wrapper, "-lm", "-o", target)
+    computed = ctypes.CDLL(str(target)).computed
+    for given in ([0.5, 2.0, 1.0], [0.1, 2.0, -1.0], [3.0, 2.0, 0.0], [0.25, 0.2, 2.0]):
+        numbers = np.zeros(5)
+        computed(pointer(np.array(given)), pointer(numbers))
+        assert_allclose(numbers, function(given).full()[:, 0], rtol=1e-15, atol=0)
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +164,7 @@ def test_the_same_digits_at_any_width(wire: Path, tmp_path: Path) -> None:
 
 def test_lanes_that_are_left_over_are_not_read(wire: Path) -> None:
     """Seven columns take two groups of four: the last lane holds zeros."""
-    form = in_columns(model_of("reissner", "dead force and couple at the tip"), "jacobian")
+    form = in_columns(on_path(model_of("reissner", "dead force and couple at the tip")), "jacobian")
     assert form is not None
     assert form.stride == 2 * LANES
     assert_array_equal(form.turns[:, 7], 0)

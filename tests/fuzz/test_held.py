@@ -9,10 +9,13 @@ from dataclasses import replace
 
 import pytest
 
-from tests.fuzz.held import TOLERANCES, alike, all_alike, says_unresolved, solved
+from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
 
 BUCKLED = 20
 """Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
+
+LOST = (28, 36, 239, 240)
+"""Seeds of rods that are drawn tight, pressed together and sharply bent: `load_stalled`, or `unresolved` at 1e-9."""
 
 SHARPLY_BENT = 68
 """Seed of a rod that nine modes do not resolve."""
@@ -45,6 +48,12 @@ def test_modes_that_do_not_resolve_a_rod_are_held_to_its_shape() -> None:
     assert fine.converged
     assert alike(coarse, fine)
     assert not alike(replace(coarse, x=-coarse.x), fine)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", LOST)
+def test_held_rods_that_were_lost_are_found(seed: int) -> None:
+    assert verdict(seed, [{"tolerance": tolerance} for tolerance in (1e-3, 1e-9)]) is Verdict.ALIKE
 
 
 @pytest.mark.slow

@@ -14,7 +14,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from cosserat_casadi import TubeSolution, parse_scene, solve_scene, solve_tubes
+from cosserat_casadi import SceneError, TubeSolution, parse_scene, solve_scene, solve_tubes
+from cosserat_casadi.tubes.arrows import load_arrows
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
@@ -207,6 +208,71 @@ def test_one_tube_is_a_rod(load: str, curvature: float) -> None:
     assert found.stable == rod.stable
 
 
+def poke(at: float, frame: str = "world") -> str:
+    lines = f"at = {at}\nforce = [0.5, -0.3, -1.2]\nframe = '{frame}'\n"
+    return '[[loads]]\nname = "poke"\nkind = "point_wrench"\nrod = "tube"\n' + lines
+
+
+@pytest.mark.parametrize("frame", ["world", "body"])
+def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
+    load = poke(0.625, frame)
+    found = solve_tubes(parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0") + load))
+    rod = solve_scene(parse_scene(ROD.replace("CURVATURE", "9.0") + load))
+    assert found.converged
+    assert_allclose(found.tip().position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
+    assert_allclose(found.tip().rotation, rod.tip("tube").rotation[0], rtol=0, atol=1e-7)
+    assert found.stable == rod.stable
+    # The place moves with the tube; the derivatives know it.
+    for index in range(found.inputs.size):
+        poses = []
+        # A translation has a corner where the curved part begins in the plate: the tube is drawn in.
+        ahead, behind = (0.0, -1e-6) if index == 1 else (1e-6, -1e-6)
+        for change in (ahead, behind):
+            inputs = found.inputs.copy()
+            inputs[index] += change
+            poses.append(solution_near(found.model, inputs, found.x).tip().position)
+        difference = (poses[0] - poses[1]) / (ahead - behind)
+        assert_allclose(found.tip_jacobian[0, 3:, index], difference, rtol=0, atol=1e-5 if index == 1 else 1e-8)
+
+
+def test_a_force_beside_the_tip_of_two_tubes() -> None:
+    scene = parse_scene(TWO + poke(0.9).replace('"tube"', '"inner"'))
+    found = solve_tubes(scene)
+    assert found.converged
+    # 0.03 m from the tip of the tube, which is 0.3 m long and stands out by 0.24 m.
+    place = int(np.argmin(np.abs(found.shape.distance - 0.21)))
+    assert_allclose(found.shape.distance[place], 0.21, rtol=0, atol=1e-14)
+    (arrow,) = load_arrows(found)
+    assert_allclose(arrow.start, found.shape.position[place], rtol=0, atol=1e-14)
+    # The energy changes with a force as its place has moved.
+    for axis in range(3):
+        energies = []
+        for change in (1e-4, -1e-4):
+            inputs = found.inputs.copy()
+            inputs[4 + axis] += change
+            energies.append(solution_near(found.model, inputs, found.x).energy)
+        slope = (energies[0] - energies[1]) / 2e-4
+        assert_allclose(slope, -found.shape.position[place][axis], rtol=0, atol=1e-8)
+
+
+def test_the_housing_bears_a_force_in_it() -> None:
+    tubes = ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.3")
+    inside = solve_tubes(parse_scene(tubes + poke(0.5)))
+    free = solve_tubes(parse_scene(tubes + poke(0.5)), {"poke.force": [0.0, 0.0, 0.0]})
+    assert_allclose(inside.tip().position, free.tip().position, rtol=0, atol=1e-12)
+    assert load_arrows(inside) == []
+    # At the abscissa 1 it is a force at the tip.
+    at_tip = solve_tubes(parse_scene(tubes + poke(1.0)))
+    wanted = solve_tubes(parse_scene(tubes + wrench(force=[0.5, -0.3, -1.2])))
+    assert_allclose(at_tip.tip().position, wanted.tip().position, rtol=0, atol=1e-14)
+
+
+def test_a_moment_beside_the_tip_is_refused() -> None:
+    text = poke(0.5).replace("force = [0.5, -0.3, -1.2]", "moment = [0.0, 0.0, 0.1]")
+    with pytest.raises(SceneError, match="does not act on tubes beside their tips"):
+        parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.3") + text)
+
+
 def test_a_tube_in_its_housing_twists_there() -> None:
     text = ONE.replace("CURVATURE", "0.0").replace("STRAIGHT", "0.3")
     found = solve_tubes(parse_scene(text + wrench(moment=[0.0, 0.0, 0.02])))
@@ -336,7 +402,7 @@ def test_tubes_without_loads_pay_nothing_for_them() -> None:
     assert changes < 5 * sizes[0]
 
 
-PLAIN = {"residual": 295, "jacobian": 345, "tips": 503, "tip_jacobian": 679}
+PLAIN = {"residual": 297, "jacobian": 347, "tips": 505, "tip_jacobian": 681}
 """Instructions of a robot without loads, as before there were any."""
 
 

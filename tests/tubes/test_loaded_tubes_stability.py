@@ -290,7 +290,7 @@ def with_load(**keys: str) -> str:
         (TWO.replace("linear_density = 0.2\n", ""), ["tubes[1].linear_density"]),
         (TWO.replace('rod = "inner"', 'rod = "middle"'), ["loads[0].rod"]),
         (TWO.replace('"push"', '"inner"'), ["loads[0].name"]),
-        (with_load(kind='"point_wrench"', at="0.5", force="[1, 0, 0]"), ["loads[2].kind"]),
+        (with_load(kind='"point_wrench"', at="0.5", moment="[1, 0, 0]"), ["loads[2].moment"]),
         (with_load(kind='"foundation"', stiffness="[1, 1, 1]"), ["loads[2].kind"]),
         (with_load(kind='"distributed_wrench"', moment="[1, 0, 0]"), ["loads[2].moment"]),
         (with_load(kind='"distributed_wrench"', force="[1, 0, 0]", frame='"body"'), ["loads[2].frame"]),

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
+from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_in_contact, read_manifest
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer, vector
@@ -294,7 +295,9 @@ def load_in_contact(
     name = described["name"]
     sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
     headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [folder / file for file in VERBATIM]
+    headers += [
+        folder / file for file in described["files"] if file in {*VERBATIM, *FOURS, f"{name}_kernels_in_fours.h"}
+    ]
     return CompiledContact(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
 
 

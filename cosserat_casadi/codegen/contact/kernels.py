@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.fours_sources import Kernel
+from cosserat_casadi.codegen.kernels import by_columns, kernel
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Written, obstacle_of
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.contact.state import Touch
@@ -22,16 +23,10 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.functions import resolution_index
+from cosserat_casadi.model.system import System
 
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
 """What there is a kernel of for every arrangement, in the order of the table in C."""
-
-
-RATES = ("rate", "tip_rate")
-"""Those that are derivatives along a direction of z and of the inputs."""
-
-STRAIGHT_WITHIN: dict[str, int] = {}
-"""Instructions within which kernels that are called once are straight-line code."""
 
 
 @dataclass(frozen=True)
@@ -50,44 +45,68 @@ class ArrangementKernels:
     def _written(self) -> Written:
         return self.equations.written
 
-    def all(self) -> list[ca.Function]:
+    def all(self) -> list[Kernel]:
         """In the order of WORDS."""
         written = self._written
         tips = self._tips()
-        results: dict[str, list[Matrix]] = {
+        plain = {
             "residual": [written.residual],
-            "jacobian": [written.jacobian],
-            "rate": [written.residual],
             "nodes": [self._nodes(), self._resolution_index()],
             "tips": [tips],
-            "tip_rate": [tips],
             "contacts": [self._resultants(), self._point_forces()],
         }
-        return [self._kernel(word, results[word]) for word in WORDS]
+        kernels: dict[str, Kernel] = {word: self._kernel(word, results) for word, results in plain.items()}
+        kernels["jacobian"] = self._jacobian()
+        kernels["rate"] = self._rate_kernel("rate", written.residual)
+        kernels["tip_rate"] = self._rate_kernel("tip_rate", tips)
+        return [kernels[word] for word in WORDS]
+
+    def _jacobian(self) -> Kernel:
+        """The Jacobian, by columns where it has such a form that is not too long."""
+        whole = self._of_z([self._written.jacobian])
+        name = f"{self.name}_jacobian"
+        columned = by_columns(self._written_jacobian, whole, name)
+        return kernel(self.equations.nominal.model, whole, name) if columned is None else columned
 
     @property
-    def _inputs(self) -> int:
-        count: int = self._written.given.shape[0]
-        return count
+    def _written_jacobian(self) -> WrittenJacobian:
+        written = self._written
+        arguments = dict(zip(("x", "f", "p", "inputs"), written.arguments, strict=True))
+
+        def of_system(system: System) -> Matrix:
+            return replace(written, system=system).jacobian
+
+        return WrittenJacobian(arguments, written.system, of_system, self._gathered, ("z", "inputs"))
 
     def _kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
         """A function of z and of the inputs, with dense results."""
-        written = self._written
-        sizes = [part.shape[0] for part in written.unknowns]
-        z = ca.MX.sym("z", sum(sizes))
-        inputs = ca.MX.sym("inputs", self._inputs)
-        parts = ca.vertsplit(z, np.cumsum([0, *sizes]).tolist())
-        of_parts = ca.Function("of_parts", written.arguments, list(results))
-        expressions = of_parts.call([*parts, inputs], True, False)
-        arguments = {"z": z, "inputs": inputs}
-        if word in RATES:
-            moved = {f"{name}_rate": ca.MX.sym(f"{name}_rate", symbol.shape[0]) for name, symbol in arguments.items()}
-            everything = ca.vertcat(*arguments.values())
-            expressions = [ca.jtimes(expressions[0], everything, ca.vertcat(*moved.values()))]
-            arguments |= moved
+        return kernel(self.equations.nominal.model, self._of_z(results), f"{self.name}_{word}")
+
+    def _rate_kernel(self, word: str, result: Matrix) -> ca.Function:
+        """Derivative of a result along a direction of z and of the inputs."""
+        of_z = self._of_z([result])
+        symbols = of_z.mx_in()
+        moved = [ca.MX.sym(f"{symbol.name()}_rate", symbol.shape[0]) for symbol in symbols]
+        rate = ca.jtimes(of_z.call(symbols, True, False)[0], ca.vertcat(*symbols), ca.vertcat(*moved))
+        words = [symbol.name() for symbol in (*symbols, *moved)]
+        whole = ca.Function("rate", [*symbols, *moved], [rate], words, ["result"])
+        return kernel(self.equations.nominal.model, whole, f"{self.name}_{word}")
+
+    def _of_z(self, results: Sequence[Matrix]) -> ca.Function:
+        """(z, inputs) ↦ results."""
         names = [f"result_{number}" for number in range(len(results))]
-        whole = ca.Function("of_z", list(arguments.values()), expressions, list(arguments), names)
-        return kernel(self.equations.nominal.model, whole, f"{self.name}_{word}", STRAIGHT_WITHIN.get(word, STRAIGHT))
+        words = ["x", "f", "p", "inputs"]
+        return self._gathered(ca.Function("of_z", self._written.arguments, list(results), words, names))
+
+    def _gathered(self, function: ca.Function) -> ca.Function:
+        """A function of x, f, p, the inputs, and of more behind them, as one of z, the inputs and these."""
+        words = function.name_in()
+        sizes = [part.shape[0] for part in self._written.unknowns]
+        z = ca.MX.sym("z", sum(sizes))
+        behind = function.mx_in()[len(sizes) :]
+        parts = ca.vertsplit(z, np.cumsum([0, *sizes]).tolist())
+        results = function.call([*parts, *behind], True, False)
+        return ca.Function(function.name(), [z, *behind], results, ["z", *words[len(sizes) :]], function.name_out())
 
     def _nodes(self) -> Matrix:
         """Positions of the nodes of all rods, one after the other, 3×M, m."""

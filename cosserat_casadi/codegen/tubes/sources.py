@@ -172,7 +172,7 @@ def _accuracy_note(solution: TubeSolution) -> str:
     if solution.error_estimate is not None:
         estimate = f"is {solution.error_estimate:.1e}"
     return (
-        f"Each of the {2 * solution.robot.size} pieces between ends of tubes and beginnings of curved parts has "
+        "Each piece between ends of tubes, beginnings of curved parts and places of forces has "
         f"{solution.model.steps} steps. The estimated error of the tips at the scene's own inputs {estimate}; "
         f"the scene allows {tolerance:g} of the length outside. At other inputs half of the steps are compared with "
         "all of them: where they differ too much, the status is `UNRESOLVED`."

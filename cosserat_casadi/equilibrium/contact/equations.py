@@ -197,6 +197,24 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> M
     return ca.vertcat(*rows)
 
 
+def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | None]:
+    """For each row of the gaps over what its force is spread, relative to the rod; None for slopes, which have none.
+
+    A force at a section counts as spread over one: gaps at sections are no averages over a stretch.
+    """
+    widths: list[Place | None] = []
+    for touch in state.touches:
+        for moves in touch.carriers_move:
+            widths.append(1.0)
+            if moves:
+                widths.append(None)
+        if touch.is_line:
+            counts = touch.moment_counts(modes[touch.rod])
+            for (start, end), count in zip(touch.stretches, counts, strict=True):
+                widths += [end - start] * count
+    return widths
+
+
 def _body_gap(system: System, touch: Touch) -> Matrix:
     """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
     body = system.discrete.bodies[touch.rod]
@@ -314,9 +332,31 @@ class Written:
         """Its derivative with z: that of the balance with x is written out; what the contacts add is small."""
         _, f, p = self.unknowns
         balance = self._balance.residual
-        by_others = ca.horzcat(ca.jacobian(balance, f), ca.jacobian(balance, p))
-        gaps_by_all = ca.horzcat(*[ca.jacobian(self._gaps, part) for part in self.unknowns])
-        return ca.vertcat(ca.horzcat(self._balance.jacobian, by_others), gaps_by_all)
+        by_forces = ca.jacobian(balance, f)
+        by_places = ca.jacobian(balance, p)
+        of_balance = ca.horzcat(self._balance.jacobian, by_forces, by_places)
+        gaps_by_others = [ca.jacobian(self._gaps, part) for part in (f, p)]
+        return ca.vertcat(of_balance, ca.horzcat(self._gaps_by_unknowns(by_forces), *gaps_by_others))
+
+    def _gaps_by_unknowns(self, by_forces: Matrix) -> Matrix:
+        """Derivative of the gaps with x. A force does work on its gap alone: one is the derivative of the other.
+
+        Args:
+            by_forces: derivative of the balance with the forces.
+        """
+        x, _, _ = self.unknowns
+        # The balance of a frame is not in the unit of that of a rod.
+        if self.system.discrete.frames:
+            return ca.jacobian(self._gaps, x)
+        rows: list[Matrix] = [ca.MX(0, x.shape[0])]
+        force = 0
+        for number, width in enumerate(force_widths(self.state, self.modes)):
+            if width is None:
+                rows.append(ca.jacobian(self._gaps[number], x))
+            else:
+                rows.append(-by_forces[:, force].T / width)
+                force += 1
+        return ca.vertcat(*rows)
 
 
 @dataclass(frozen=True)
@@ -350,17 +390,8 @@ class ContactEquations:
     @cached_property
     def slope_rows(self) -> list[int]:
         """Rows of the residual that ask for no slope, one for each place that is sought."""
-        rows = []
-        row = self.nominal.model.size
-        for touch in self.state.touches:
-            for moves in touch.carriers_move:
-                row += 1
-                if moves:
-                    rows.append(row)
-                    row += 1
-            if touch.is_line:
-                row += touch.moment_count(self.nominal.modes[touch.rod])
-        return rows
+        widths = force_widths(self.state, self.nominal.modes)
+        return [self.nominal.model.size + number for number, width in enumerate(widths) if width is None]
 
     def parts(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """x, f and p."""

@@ -1,0 +1,181 @@
+"""Coordinates in which a rod that flies free is integrated: the pose of its centred frame, not that of its base.
+
+About its base a free rod is strongly nonlinear: a small strain next to the base swings all the rest, and a shape that
+moves next to no mass is a sum of large motions that cancel. About a frame in its middle strains move the rod by
+little, and hardly move its mean. So steps are longer, a Jacobian serves more of them, and Newton's method needs fewer
+iterations. What the integrator sees is x = φ(y) put into the equations of motion; all others see x.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.centred_frame import BaseKernels, SeenFromBase, frame_weights
+from cosserat_casadi.motion.momentum import flies_alone
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.rod.motion import StrainRates
+
+POSE_SIZE = 7
+"""Unknowns of a frame."""
+
+ORDERS = 3
+"""Positions, rates and accelerations."""
+
+
+def can_be_centred(model: Model) -> bool:
+    """Whether a scene is one free rod whose steps nobody watches in the unknowns of the model.
+
+    Guards of contacts and slack cables do. A length that is an input would enter the frame with its rates.
+    """
+    if not flies_alone(model) or model.scene.touches_exactly or SlackCables(model).cables:
+        return False
+    (name,) = model.discrete.rods
+    return model.discrete.layout.of_rod(name, "length") is None
+
+
+class CentredCoordinates:
+    """The map x = φ(y): y is x but for the entries of the base, which are those of the centred frame.
+
+    Args:
+        model: of one rod that flies free, see :func:`can_be_centred`.
+    """
+
+    def __init__(self, model: Model) -> None:
+        ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+        self._pose = np.arange(entries.start, entries.stop)
+        self._strains = np.delete(np.arange(model.size), self._pose)
+        functions = _Functions(model)
+        self._base = RepeatedCall(functions.base)
+        self._derivatives = functions.derivatives
+        self._centred = RepeatedCall(functions.centred)
+
+    def to_model(self, instant: Instant) -> Instant:
+        """A state in the unknowns of the model, from one in these coordinates."""
+        base = self._base(instant.x, instant.v, instant.a).reshape(ORDERS, POSE_SIZE)
+        parts = [instant.x.copy(), instant.v.copy(), instant.a.copy()]
+        for part, of_base in zip(parts, base, strict=True):
+            part[self._pose] = of_base
+        x, v, a = parts
+        return Instant(instant.time, x, v, a)
+
+    def from_model(self, instant: Instant) -> Instant:
+        """Positions and velocities in these coordinates, from those of the model; accelerations are zero."""
+        still = np.zeros(len(instant.x))
+        x = instant.x.copy()
+        x[self._pose] = self._centred(instant.x)
+        derivative, _, _ = self._jet(Instant(instant.time, x, still, still))
+        by_strains = derivative[:, self._strains] @ instant.v[self._strains]
+        v = instant.v.copy()
+        v[self._pose] = np.linalg.solve(derivative[:, self._pose], instant.v[self._pose] - by_strains)
+        return Instant(instant.time, x, v, still)
+
+    def equations(self, plain: MotionEquations) -> MotionEquations:
+        """The equations of motion in these coordinates, row by row the same.
+
+        With Φ = ∂φ/∂y their derivatives are K Φ + C Φ̇ + M Φ̈, C Φ + 2 M Φ̇ and M Φ.
+
+        Args:
+            plain: those of the model.
+        """
+
+        def residual(t: float, y: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+            at = self.to_model(Instant(t, y, v, a))
+            return plain.residual(t, at.x, at.v, at.a)
+
+        def jacobians(
+            t: float, y: FloatArray, v: FloatArray, a: FloatArray
+        ) -> tuple[FloatArray, FloatArray, FloatArray]:
+            instant = Instant(t, y, v, a)
+            at = self.to_model(instant)
+            stiffness, damping, mass = plain.jacobians(t, at.x, at.v, at.a)
+            jet = self._jet(instant)
+            _, rate, acceleration = jet
+            # Φ̇ and Φ̈ have rows of the base alone.
+            by_rate = damping[:, self._pose] @ rate + mass[:, self._pose] @ acceleration
+            return (
+                self._along(stiffness, jet) + by_rate,
+                self._along(damping, jet) + 2.0 * mass[:, self._pose] @ rate,
+                self._along(mass, jet),
+            )
+
+        return replace(plain, residual=residual, jacobians=jacobians)
+
+    def _jet(self, instant: Instant) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Rows of the base in Φ, Φ̇ and Φ̈, shape (7, size) each."""
+        value, rate, acceleration = self._derivatives(instant.x, instant.v, instant.a)
+        return value.full(), rate.full(), acceleration.full()
+
+    def _along(self, matrix: FloatArray, jet: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
+        """A matrix times Φ, which is the identity but for the rows of the base."""
+        product = matrix.copy()
+        product[:, self._pose] = 0.0
+        return product + matrix[:, self._pose] @ jet[0]
+
+
+class _Functions:
+    """The functions of the coordinates of a model, over its size.
+
+    Args:
+        model: of one rod that flies free.
+    """
+
+    def __init__(self, model: Model) -> None:
+        unknowns = model.discrete.unknowns
+        ((name, rod),) = model.discrete.rods.items()
+        ((_, pose),) = unknowns.of_kind(BlockKind.POSE)
+        (frame,) = model.discrete.frames.values()
+        strains = unknowns.strain(name)
+        kernels = BaseKernels(frame)
+        self._symbols = [ca.MX.sym(word, model.size) for word in ("y", "v", "a")]
+        q, q_rate, q_acceleration = (symbol[strains] for symbol in self._symbols)
+        self._seen = SeenFromBase(rod, frame_weights(rod), q, StrainRates(q_rate, q_acceleration))
+        poses = [symbol[pose] for symbol in self._symbols]
+        self._states = [ca.vertcat(own, seen) for own, seen in zip(poses, self._seen.values, strict=True)]
+        self._kernels = kernels
+        self._places = _places(pose, strains, model.size)
+
+    @cached_property
+    def base(self) -> ca.Function:
+        """(y, v, a) ↦ unknowns of the base, their rates and accelerations beneath each other, 21×1."""
+        orders = self._kernels.base(*self._states)
+        return ca.Function("base", self._symbols, [ca.densify(ca.vertcat(*orders))])
+
+    @cached_property
+    def derivatives(self) -> ca.Function:
+        """(y, v, a) ↦ derivatives of the base's unknowns with y, 7×size, and their rates."""
+        by_state, by_state_rate, by_state_acceleration = self._kernels.derivatives(*self._states)
+        seen = self._seen.variations
+        own = ca.DM.eye(POSE_SIZE)
+        none = ca.DM(*own.shape)
+        value = ca.diagcat(own, seen.value) @ self._places
+        rate = ca.diagcat(none, seen.rate) @ self._places
+        acceleration = ca.diagcat(none, seen.acceleration) @ self._places
+        orders = [
+            by_state @ value,
+            by_state_rate @ value + by_state @ rate,
+            by_state_acceleration @ value + 2 * (by_state_rate @ rate) + by_state @ acceleration,
+        ]
+        return ca.Function("derivatives", self._symbols, [ca.densify(order) for order in orders])
+
+    @cached_property
+    def centred(self) -> ca.Function:
+        """Unknowns of the model ↦ those of the centred frame, 7×1."""
+        x = self._symbols[0]
+        centred = self._kernels.centred(self._states[0][:POSE_SIZE], self._seen.values[0])
+        return ca.Function("centred", [x], [ca.densify(centred)])
+
+
+def _places(pose: slice, strains: slice, size: int) -> ca.DM:
+    """Rows of the pose, then of the strains, among all unknowns, sparse, (7 + n)×size."""
+    columns = [*range(pose.start, pose.stop), *range(strains.start, strains.stop)]
+    pattern = ca.Sparsity.triplet(len(columns), size, list(range(len(columns))), columns)
+    return ca.DM(pattern, 1.0)
