@@ -24,6 +24,9 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
+from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.figure import figure_class
+from cosserat_casadi.plots.obstacles import surface_lines, surface_net
 from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.sweep.row_model import RowModel
 from tests.conftest import ROOT
@@ -399,6 +402,18 @@ def test_the_example_presses(tmp_path: Path) -> None:
     assert (contact.obstacle, contact.rod, contact.kind) == ("rim", "lower", "point")
     assert_allclose(solution.base_wrench("lower").force, -contact.force, rtol=0, atol=1e-9)
     save_plot(solution, tmp_path / "fingers.png")
+
+
+def test_an_obstacle_is_drawn_where_its_body_is(touching: Solution) -> None:
+    """The outline in the plane, and the net in space, are as far from the body as the rim is."""
+    body = touching.body("ball")
+    (disk,) = touching.model.scene.obstacles
+    shown = touching.pose(np.linspace(0.0, 1.0, 20), "pushed").position
+    axes = figure_class()().add_subplot()
+    (outline,) = surface_lines(Canvas(axes, (0, 2), 1.0), disk, shown, body)
+    net = surface_net(disk, shown, 1.0, body)
+    assert_allclose(np.linalg.norm(outline - body.position, axis=1), RADIUS, rtol=0, atol=2e-4)
+    assert_allclose(np.linalg.norm(net.reshape(-1, 3) - body.position, axis=1), RADIUS, rtol=0, atol=1e-12)
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
