@@ -108,7 +108,7 @@ class _Writing:
         self.form = form
         self.reals = 0
         self.place: dict[int, int] = {}
-        self.callee_names = listing.names_of_callees(f"{self.name}_")
+        self.callee_names = listing.names_of_callees("")
         self.in_column = self._in_column()
         self.batch_of = self._batches()
         self.given_to_columns = self._given_to_columns()
@@ -118,6 +118,7 @@ class _Writing:
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
+        self.callees: dict[str, str] = {}
         self.statements = 0
 
     def result(self) -> InFours:
@@ -133,7 +134,7 @@ class _Writing:
         self._write_results()
         self._write_main()
         body = "\n".join(self.functions)
-        return InFours(self.signature, tables, body, self.reals, self.statements)
+        return InFours(self.signature, tables, body, self.callees, self.reals, self.statements)
 
     def _write_main(self) -> None:
         """Write the function itself, which is a row of others where it is long."""
@@ -150,7 +151,7 @@ class _Writing:
             lines = block.lines(partial(self._text_in_part, elsewhere))
             self.statements += len(statements)
             if len(parts) > 1:
-                self._write(f"{self.name}_part_{k})({given}", lines)
+                self.functions.append(f"static void MADE({self.name}_part_{k}){_body(given, lines)}")
         if len(parts) > 1:
             lines = [f"  MADE({self.name}_part_{k})(arg, res, w);" for k in range(len(parts))]
         head = f"static int MADE({self.name})({given}) {{"
@@ -278,17 +279,21 @@ class _Writing:
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
         lane = " + lane" if batch.width == LANES else ""
         places = f"w + {batch.given}{lane}, w + {batch.made}{lane}"
-        self.main.statements.append(called(f"MADE({name})({places})", batch.width))
+        self.main.statements.append(called(f"MADE({self.name}_{name})({places})", batch.width))
 
     def _write_results(self) -> None:
-        """Append the entries of the first result."""
-        entries = self.listing.outputs[0]
-        for entry in range(self.listing.function.nnz_out(0)):
-            if entry in entries:
-                self._compute(entries[entry])
-                self.main.statements.append(Statement(f"res[0][{entry}] = {{0}};", [entries[entry]]))
-            else:
-                self.main.statements.append(Statement(f"res[0][{entry}] = 0;", []))
+        """Append the entries of all results; one of several may be asked for by no pointer."""
+        count = self.signature.n_out()
+        for result in range(count):
+            entries = self.listing.outputs[result]
+            asked = f"if (res[{result}]) " if count > 1 else ""
+            for entry in range(self.listing.function.nnz_out(result)):
+                place = f"res[{result}][{entry}]"
+                if entry in entries:
+                    self._compute(entries[entry])
+                    self.main.statements.append(Statement(f"{asked}{place} = {{0}};", [entries[entry]]))
+                else:
+                    self.main.statements.append(Statement(f"{asked}{place} = 0;", []))
 
     def _is_of_all_columns(self, number: int) -> bool:
         value = self.listing.values[number]
@@ -345,7 +350,7 @@ class _Writing:
                 return f"LOAD(given + {place})" if wide else f"given[{place}]"
             return None
 
-        self._write(f"{name})(const casadi_real *given, casadi_real *made", block.lines(text))
+        self.callees[name] = _body("const casadi_real *given, casadi_real *made", block.lines(text))
         self.statements += len(block.statements)
 
     # Columns
@@ -362,7 +367,8 @@ class _Writing:
             block = Block("FOUR", "b", statements)
             names.append(f"{self.name}_columns_{k}")
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
-            self._write(f"{names[-1]})({given}", block.lines(partial(self._text_in_columns, elsewhere)))
+            body = _body(given, block.lines(partial(self._text_in_columns, elsewhere)))
+            self.functions.append(f"static void MADE({names[-1]}){body}")
             self.statements += len(block.statements)
         size = len(form.turns)
         turns = f"{self.name}_turns"
@@ -407,8 +413,10 @@ class _Writing:
             return f"LOAD(turns + {LANES * value.entry})"
         return None
 
-    def _write(self, head: str, lines: Iterable[str]) -> None:
-        self.functions.append("\n".join([f"static void MADE({head}) {{", *lines, "}\n"]))
+
+def _body(parameters: str, lines: Iterable[str]) -> str:
+    """Parameters and body of a function."""
+    return "\n".join([f"({parameters}) {{", *lines, "}\n"])
 
 
 def _starts(sizes: Iterable[int]) -> list[int]:

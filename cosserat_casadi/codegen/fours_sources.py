@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -12,7 +12,7 @@ from cosserat_casadi.codegen.texts import fill, resource
 
 PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define {name}_SZ_ARG {arguments}
-#define {name}_SZ_RES 1
+#define {name}_SZ_RES {results}
 #define {name}_SZ_IW 0
 #define {name}_SZ_W {reals}
 """
@@ -26,6 +26,7 @@ class InFours:
         signature: a function with its name, arguments and results.
         tables: constant arrays in C.
         body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
+        callees: parameters and bodies of functions that these call by the name of the kernel and a word, by the word.
         reals: numbers that it works in.
         statements: how many there are.
     """
@@ -33,6 +34,7 @@ class InFours:
     signature: ca.Function
     tables: str
     body: str
+    callees: Mapping[str, str]
     reals: int
     statements: int
 
@@ -47,7 +49,9 @@ class InFours:
 
     def prototype(self) -> str:
         """Its declaration, and what it asks for."""
-        return PROTOTYPE.format(name=self.name(), arguments=self.signature.n_in(), reals=self.reals)
+        arguments = self.signature.n_in()
+        results = self.signature.n_out()
+        return PROTOTYPE.format(name=self.name(), arguments=arguments, results=results, reals=self.reals)
 
 
 Kernel: TypeAlias = ca.Function | InFours
@@ -81,8 +85,25 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         "tables": "".join(kernel.tables for kernel in kernels),
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
     }
-    bodies = "\n".join(kernel.body for kernel in kernels)
+    bodies = "\n".join(_sharing_callees(kernels, stem))
     prototypes = "".join(kernel.prototype() for kernel in kernels)
     text = f"/* Included once for each width of vectors. */\n{bodies}"
     included = {f"{stem}_in_fours.h": text, "fours.h": resource("c", "fours.h")}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
+
+
+def _sharing_callees(kernels: Sequence[InFours], stem: str) -> list[str]:
+    """Functions that kernels call, once for all that call the same, and the kernels."""
+    functions = []
+    bodies = []
+    name_of: dict[str, str] = {}
+    for kernel in kernels:
+        body = kernel.body
+        for word, callee in kernel.callees.items():
+            if callee not in name_of:
+                name = f"{stem}_{word}"
+                name_of[callee] = f"{name}_{len(name_of)}" if name in name_of.values() else name
+                functions.append(f"static void MADE({name_of[callee]}){callee}")
+            body = body.replace(f"MADE({kernel.name()}_{word})", f"MADE({name_of[callee]})")
+        bodies.append(body)
+    return functions + bodies

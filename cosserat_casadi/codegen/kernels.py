@@ -38,9 +38,9 @@ RATE = "path_rate"
 MOST_IN_COLUMNS = 60_000
 """Statements up to which a Jacobian is written by columns: compilers take more than a minute for 90 000."""
 
-STRAIGHT_BESIDE = {"tip_jacobian": 6000}
+STRAIGHT_BESIDE = {"tip_jacobian": 6000, "shape": 6000}
 """Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a
-tip's Jacobian from there on, and compilers take half as long for them."""
+tip's Jacobian from there on, and compilers take half as long for them; for a section, they take a tenth."""
 
 GENERATOR = {"with_header": True, "static_aux": True}
 
@@ -79,18 +79,19 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 
 
 def _written(model: Model, entry: FunctionInC) -> Kernel:
-    """One function of the solver of a scene that has no parts; residual and Jacobian in fours where they can be."""
+    """One function of a scene that has no parts; in fours where it can be."""
+    straight_within = STRAIGHT_BESIDE.get(entry.spec.name, STRAIGHT)
     if entry.spec.name == "path_jacobian":
         columned = by_columns(on_path(model), entry.function, entry.kernel)
         if columned is not None:
             return columned
-    elif entry.spec.name == "path_residual" and not _literal(model):
+    elif not _literal(model):
         straight = scalar(entry.function, entry.kernel)
         # Without calls of intervals there is nothing to make together.
-        if straight.find_functions(0):
+        if straight.find_functions(0) and straight.n_instructions() <= straight_within:
             with suppress(UnknownOperationError):
                 return in_fours(straight, dense(entry.function, entry.kernel))
-    return kernel(model, entry.function, entry.kernel, STRAIGHT_BESIDE.get(entry.spec.name, STRAIGHT))
+    return kernel(model, entry.function, entry.kernel, straight_within)
 
 
 def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> InFours | None:

@@ -16,17 +16,20 @@ WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$")
 """Names of kernels that are called with a workspace alone, however large it is."""
 
 
-def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = False) -> int:
+def largest_room(generated: Mapping[str, str], kind: str) -> int:
     """The most that any kernel asks its caller for: of numbers ("W"), of integers ("IW").
 
     Args:
         generated: source and header of the kernels by file name.
         kind: "W" or "IW".
-        on_stack: whether kernels are left out that never find it on the stack.
     """
+    return max(_rooms(generated, kind).values())
+
+
+def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
+    """What each kernel asks its caller for."""
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
-    rooms = re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)
-    return max(int(size) for name, size in rooms if not on_stack or not WITH_WORKSPACE.search(name))
+    return {name: int(size) for name, size in re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)}
 
 
 def stack_bytes(generated: Mapping[str, str]) -> int:
@@ -40,11 +43,16 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     """
     source = "".join(text for file, text in generated.items() if file.endswith(".c"))
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
-    locals_of_largest = max(_locals(function) for function in functions)
-    largest = locals_of_largest + largest_room(generated, "W", on_stack=True)
+    rooms = _rooms(generated, "W")
+    on_stack = {name: 0 if WITH_WORKSPACE.search(name) else room for name, room in rooms.items()}
+    in_fours = dict[str, int]()
     for file, text in generated.items():
         if file.endswith("_in_fours.h"):
-            largest = max(largest, _locals_in_fours(text))
+            in_fours |= _locals_in_fours(text)
+    largest = max(map(_locals, functions))
+    largest += max((room for name, room in on_stack.items() if name not in in_fours), default=0)
+    for name, room in on_stack.items():
+        largest = max(largest, in_fours.get(name, 0) + room)
     return REAL * largest + FRAMES
 
 
@@ -53,27 +61,18 @@ def _locals(function: str) -> int:
     return sum(line.count(",") + 1 for line in declared)
 
 
-def _locals_in_fours(text: str) -> int:
-    """Numbers on the stack of the largest kernel in fours, with the largest function that it calls."""
-    functions = re.split(r"^(?=static )", text, flags=re.M)
-    largest = 0
-    for kernel in re.findall(r"^static int MADE\((\w+)\)", text, flags=re.M):
-        own = [_locals(function) for function in functions if f"MADE({kernel})(" in function.partition("{")[0]]
-        # A long kernel is a row of parts, which call the others.
-        parts = []
-        called = []
-        for function in functions:
-            head = function.partition("{")[0]
-            if f"MADE({kernel}_part_" in head:
-                parts.append(_locals(function))
-            elif f"MADE({kernel}_" in head:
-                called.append(_of_fours(function))
-        largest = max(largest, sum(own) + max(parts, default=0) + max(called, default=0))
-    return largest
+def _locals_in_fours(text: str) -> dict[str, int]:
+    """Numbers on the stack of each function in fours, with the largest function that it calls."""
+    needed: dict[str, int] = {}
+    # Functions come before those that call them.
+    for function in re.split(r"^(?=static )", text, flags=re.M)[1:]:
+        name, *called = re.findall(r"\bMADE\((\w+)\)", function)
+        needed[name] = _of_fours(function) + max((needed[other] for other in called), default=0)
+    return needed
 
 
 def _of_fours(function: str) -> int:
-    declared = re.findall(r"^  four (b\d.*);$", function, flags=re.M)
+    declared = re.findall(r"^  FOUR (b\d.*);$", function, flags=re.M)
     variables: int = sum(line.count(",") + 1 for line in declared)
     return _locals(function) + 4 * variables
 

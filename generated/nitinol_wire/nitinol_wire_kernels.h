@@ -17,11 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_rate_SZ_ARG 16
-#define nitinol_wire_k_rate_SZ_RES 4
-#define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 92
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
@@ -32,26 +27,6 @@ int nitinol_wire_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define nitinol_wire_k_resolution_index_SZ_RES 1
 #define nitinol_wire_k_resolution_index_SZ_IW 0
 #define nitinol_wire_k_resolution_index_SZ_W 0
-int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_igm_SZ_ARG 9
-#define nitinol_wire_k_igm_SZ_RES 6
-#define nitinol_wire_k_igm_SZ_IW 0
-#define nitinol_wire_k_igm_SZ_W 50
-int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_tip_SZ_ARG 3
-#define nitinol_wire_k_tip_SZ_RES 5
-#define nitinol_wire_k_tip_SZ_IW 0
-#define nitinol_wire_k_tip_SZ_W 30
-int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_tip_jacobian_SZ_ARG 7
-#define nitinol_wire_k_tip_jacobian_SZ_RES 5
-#define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 96
-int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_shape_SZ_ARG 4
-#define nitinol_wire_k_shape_SZ_RES 5
-#define nitinol_wire_k_shape_SZ_IW 0
-#define nitinol_wire_k_shape_SZ_W 30
 int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
@@ -62,6 +37,31 @@ int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_jacobian_SZ_RES 1
 #define nitinol_wire_k_jacobian_SZ_IW 0
 #define nitinol_wire_k_jacobian_SZ_W 1123
+int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_rate_SZ_ARG 5
+#define nitinol_wire_k_rate_SZ_RES 1
+#define nitinol_wire_k_rate_SZ_IW 0
+#define nitinol_wire_k_rate_SZ_W 328
+int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_igm_SZ_ARG 4
+#define nitinol_wire_k_igm_SZ_RES 3
+#define nitinol_wire_k_igm_SZ_IW 0
+#define nitinol_wire_k_igm_SZ_W 236
+int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_tip_SZ_ARG 2
+#define nitinol_wire_k_tip_SZ_RES 2
+#define nitinol_wire_k_tip_SZ_IW 0
+#define nitinol_wire_k_tip_SZ_W 96
+int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_tip_jacobian_SZ_ARG 2
+#define nitinol_wire_k_tip_jacobian_SZ_RES 2
+#define nitinol_wire_k_tip_jacobian_SZ_IW 0
+#define nitinol_wire_k_tip_jacobian_SZ_W 500
+int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_shape_SZ_ARG 3
+#define nitinol_wire_k_shape_SZ_RES 2
+#define nitinol_wire_k_shape_SZ_IW 0
+#define nitinol_wire_k_shape_SZ_W 96
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -17,11 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_rate_SZ_ARG 16
-#define planar_strip_k_rate_SZ_RES 4
-#define planar_strip_k_rate_SZ_IW 0
-#define planar_strip_k_rate_SZ_W 42
 int planar_strip_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tangent_SZ_ARG 1
 #define planar_strip_k_tangent_SZ_RES 1
@@ -32,26 +27,6 @@ int planar_strip_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define planar_strip_k_resolution_index_SZ_RES 1
 #define planar_strip_k_resolution_index_SZ_IW 0
 #define planar_strip_k_resolution_index_SZ_W 0
-int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_igm_SZ_ARG 9
-#define planar_strip_k_igm_SZ_RES 6
-#define planar_strip_k_igm_SZ_IW 0
-#define planar_strip_k_igm_SZ_W 30
-int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_tip_SZ_ARG 3
-#define planar_strip_k_tip_SZ_RES 5
-#define planar_strip_k_tip_SZ_IW 0
-#define planar_strip_k_tip_SZ_W 19
-int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_tip_jacobian_SZ_ARG 7
-#define planar_strip_k_tip_jacobian_SZ_RES 5
-#define planar_strip_k_tip_jacobian_SZ_IW 0
-#define planar_strip_k_tip_jacobian_SZ_W 34
-int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_shape_SZ_ARG 4
-#define planar_strip_k_shape_SZ_RES 5
-#define planar_strip_k_shape_SZ_IW 0
-#define planar_strip_k_shape_SZ_W 19
 int planar_strip_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_residual_SZ_ARG 3
 #define planar_strip_k_residual_SZ_RES 1
@@ -62,6 +37,31 @@ int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_i
 #define planar_strip_k_jacobian_SZ_RES 1
 #define planar_strip_k_jacobian_SZ_IW 0
 #define planar_strip_k_jacobian_SZ_W 192
+int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_rate_SZ_ARG 5
+#define planar_strip_k_rate_SZ_RES 1
+#define planar_strip_k_rate_SZ_IW 0
+#define planar_strip_k_rate_SZ_W 148
+int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_igm_SZ_ARG 4
+#define planar_strip_k_igm_SZ_RES 3
+#define planar_strip_k_igm_SZ_IW 0
+#define planar_strip_k_igm_SZ_W 100
+int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_tip_SZ_ARG 2
+#define planar_strip_k_tip_SZ_RES 2
+#define planar_strip_k_tip_SZ_IW 0
+#define planar_strip_k_tip_SZ_W 44
+int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_tip_jacobian_SZ_ARG 2
+#define planar_strip_k_tip_jacobian_SZ_RES 2
+#define planar_strip_k_tip_jacobian_SZ_IW 0
+#define planar_strip_k_tip_jacobian_SZ_W 164
+int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_shape_SZ_ARG 3
+#define planar_strip_k_shape_SZ_RES 2
+#define planar_strip_k_shape_SZ_IW 0
+#define planar_strip_k_shape_SZ_W 44
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -17,11 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define precurved_tube_k_rate_SZ_ARG 16
-#define precurved_tube_k_rate_SZ_RES 4
-#define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 92
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -32,26 +27,6 @@ int precurved_tube_k_resolution_index(const casadi_real** arg, casadi_real** res
 #define precurved_tube_k_resolution_index_SZ_RES 1
 #define precurved_tube_k_resolution_index_SZ_IW 0
 #define precurved_tube_k_resolution_index_SZ_W 0
-int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define precurved_tube_k_igm_SZ_ARG 9
-#define precurved_tube_k_igm_SZ_RES 6
-#define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 50
-int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define precurved_tube_k_tip_SZ_ARG 3
-#define precurved_tube_k_tip_SZ_RES 5
-#define precurved_tube_k_tip_SZ_IW 0
-#define precurved_tube_k_tip_SZ_W 30
-int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define precurved_tube_k_tip_jacobian_SZ_ARG 7
-#define precurved_tube_k_tip_jacobian_SZ_RES 5
-#define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 96
-int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define precurved_tube_k_shape_SZ_ARG 4
-#define precurved_tube_k_shape_SZ_RES 5
-#define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 30
 int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
@@ -62,6 +37,31 @@ int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_jacobian_SZ_RES 1
 #define precurved_tube_k_jacobian_SZ_IW 0
 #define precurved_tube_k_jacobian_SZ_W 1510
+int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define precurved_tube_k_rate_SZ_ARG 5
+#define precurved_tube_k_rate_SZ_RES 1
+#define precurved_tube_k_rate_SZ_IW 0
+#define precurved_tube_k_rate_SZ_W 328
+int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define precurved_tube_k_igm_SZ_ARG 4
+#define precurved_tube_k_igm_SZ_RES 3
+#define precurved_tube_k_igm_SZ_IW 0
+#define precurved_tube_k_igm_SZ_W 236
+int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define precurved_tube_k_tip_SZ_ARG 2
+#define precurved_tube_k_tip_SZ_RES 2
+#define precurved_tube_k_tip_SZ_IW 0
+#define precurved_tube_k_tip_SZ_W 96
+int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define precurved_tube_k_tip_jacobian_SZ_ARG 2
+#define precurved_tube_k_tip_jacobian_SZ_RES 2
+#define precurved_tube_k_tip_jacobian_SZ_IW 0
+#define precurved_tube_k_tip_jacobian_SZ_W 500
+int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define precurved_tube_k_shape_SZ_ARG 3
+#define precurved_tube_k_shape_SZ_RES 2
+#define precurved_tube_k_shape_SZ_IW 0
+#define precurved_tube_k_shape_SZ_W 96
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -17,11 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_rate_SZ_ARG 16
-#define tendon_robot_k_rate_SZ_RES 4
-#define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 92
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -32,21 +27,6 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
 #define tendon_robot_k_resolution_index_SZ_W 0
-int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_igm_SZ_ARG 9
-#define tendon_robot_k_igm_SZ_RES 6
-#define tendon_robot_k_igm_SZ_IW 0
-#define tendon_robot_k_igm_SZ_W 50
-int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_tip_SZ_ARG 3
-#define tendon_robot_k_tip_SZ_RES 5
-#define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 30
-int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_tip_jacobian_SZ_ARG 7
-#define tendon_robot_k_tip_jacobian_SZ_RES 5
-#define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 96
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 4
 #define tendon_robot_k_shape_SZ_RES 5
@@ -82,6 +62,26 @@ int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
 #define tendon_robot_k_jacobian_SZ_W 1725
+int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_rate_SZ_ARG 5
+#define tendon_robot_k_rate_SZ_RES 1
+#define tendon_robot_k_rate_SZ_IW 0
+#define tendon_robot_k_rate_SZ_W 328
+int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_igm_SZ_ARG 4
+#define tendon_robot_k_igm_SZ_RES 3
+#define tendon_robot_k_igm_SZ_IW 0
+#define tendon_robot_k_igm_SZ_W 236
+int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_tip_SZ_ARG 2
+#define tendon_robot_k_tip_SZ_RES 2
+#define tendon_robot_k_tip_SZ_IW 0
+#define tendon_robot_k_tip_SZ_W 96
+int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_tip_jacobian_SZ_ARG 2
+#define tendon_robot_k_tip_jacobian_SZ_RES 2
+#define tendon_robot_k_tip_jacobian_SZ_IW 0
+#define tendon_robot_k_tip_jacobian_SZ_W 500
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import re
 from pathlib import Path
 
 import casadi as ca
@@ -169,6 +170,48 @@ def test_lanes_that_are_left_over_are_not_read(wire: Path) -> None:
     assert form.stride == 2 * LANES
     assert_array_equal(form.turns[:, 7], 0)
     assert "wire_k_jacobian_columns_0" in (wire / "wire_kernels_in_fours.h").read_text()
+
+
+def test_kernels_share_what_they_call(wire: Path) -> None:
+    """Residual and IGM call the same functions of an interval, which are in the code once."""
+    written = (wire / "wire_kernels_in_fours.h").read_text()
+    bodies = re.findall(r"^static void MADE\((\w+)\)(.*?^\})", written, flags=re.M | re.S)
+    assert len({body for _, body in bodies}) == len(bodies)
+    assert written.count("static void MADE(wire_kernels_pulls)") == 1
+    for kernel in ("residual", "igm"):
+        text = re.search(rf"^static int MADE\(wire_k_{kernel}\).*?^\}}", written, flags=re.M | re.S)
+        assert text is not None
+        assert "MADE(wire_kernels_pulls)(w" in text[0]
+
+
+ONE_OF_THREE = """
+#include <stdio.h>
+#define casadi_real double
+#define casadi_int int
+#include "wire_kernels.h"
+int main(void) {
+  double q[20] = {0.3, -0.2, 0.1, 0.2}, position[3] = {0}, quaternion[4] = {1}, inputs[40] = {0.1, 0.2, 0.3};
+  double all[20], alone[20] = {0}, force[3], moment[3] = {0}, room[wire_k_igm_SZ_W + 1];
+  const double *given[wire_k_igm_SZ_ARG + 1] = {q, position, quaternion, inputs};
+  double *every[wire_k_igm_SZ_RES + 1] = {all, force, moment}, *one[wire_k_igm_SZ_RES + 1] = {alone};
+  int different = 0;
+  wire_k_igm(given, every, 0, room, 0);
+  wire_k_igm(given, one, 0, room, 0);
+  for (int i = 0; i < SIZE; i++) different += all[i] != alone[i] || all[i] == 0;
+  printf("%d %d", wire_k_igm_SZ_RES, different);
+  return 0;
+}
+"""
+
+
+def test_results_that_nobody_asks_for(wire: Path, tmp_path: Path) -> None:
+    """Of three results only the first is given a place."""
+    program = tmp_path / "one.c"
+    program.write_text(ONE_OF_THREE)
+    size = model_of("reissner", "dead force and couple at the tip").size
+    flags = ["-std=c99", "-O0", "-g", "-fsanitize=address,undefined", f"-DSIZE={size}", f"-I{wire}"]
+    gcc(*flags, program, wire / "wire_kernels.c", "-lm", "-o", tmp_path / "one")
+    assert run(tmp_path / "one").split() == ["3", "0"]
 
 
 def test_a_jacobian_of_too_many_statements_is_loops_with_the_same_solution(

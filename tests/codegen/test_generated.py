@@ -163,7 +163,7 @@ def rebuilt(folder: Path) -> Model:
 
 def is_kernel(name: str) -> bool:
     """Whether a file holds constants that linear algebra made."""
-    return name.endswith(("_kernels.c", "_derivatives.c"))
+    return name.endswith(("_kernels.c", "_derivatives.c", "_in_fours.h"))
 
 
 def without_rounding(name: str, text: str) -> str:
