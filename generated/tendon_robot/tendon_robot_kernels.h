@@ -27,11 +27,6 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
 #define tendon_robot_k_resolution_index_SZ_W 0
-int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_shape_SZ_ARG 4
-#define tendon_robot_k_shape_SZ_RES 5
-#define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 30
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3
@@ -82,6 +77,11 @@ int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
 #define tendon_robot_k_tip_jacobian_SZ_W 500
+int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_shape_SZ_ARG 3
+#define tendon_robot_k_shape_SZ_RES 2
+#define tendon_robot_k_shape_SZ_IW 0
+#define tendon_robot_k_shape_SZ_W 96
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -12,7 +12,7 @@ from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
-MARGIN, ROUNDING = 1.6, 1000
+MARGIN, ROUNDING = 1.7, 1000
 """How much more than it needs a library may ask for: a factor, and bytes."""
 
 
