@@ -91,12 +91,15 @@ def _sources(model: Model, names: Names) -> dict[str, str]:
     parts = assembled(model, names)
     every = kernels(model, names, parts)
     untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
+    # The header of the kernels declares all of them; what is not timed has a source of its own.
     generated = kernel_sources(every, names)
-    rest = kernel_sources([f for f in every if f.name() not in untimed], names)
+    timed = kernel_sources([f for f in every if f.name() not in untimed], names)
+    beside = kernel_sources([f for f in every if f.name() in untimed], names, "untimed")
+    header = "timed_kernels.h"
     files = {
         **library_sources(model, names, parts, generated, None),
-        **generated,
-        "timed_kernels.c": rest["timed_kernels.c"],
-        "untimed.c": kernel_sources([f for f in every if f.name() in untimed], names, "untimed")["untimed.c"],
+        **beside,
+        **timed,
+        header: generated[header],
     }
     return {name: text for name, text in files.items() if name.endswith((".c", ".h"))}
