@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.motion.laid_sections import laid_sections
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 
 SECTIONS_IN_ELEMENT = 200
@@ -44,6 +45,9 @@ FAR = 0.02
 
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
+
+REMEMBERED_SECTIONS = 512
+"""Sections whose weights are remembered."""
 
 BEYOND = 0.05
 """How far beyond the ends of a rod its polynomials are followed, over the length."""
@@ -205,6 +209,21 @@ class Facing:
         """Gaps at the sections looked at, over the length, shape (k,)."""
         positions = self._looking @ nodes
         return np.asarray(distances(self.obstacle, positions) - self._looked_radii) / self.length
+
+    def laid_gaps(self, nodes: FloatArray) -> FloatArray:
+        """Gaps at the sections at which the rod is held where it lies, over the length, shape (k,)."""
+        weights, radii = self._laid
+        return np.asarray(distances(self.obstacle, weights @ nodes) - radii) / self.length
+
+    @cached_property
+    def laid_at(self) -> FloatArray:
+        """Abscissae of these sections, base to tip, shape (k,)."""
+        return laid_sections(self.model, self.rod)
+
+    @cached_property
+    def _laid(self) -> tuple[FloatArray, FloatArray]:
+        radii = section_radius(self.model.discrete.rods[self.rod].properties, self.laid_at)
+        return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
     def at(self, nodes: FloatArray, X: float) -> Gap:
         """The gap at a section, a little beyond the ends of the rod too."""
@@ -406,29 +425,32 @@ class Facing:
     def _floats(self) -> bool:
         return self.model.discrete.unloaded.floating_base(self.rod) is not None
 
-    @cached_property
-    def _derivatives(self) -> tuple[FloatArray, FloatArray]:
-        intervals = self._grid.intervals
-        return chebyshev.differentiation_matrix(intervals), chebyshev.differentiation_matrix(intervals, 2)
-
     def _rows(self, X: float) -> Rows:
-        ends = self._grid.known_places
-        element = int(self._grid.element_of(np.array([X]))[0])
-        width = ends[element + 1] - ends[element]
-        share = (X - ends[element]) / width
-        local = chebyshev.interpolation_matrix(self._grid.intervals, [share], beyond=BEYOND / width)[0]
-        first, second = self._derivatives
-        per_element = self._grid.intervals + 1
-        own = slice(element * per_element, (element + 1) * per_element)
-        rows = np.zeros((3, self._grid.size))
-        rows[0, own] = local
-        rows[1, own] = local @ first / width
-        rows[2, own] = local @ second / width**2
-        return Rows(*rows)
+        return _rows_of(self._grid, X)
 
     def _weights(self, gap: Gap) -> FloatArray:
         """Weights of the positions of the nodes, stacked node by node, whose sum varies as the gap does."""
         return np.outer(gap.rows.value, gap.normal).ravel()
+
+
+@lru_cache(maxsize=REMEMBERED_SECTIONS)
+def _rows_of(grid: Grid, X: float) -> Rows:
+    """Weights of the nodes of a grid for one section: those of a section that stays are asked for over and over."""
+    ends = grid.known_places
+    element = int(grid.element_of(np.array([X]))[0])
+    width = ends[element + 1] - ends[element]
+    share = (X - ends[element]) / width
+    local = chebyshev.interpolation_matrix(grid.intervals, [share], beyond=BEYOND / width)[0]
+    per_element = grid.intervals + 1
+    own = slice(element * per_element, (element + 1) * per_element)
+    rows = np.zeros((3, grid.size))
+    rows[0, own] = local
+    rows[1, own] = local @ _differentiated(grid.intervals, 1) / width
+    rows[2, own] = local @ _differentiated(grid.intervals, 2) / width**2
+    return Rows(*rows)
+
+
+_differentiated = lru_cache(maxsize=32)(chebyshev.differentiation_matrix)
 
 
 def _step_down(gaps: FloatArray, index: int) -> float:

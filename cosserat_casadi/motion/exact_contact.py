@@ -4,25 +4,25 @@ Between events the sections that touch are the same, and the equations are smoot
 impact without rebound: impulses along the normals take the speed of approach, as little as keeps all that touch apart
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
-of accelerations. See docs/contact.md.
+of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
+where the bend comes to zero it lies down, and is kept out at sections of its own. See docs/contact.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_sections import Facing, facings
-from cosserat_casadi.motion.moving_inputs import InputState, Piece
+from cosserat_casadi.motion.contact_onset import Onset, Struck
+from cosserat_casadi.motion.contact_sections import FAR, Facing, facings
+from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.restart import ContactEvent, Restart
 from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
-from cosserat_casadi.numerics.complementarity import active_constraints
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -32,20 +32,51 @@ SAME_PLACE = 0.02
 TOUCHING = 1e-9
 """Gap, over the length, up to which a section touches where it is looked at."""
 
-FLATTEST = 1e-3
+CLOSE = 1e-7
+"""The same of a section of a rod that lies: it is held at that height."""
+
+LEEWAY = 1e-8
+"""How much lower a section without a force may come than it was at the last event, over the length.
+
+It has left, or has come to rest, to rounding: without that it would be back in no time.
+"""
+
+FLATTEST = 2e-2
 """Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster."""
 
-STILL = 1e-9
-"""Speed of opening, over that of approach or in lengths per interval, that counts as none."""
+MOST_IN_A_MOMENT = 8
+"""Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
 
-PUSH = 1e-10
-"""Force in EI/ℓ², or impulse over the largest, below zero that counts as none."""
+MOMENT = 1e-2
+"""Such a moment, over the interval after an event."""
 
-FORCE, END, BEND, GAP = range(4)
-"""What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch."""
+FORCE, END, BEND, GAP, CLEAR = range(5)
+"""What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch, and a
+rod that has got up."""
 
-TINY = float(np.finfo(np.float64).tiny)
-"""Least number to divide by."""
+
+@dataclass(frozen=True)
+class Arrangement:
+    """What touches during a stretch of a motion.
+
+    Attributes:
+        touches: the contacts.
+        laid: numbers of the rods and obstacles that lie on one another.
+        follower: of the contacts.
+        floors: least gaps that what does not touch may have, for each rod and obstacle: one for each section of a rod
+            that lies, else one.
+        forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
+        moment: beginning of the moment in which changes are counted, s.
+        changes: changes in it.
+    """
+
+    touches: Touches = ()
+    laid: frozenset[int] = frozenset()
+    follower: Follower = field(default_factory=lambda: Follower((), ()))
+    floors: tuple[FloatArray, ...] = ()
+    forces_from: float = -np.inf
+    moment: float = -np.inf
+    changes: int = 0
 
 
 @dataclass(frozen=True)
@@ -63,45 +94,57 @@ class ExactContacts:
         """Rods and obstacles that may touch."""
         return facings(self.model)
 
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Touches:
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Arrangement:
         """What touches at a state."""
-        return self._touching(x, inputs, ())
+        found, laid = self._touching(x, inputs, (), frozenset())
+        # What is deeper inside is no contact: its constraint is told to be open.
+        touches = tuple(touch if abs(touch.height) <= CLOSE else touch._replace(height=0.0) for touch in found)
+        return Arrangement(touches, laid, Follower(self.facings, touches))
 
-    def equations(self, plain: MotionEquations, piece: Piece, phases: Touches) -> MotionEquations:
-        """Equations of motion while some sections touch.
-
-        Args:
-            plain: those of the model.
-            piece: of its inputs.
-            phases: what touches.
-        """
-        if not phases:
-            return plain
-        return with_touches(plain, Follower(self.facings, phases), piece)
-
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Touches) -> tuple[MotionEquations, Guards]:
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Arrangement) -> tuple[MotionEquations, Guards]:
         """The equations, and what has to stay at zero or above while they hold."""
-        follower = Follower(self.facings, phases)
-        equations = with_touches(plain, follower, piece) if phases else plain
-        return equations, self._guards(piece, follower)
+        guards = self._guards(piece, phases)
+        if not phases.touches:
+            return plain, guards
+        return with_touches(plain, phases.follower, piece), guards
 
-    def _guards(self, piece: Piece, follower: Follower) -> Guards:
+    def _guards(self, piece: Piece, arrangement: Arrangement) -> Guards:
         """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
-        phases = follower.touches
+        touches = arrangement.touches
+        follower = arrangement.follower
         size = self.model.size
 
         def values(instant: Instant) -> FloatArray:
             x = instant.x[:size]
             inputs = piece.at(instant.time).value
+            before = follower.places
             places, gaps = follower.follow(x, inputs)
             forces = instant.x[size:]
-            ends = [_within(touch, place, gap.slope) for touch, place, gap in zip(phases, places, gaps, strict=True)]
-            bends = [gap.bend - FLATTEST if touch.slides else 1.0 for touch, gap in zip(phases, gaps, strict=True)]
-            others = []
+            if instant.time <= arrangement.forces_from:
+                forces = np.maximum(forces, 0.0)
+            ends = np.ones(len(touches))
+            bends = np.ones(len(touches))
+            for k, (touch, gap) in enumerate(zip(touches, gaps, strict=True)):
+                if touch.facing not in arrangement.laid:
+                    ends[k] = _within(touch, places[k], gap.slope)
+                if touch.slides:
+                    # One that has jumped is no more where it was.
+                    is_gone = abs(places[k] - before[k]) > FAR
+                    bends[k] = -1.0 if is_gone else gap.bend - FLATTEST
+            others = np.ones(len(self.facings))
+            clear = np.ones(len(self.facings))
             for number, facing in enumerate(self.facings):
-                own = [place for touch, place in zip(phases, places, strict=True) if touch.facing == number]
-                others.append(min(1.0, facing.lowest(facing.nodes(x, inputs), own)))
-            return np.concatenate([forces, ends, bends, others])
+                own = [place for touch, place in zip(touches, places, strict=True) if touch.facing == number]
+                nodes = facing.nodes(x, inputs)
+                floor = arrangement.floors[number]
+                if number not in arrangement.laid:
+                    others[number] = min(1.0, facing.lowest(nodes, own) - float(floor[0]))
+                    continue
+                untouched = ~np.isin(facing.laid_at, own)
+                others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
+                if not own:
+                    clear[number] = TOUCHING - facing.deepest(nodes).gap
+            return np.concatenate([forces, ends, bends, others, clear])
 
         return values
 
@@ -110,7 +153,7 @@ class ExactContacts:
         plain: MotionEquations,
         piece: Piece,
         at: Instant,
-        phases: Touches,
+        phases: Arrangement,
         guard: int | None,
         interval: float,
     ) -> Restart:
@@ -126,13 +169,18 @@ class ExactContacts:
         """
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
-        stretch = _Stretch(self, plain, piece, before, interval)
-        known = self._known(phases, guard, before, stretch.inputs.value)
-        if known.lying is not None:
-            return stretch.stopped((), self._lies_down(known.lying, at.time))
-        return self._struck(stretch, known)
+        onset = Onset(self.model, self.facings, plain, piece, before, interval)
+        moment, changes = phases.moment, phases.changes + 1
+        if at.time - moment > MOMENT * interval:
+            moment, changes = at.time, 0
+        known = self._known(phases, guard, before, onset.inputs.value)
+        if changes > MOST_IN_A_MOMENT:
+            known = self._all_lie(known, before, onset.inputs.value)
+        restart = self._struck(onset, known)
+        counted = replace(restart.phases, moment=moment, changes=changes)
+        return replace(restart, phases=counted)
 
-    def _known(self, phases: Touches, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
+    def _known(self, phases: Arrangement, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
         """What a guard that came to zero makes of contacts that there were.
 
         Args:
@@ -141,80 +189,167 @@ class ExactContacts:
             before: state before the event.
             inputs: at its time.
         """
-        places, gaps = Follower(self.facings, phases).gaps(before.x, inputs)
-        held = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
-        kind, number = _guarded(guard, len(phases))
+        places, gaps = phases.follower.gaps(before.x, inputs)
+        held = [touch._replace(place=place) for touch, place in zip(phases.touches, places, strict=True)]
+        kind, number = _guarded(guard, len(held), len(self.facings))
         if kind == FORCE:
             left = held.pop(number)
-            return _Known(tuple(held), (left,), (self._event("lift_off", before.time, left),))
+            return _Known(tuple(held), phases.laid, (left,), (self._event("lift_off", before.time, left),))
+        known = _Known(tuple(held), phases.laid)
         if kind == BEND:
-            return _Known(tuple(held), lying=held[number])
+            # Where it was last: beyond the event it may be gone.
+            last = phases.follower.places[number]
+            held[number] = held[number]._replace(place=last)
+            return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
         if kind == END:
-            # An end that is left where the gap is flat leaves no section for another.
-            is_flat = not held[number].slides and gaps[number].bend <= FLATTEST
             moved = _past_end(held[number])
+            if moved.slides and gaps[number].bend <= FLATTEST:
+                # An end that is left where the gap is flat leaves no section for another.
+                return self._lying(known, held[number], before, inputs)
             held[number] = moved
-            if is_flat:
-                return _Known(tuple(held), lying=moved)
             name = "slide_from_end" if moved.slides else "slide_to_end"
-            return _Known(tuple(held), events=(self._event(name, before.time, moved),))
-        return _Known(tuple(held))
+            return replace(known, held=tuple(held), events=(self._event(name, before.time, moved),))
+        if kind == CLEAR:
+            return replace(known, laid=phases.laid - {number})
+        return known
 
-    def _struck(self, stretch: _Stretch, known: _Known) -> Restart:
+    def _lying(self, known: _Known, first: Touch, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
+        facing = self.facings[first.facing]
+        nodes = facing.nodes(before.x, inputs)
+        held = []
+        for touch in known.held:
+            stays = touch
+            if touch.facing == first.facing and touch.slides:
+                stays = touch._replace(slides=False, height=facing.at(nodes, touch.place).value)
+            held.append(stays)
+        event = self._event("lie_down", before.time, first)
+        return replace(known, held=tuple(held), laid=known.laid | {first.facing}, events=(*known.events, event))
+
+    def _all_lie(self, known: _Known, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts that change over and over in next to no time: all rods that touch lie down."""
+        for touch in (*known.held, *known.left):
+            if touch.facing not in known.laid:
+                known = self._lying(known, touch, before, inputs)
+        return known
+
+    def _struck(self, onset: Onset, known: _Known) -> Restart:
         """How a motion goes on after what touches anew has struck."""
-        before = stretch.before
-        touching = self._touching(before.x, stretch.inputs.value, (*known.held, *known.left))
-        new = touching[len(known.held) + len(known.left) :]
-        after = stretch.after_impact(touching)
-        if after is None:
-            return stretch.stopped(known.events, self._undecided(touching, before.time))
-        v, impulses, remaining = after
-        events = list(known.events)
-        lost = 0.0
-        for touch, speed in zip(touching, stretch.rates(touching, before.v), strict=True):
-            facing = self.facings[touch.facing]
-            impulse = impulses[touch] * self.model.discrete.tension_unit(facing.rod)
-            # Half the impulse times the speed that it takes: of sections that touched before that is none.
-            energy = max(0.0, float(-0.5 * impulse * speed * facing.length))
-            lost += energy
-            if touch in new and impulse > 0.0:
-                events.append(self._event("impact", before.time, touch, energy, impulse))
-        work = stretch.kinetic(v) - stretch.kinetic(before.v) + lost if stretch.driven else 0.0
-        candidates = tuple(touch for touch in remaining if touch not in known.left)
-        stalled = None
-        pressing = stretch.pressing(candidates, v)
+        x, inputs = onset.before.x, onset.inputs.value
+        old = (*known.held, *known.left)
+        touching, laid = self._touching(x, inputs, old, known.laid)
+        onset = onset.held_still(touching[: len(old)])
+        struck = onset.struck(touching)
+        if struck is None:
+            return self._stopped(onset, known, touching)
+        events = [*known.events, *self._impacts(onset, touching, struck, len(old))]
+        lost = sum(self._energies(touching, struck))
+        after = onset.at(struck.v)
+        work = after.kinetic() - onset.kinetic() + lost if onset.driven else 0.0
+        leaving = tuple(touch for touch in touching if touch not in struck.staying)
+        staying = tuple(touch for touch in struck.staying if touch not in known.left)
+        soon_back = after.soon_back(leaving, staying)
+        if soon_back:
+            stopped = after.held_still((*struck.staying, *soon_back))
+            lost += after.kinetic() - stopped.kinetic()
+            after = stopped
+        pressing = after.pressing(self._on_sections((*staying, *soon_back), laid))
         if pressing is None:
-            stalled = self._undecided(candidates, before.time)
-            pressing = ()
-        return Restart(stretch.start(v, pressing), pressing, lost, work, tuple(events), stalled)
+            return self._stopped(onset, known, touching)
+        arrangement = Arrangement(
+            pressing,
+            laid,
+            Follower(self.facings, pressing),
+            self._floors(x, inputs, pressing, laid),
+            onset.before.time + onset.brief,
+        )
+        return Restart(after.start(pressing), arrangement, lost, work, tuple(events))
 
-    def _touching(self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch]) -> Touches:
-        """Known contacts, and all others that touch at a state."""
+    def _impacts(self, onset: Onset, touching: Touches, struck: Struck, known: int) -> list[ContactEvent]:
+        """Impacts of the sections that touch anew, those behind the known ones."""
+        energies = self._energies(touching, struck)
+        found = []
+        for touch, impulse, energy in list(zip(touching, struck.impulses, energies, strict=True))[known:]:
+            if impulse > 0.0:
+                unit = self.model.discrete.tension_unit(self.facings[touch.facing].rod)
+                found.append(self._event("impact", onset.before.time, touch, energy, float(impulse * unit)))
+        return found
+
+    def _energies(self, touching: Touches, struck: Struck) -> list[float]:
+        """Energy that the impulse at each section takes, J: half of it times the speed that it takes."""
+        energies = []
+        for touch, impulse, speed in zip(touching, struck.impulses, struck.speeds, strict=True):
+            facing = self.facings[touch.facing]
+            unit = self.model.discrete.tension_unit(facing.rod) * facing.length
+            # Of sections that touched before there is none.
+            energies.append(max(0.0, float(-0.5 * impulse * unit * speed)))
+        return energies
+
+    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart:
+        """The end of a motion, with everything as it was, because nothing is decided."""
+        names = sorted({self.facings[touch.facing].obstacle.name for touch in touching})
+        why = (
+            f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
+            f"{', '.join(names)} remain."
+        )
+        return Restart(onset.start(()), Arrangement(), events=known.events, stalled=why)
+
+    def _on_sections(self, touches: Touches, laid: frozenset[int]) -> Touches:
+        """Contacts of rods that lie at their sections: a place between two of them is given up where one touches."""
+        kept = []
+        for touch in touches:
+            at = self.facings[touch.facing].laid_at
+            if touch.facing in laid and touch.place not in at:
+                following = int(np.searchsorted(at, touch.place))
+                beside = at[max(following - 1, 0) : following + 1]
+                own = [other.place for other in touches if other.facing == touch.facing]
+                if np.isin(beside, own).any():
+                    continue
+            kept.append(touch)
+        return tuple(kept)
+
+    def _floors(
+        self, x: FloatArray, inputs: FloatArray, pressing: Touches, laid: frozenset[int]
+    ) -> tuple[FloatArray, ...]:
+        """The least gaps that what does not touch may have from now on."""
+        floors = []
+        for number, facing in enumerate(self.facings):
+            nodes = facing.nodes(x, inputs)
+            if number in laid:
+                gaps = facing.laid_gaps(nodes)
+            else:
+                own = [touch.place for touch in pressing if touch.facing == number]
+                gaps = np.array([facing.lowest(nodes, own)])
+            floors.append(np.where(gaps > LEEWAY, 0.0, np.minimum(gaps, 0.0) - LEEWAY))
+        return tuple(floors)
+
+    def _touching(
+        self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch], laid: frozenset[int]
+    ) -> tuple[Touches, frozenset[int]]:
+        """Known contacts, and all others that touch at a state; and which rods lie then."""
         touches = list(known)
         for number, facing in enumerate(self.facings):
             nodes = facing.nodes(x, inputs)
             own = [touch.place for touch in known if touch.facing == number]
+            if number not in laid:
+                minima = facing.minima(nodes, TOUCHING)
+                new = [one for one in minima if all(abs(one.place - place) > SAME_PLACE for place in own)]
+                if not any(one.inside and facing.at(nodes, one.place).bend <= FLATTEST for one in new):
+                    touches += [Touch(number, one.place, one.inside, min(one.gap, 0.0)) for one in new]
+                    continue
+                laid = laid | {number}
+                touches = [one._replace(slides=False) if one.facing == number else one for one in touches]
+            gaps = facing.laid_gaps(nodes)
             touches += [
-                Touch(number, minimum.place, minimum.inside)
-                for minimum in facing.minima(nodes, TOUCHING)
-                if all(abs(minimum.place - place) > SAME_PLACE for place in own)
+                Touch(number, place, False, gap)
+                for place, gap in zip(facing.laid_at.tolist(), gaps.tolist(), strict=True)
+                if gap <= CLOSE and place not in own
             ]
-        return tuple(touches)
+        return tuple(touches), laid
 
     def _event(self, kind: str, time: float, touch: Touch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
         facing = self.facings[touch.facing]
         return ContactEvent(kind, time, facing.rod, facing.obstacle.name, touch.place, energy, impulse)
-
-    def _lies_down(self, touch: Touch, time: float) -> str:
-        facing = self.facings[touch.facing]
-        return (
-            f"At t = {time:.6g} s the rod {facing.rod!r} begins to lie down on {facing.obstacle.name!r} at X = "
-            f"{touch.place:.4g}: in motion contact is at points, not along stretches. Give the obstacle a width."
-        )
-
-    def _undecided(self, touches: Touches, time: float) -> str:
-        names = sorted({self.facings[touch.facing].obstacle.name for touch in touches})
-        return f"At t = {time:.6g} s it is not decided which of {len(touches)} contacts with {', '.join(names)} remain."
 
 
 @dataclass(frozen=True)
@@ -223,159 +358,31 @@ class _Known:
 
     Attributes:
         held: those that go on, where they are at the event.
+        laid: numbers of the rods and obstacles that lie on one another from now on.
         left: the one that lifts off, if one does.
         events: of them.
-        lying: the one whose rod begins to lie down; None where none does.
     """
 
     held: Touches
+    laid: frozenset[int]
     left: Touches = ()
     events: tuple[ContactEvent, ...] = ()
-    lying: Touch | None = None
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """The beginning of a stretch of a motion.
+def _guarded(guard: int | None, count: int, facings: int) -> tuple[int | None, int]:
+    """What a guard is of, and the number of its contact, or of the rod and obstacle.
 
-    Attributes:
-        contacts: of the model.
-        plain: equations of the model.
-        piece: of its inputs.
-        before: state before the event, without forces of contact.
-        interval: time after it in which gaps are smooth, s.
+    Args:
+        guard: its number; None for none.
+        count: number of contacts.
+        facings: number of rods and obstacles.
     """
-
-    contacts: ExactContacts
-    plain: MotionEquations
-    piece: Piece
-    before: Instant
-    interval: float
-
-    @property
-    def inputs(self) -> InputState:
-        """Inputs at the event, with their rates and accelerations."""
-        return self.piece.at(self.before.time)
-
-    @property
-    def driven(self) -> bool:
-        """Whether inputs move at the event: a base that does takes part in an impact."""
-        return bool(np.any(self.inputs.rate))
-
-    def stopped(self, events: tuple[ContactEvent, ...], stalled: str) -> Restart:
-        """The end of a motion, with everything as it was, because nothing is decided.
-
-        Args:
-            events: changes of contact until then.
-            stalled: why.
-        """
-        return Restart(self.start(self.before.v, ()), (), events=events, stalled=stalled)
-
-    def start(self, v: FloatArray, pressing: Touches) -> ConsistentStart:
-        """Accelerations and forces at some velocities while some sections press."""
-        equations = self.contacts.equations(self.plain, self.piece, pressing)
-        x = _padded(self.before.x, pressing)
-        return consistent_start(equations, self.before.time, x, _padded(v, pressing), self.interval)
-
-    def after_impact(self, touching: Touches) -> tuple[FloatArray, dict[Touch, float], Touches] | None:
-        """Velocities after an impact, its impulses, and what still touches; None where nothing settles it.
-
-        Impulses are in EI/ℓ² s.
-
-        Args:
-            touching: sections without a gap.
-        """
-        if not touching:
-            return self.before.v, {}, ()
-        speeds = self.rates(touching, self.before.v)
-        still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
-        if speeds.min() >= -still:
-            return self.before.v, dict.fromkeys(touching, 0.0), self._staying(touching, speeds, still)
-
-        def solve(chosen: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-            v, impulses = self._impact(tuple(touching[k] for k in chosen))
-            rates = self.rates(touching, v)
-            rates[list(chosen)] = 0.0
-            return impulses / max(float(np.abs(impulses).max(initial=0.0)), TINY), rates
-
-        chosen = active_constraints(len(touching), solve, PUSH, still)
-        if chosen is None:
-            return None
-        struck = tuple(touching[k] for k in chosen)
-        v, impulses = self._impact(struck)
-        rates = self.rates(touching, v)
-        rates[list(chosen)] = 0.0
-        remaining = self._staying(touching, rates, still)
-        of_touch = dict.fromkeys(touching, 0.0)
-        of_touch.update(zip(struck, impulses.tolist(), strict=True))
-        return v, of_touch, remaining
-
-    @staticmethod
-    def _staying(touching: Touches, rates: FloatArray, still: float) -> Touches:
-        """Sections that do not leave."""
-        return tuple(touch for touch, rate in zip(touching, rates, strict=True) if rate <= still)
-
-    def pressing(self, candidates: Touches, v: FloatArray) -> Touches | None:
-        """Which of the sections that touch, and neither approach nor leave, press; None where nothing settles it."""
-        if not candidates:
-            return ()
-        size = self.plain.size
-        turning = self._follower(candidates).rates(self.before.x, v, self.inputs)[1]
-        by_unknowns = self._gradients(candidates)
-
-        def solve(chosen: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-            pressed = tuple(candidates[k] for k in chosen)
-            start = self.start(v, pressed)
-            opening = by_unknowns @ start.instant.a[:size] + turning
-            opening[list(chosen)] = 0.0
-            forces = start.instant.x[size:]
-            return forces / max(1.0, float(np.abs(forces).max(initial=0.0))), opening
-
-        scale = float(np.abs(turning).max()) + 1.0 / self.interval**2
-        chosen = active_constraints(len(candidates), solve, PUSH, STILL * scale)
-        if chosen is None:
-            return None
-        return tuple(candidates[k] for k in chosen)
-
-    def kinetic(self, v: FloatArray) -> float:
-        """Kinetic energy, J."""
-        value, rate, *_ = self.inputs
-        kinetic, *_ = self.contacts.model.energies(self.before.x, v, value, rate)
-        return float(kinetic)
-
-    def _impact(self, touches: Touches) -> tuple[FloatArray, FloatArray]:
-        """Velocities after an impact at all of some sections, and its impulses."""
-        if not touches:
-            return self.before.v, np.zeros(0)
-        size = self.plain.size
-        equations = self.contacts.equations(self.plain, self.piece, touches)
-        x = _padded(self.before.x, touches)
-        blow = impact(equations, self.before.time, x, _padded(self.before.v, touches), self.interval)
-        # The impulse stands on the left of the balance, as the force does.
-        return blow.v[:size], blow.impulses[size:]
-
-    def rates(self, touches: Touches, v: FloatArray) -> FloatArray:
-        """Rates of the gaps of some sections, shape (m,), 1/s."""
-        return self._follower(touches).rates(self.before.x, v, self.inputs)[0]
-
-    def _gradients(self, touches: Touches) -> FloatArray:
-        return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
-
-    def _follower(self, touches: Touches) -> Follower:
-        return Follower(self.contacts.facings, touches)
-
-
-def _padded(values: FloatArray, touches: Touches) -> FloatArray:
-    """Unknowns, or their rates, with zeros for the forces of contact."""
-    return np.concatenate([values, np.zeros(len(touches))])
-
-
-def _guarded(guard: int | None, count: int) -> tuple[int | None, int]:
-    """What a guard is of, and the number of its contact, or of the rod and obstacle."""
     if guard is None:
         return None, 0
-    kind = min(guard // count, GAP) if count else GAP
-    return kind, guard - kind * count
+    if guard < GAP * count:
+        return guard // count, guard % count
+    of_facing = guard - GAP * count
+    return GAP + of_facing // facings, of_facing % facings
 
 
 def _within(touch: Touch, place: float, slope: float) -> float:
@@ -388,4 +395,4 @@ def _within(touch: Touch, place: float, slope: float) -> float:
 def _past_end(touch: Touch) -> Touch:
     """A contact whose place has come to an end of the rod stays there; one that has left it slides."""
     end = 1.0 if touch.place > 0.5 else 0.0
-    return Touch(touch.facing, end, not touch.slides)
+    return touch._replace(place=end, slides=not touch.slides)

@@ -17,7 +17,7 @@ class ContactEvent:
     """A change of contact in a motion.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end" or "slide_from_end".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end" or "lie_down".
         time: s.
         rod: name of the rod.
         obstacle: name of the obstacle.

@@ -233,7 +233,9 @@ class Simulator:
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
-        return integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
+        return integrated(
+            self.model, pieces, self.start.x, still, method, settings, self._after_step, phases=self.start.phases
+        )
 
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
@@ -396,6 +398,9 @@ def warnings(simulator: Simulator) -> list[str]:
 def _loaded_at_once(simulator: Simulator) -> bool:
     """Whether the start is out of balance: loads that were not there act from t = 0 on."""
     model = simulator.model
+    if simulator.start.phases is not None and simulator.start.phases.touches:
+        # Obstacles hold the rods.
+        return False
     inputs = simulator.moving.at(0.0).value
     residual = model.residual(simulator.start.x, inputs).full()[:, 0]
     return bool(np.abs(residual).max(initial=0.0) > OUT_OF_BALANCE)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import Facing, Gap
+from cosserat_casadi.motion.contact_sections import FAR, Facing, Gap
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
@@ -24,12 +24,14 @@ class Touch(NamedTuple):
     Attributes:
         facing: number of the rod and obstacle among those that may touch.
         place: abscissa X of the section that touches, where the contact was last looked at.
-        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod.
+        slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along.
+        height: gap, over the length, that it keeps: a share of what counts as touching.
     """
 
     facing: int
     place: float
     slides: bool
+    height: float = 0.0
 
 
 Touches = tuple[Touch, ...]
@@ -67,8 +69,15 @@ class Follower:
     def follow(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap]]:
         """Places and gaps of the contacts at a state of the motion, next to which others are looked for from now on."""
         places, gaps = self.gaps(x, inputs)
-        self._places = places
+        # One that is gone is still looked for where it was.
+        kept = zip(places, self._places, strict=True)
+        self._places = [new if abs(new - old) <= FAR else old for new, old in kept]
         return places, gaps
+
+    @property
+    def places(self) -> list[float]:
+        """Where they were last followed to."""
+        return self._places
 
     def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap]]:
         """Places and gaps of the contacts."""
@@ -121,7 +130,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
         rows = plain.residual(t, x[:size], v[:size], a[:size])
         for force, gradient in zip(x[size:], state.gradients, strict=True):
             rows = rows - force * gradient
-        return np.concatenate([rows, [gap.value for gap in state.gaps]])
+        open_by = [gap.value - touch.height for gap, touch in zip(state.gaps, touches, strict=True)]
+        return np.concatenate([rows, open_by])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass = (_bordered(part, count) for part in plain.jacobians(t, x[:size], v[:size], a[:size]))
