@@ -61,6 +61,7 @@ MOTIONS = (
     "seaweed",
     "dropped_rod",
     "bouncing_rod",
+    "rod_lies_down",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

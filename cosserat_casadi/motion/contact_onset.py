@@ -28,6 +28,12 @@ BRIEF = 1e-3
 Stiff modes that are damped hard answer to a blow, and forget it, in far less: at the very beginning they would decide.
 """
 
+LONGER = 2.0
+"""Factor on that time with each change of contact in a moment: what presses is then decided over longer times."""
+
+LONGEST = 0.1
+"""The longest such time, over the interval."""
+
 
 @dataclass(frozen=True)
 class Struck:
@@ -57,6 +63,7 @@ class Onset:
         piece: of its inputs.
         before: state before the event, without forces of contact.
         interval: time after it in which gaps are smooth, s.
+        changes: of contact in the moment before: where there are many, longer times decide.
     """
 
     model: Model
@@ -65,6 +72,7 @@ class Onset:
     piece: Piece
     before: Instant
     interval: float
+    changes: int = 0
 
     @property
     def inputs(self) -> InputState:
@@ -160,7 +168,8 @@ class Onset:
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
         gradients = self._gradients(touches)
         free = self.start(()).instant
-        a, answers = shortly_after(self.plain, free, self.brief, gradients.T)
+        horizon = min(self.brief * LONGER**self.changes, LONGEST * self.interval)
+        a, answers = shortly_after(self.plain, free, horizon, gradients.T)
         tolerance = STILL * (float(np.abs(turning).max()) + 1.0 / self.interval**2)
         return gradients @ a + turning, gradients @ answers, tolerance
 

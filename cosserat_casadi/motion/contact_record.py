@@ -27,12 +27,14 @@ class MotionContact:
         rod: name of the rod.
         at: abscissa X of the section.
         force: on the rod, world axes, shape (3,), N.
+        lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
     """
 
     obstacle: str
     rod: str
     at: float
     force: FloatArray
+    lies: bool = False
 
 
 class Inside(NamedTuple):
@@ -59,11 +61,13 @@ class Stretch:
         piece: of the inputs.
         touches: the sections, with their places where it begins.
         steps: of the motion, with the forces of contact behind the unknowns of the model.
+        laid: numbers of the rods and obstacles that lie on one another.
     """
 
     piece: Piece
     touches: Touches
     steps: Sequence[Step]
+    laid: frozenset[int]
 
 
 @dataclass(frozen=True)
@@ -92,9 +96,12 @@ class ContactRecord:
         size = self.model.size
         places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
         found = []
-        for facing, place, gap, force in zip(follower.facings, places, gaps, instant.x[size:], strict=True):
+        for touch, place, gap, force in zip(touches, places, gaps, instant.x[size:], strict=True):
+            facing = self._facings[touch.facing]
             total = force * self.model.discrete.tension_unit(facing.rod) * gap.normal
-            found.append(MotionContact(facing.obstacle.name, facing.rod, min(max(place, 0.0), 1.0), total))
+            at = min(max(place, 0.0), 1.0)
+            lies = touch.facing in stretch.laid
+            found.append(MotionContact(facing.obstacle.name, facing.rod, at, total, lies))
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:

@@ -47,7 +47,7 @@ FLATTEST = 2e-2
 MOST_IN_A_MOMENT = 8
 """Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
 
-MOMENT = 1e-2
+MOMENT = 0.1
 """Such a moment, over the interval after an event."""
 
 FORCE, END, BEND, GAP, CLEAR = range(5)
@@ -169,10 +169,10 @@ class ExactContacts:
         """
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
-        onset = Onset(self.model, self.facings, plain, piece, before, interval)
         moment, changes = phases.moment, phases.changes + 1
         if at.time - moment > MOMENT * interval:
             moment, changes = at.time, 0
+        onset = Onset(self.model, self.facings, plain, piece, before, interval, changes)
         known = self._known(phases, guard, before, onset.inputs.value)
         if changes > MOST_IN_A_MOMENT:
             known = self._all_lie(known, before, onset.inputs.value)

@@ -216,7 +216,10 @@ class History:
         """What touches, and how hard; None in a scene without exact contact."""
         if not self.model.scene.touches_exactly:
             return None
-        stretches = [Stretch(leg.piece, leg.restart.phases.touches, leg.integration.steps) for leg in self.legs]
+        stretches = []
+        for leg in self.legs:
+            phases = leg.restart.phases
+            stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches)
 
     @cached_property

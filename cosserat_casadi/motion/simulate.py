@@ -350,7 +350,14 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
 def ended_early(simulator: Simulator, history: History) -> Motion:
     """The motion as far as it was computed; of a part no error is estimated."""
     outcome = outcome_of(history)
-    return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
+    message = message_of(history, outcome)
+    if outcome is not MotionOutcome.INTERRUPTED:
+        entered = told_inside(history, history.end.time, tolerance_of(history.model, simulator.simulation))
+        if entered:
+            # What is pushed into an obstacle has no motion that goes on.
+            outcome = MotionOutcome.CONTACT_UNSETTLED
+            message = f"{outcome.value} {entered}"
+    return motion_of(simulator, history, outcome, float("nan"), message)
 
 
 def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:

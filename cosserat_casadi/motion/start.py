@@ -71,7 +71,8 @@ def given_start(model: Model, solution: Solution) -> Start:
     names = set(held.inputs.names)
     given = solution.model.inputs.unpack(solution.inputs)
     values = {name: value for name, value in given.items() if name in names}
-    guess = prolong(solution, held)
+    # Unknowns would name no contacts: a solution does, and they are tried first.
+    guess = solution if model.scene.touches_exactly else prolong(solution, held)
     return _started(model, solve(held, values, start=guess), GIVEN)
 
 
