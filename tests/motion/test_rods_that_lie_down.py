@@ -137,9 +137,9 @@ def test_a_rod_on_a_ball_starts_at_the_section_that_touches() -> None:
 
 @pytest.mark.slow
 def test_a_rod_that_is_laid_down_slowly_follows_statics_and_comes_off_again() -> None:
-    lowered = "motions=[{input='rod.base.position',amplitude=[0,0,-0.05],frequency=0.5,wave='one_minus_cosine'}]"
-    changes = ["table.point=[0,0,-0.16]", "rod.damping.retardation_time=0.05", "accuracy.modes=6", "accuracy.nodes=16"]
-    apart = moved(lowered, *changes, "rod.base.position=[0,0,0.1]", 'simulation.start="equilibrium"',
+    lowered = "motions=[{input='rod.base.position',amplitude=[0,0,-0.175],frequency=0.5,wave='one_minus_cosine'}]"
+    changes = ["table.point=[0,0,-0.09]", "rod.damping.retardation_time=0.05", "accuracy.modes=6", "accuracy.nodes=16"]
+    apart = moved(lowered, *changes, "rod.base.position=[0,0,0.35]", 'simulation.start="equilibrium"',
                   "simulation.duration=2.0", "simulation.frames=41")  # fmt: skip
     assert apart.converged, apart.message
     assert not apart.contacts[0]
