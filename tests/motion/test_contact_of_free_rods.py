@@ -113,6 +113,25 @@ def test_both_ends_on_posts_are_struck_together_and_by_hand() -> None:
         assert_allclose(struck.impulse, speed * MASS / 12, rtol=1e-6, atol=0)
 
 
+@pytest.mark.parametrize(("modes", "strain"), [(2, "planar"), (4, "kirchhoff")])
+def test_a_rod_that_falls_flat_strikes_along_its_length_at_once_and_rests(modes: int, strain: str) -> None:
+    motion = simulate(free_rod(modes=modes, strain=strain, duration=0.12))
+    assert motion.converged, motion.message
+    struck = impacts(motion)
+    time = struck[0].time
+    assert {event.time for event in motion.events} == {time}
+    assert [event.kind for event in motion.events].count("lie_down") == 1
+    weight = DENSITY * GRAVITY * LENGTH if strain == "planar" else 1100.0 * np.pi * 8e-3**2 * LENGTH * GRAVITY
+    assert_allclose(sum(event.impulse for event in struck), weight * time, rtol=1e-9, atol=0)
+    lost = 0.5 * weight * GRAVITY * time**2
+    assert_allclose(motion.energy.impacts[-1], lost, rtol=1e-9, atol=0)
+    assert_allclose(motion.energy.kinetic[-1], 0.0, rtol=0, atol=1e-15)
+    pressing = motion.contacts[-1]
+    assert len(pressing) >= 3
+    assert all(contact.lies for contact in pressing)
+    assert_allclose(sum(contact.force[2] for contact in pressing), weight, rtol=1e-6, atol=0)
+
+
 @pytest.fixture(scope="module")
 def thrown() -> Motion:
     """A soft rod in space that falls on an edge of a ball, off its middle, so that all of it turns and bends."""
