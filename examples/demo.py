@@ -63,6 +63,7 @@ MOTIONS = (
     "dropped_rod",
     "bouncing_rod",
     "rod_hits_floor",
+    "rod_lies_down",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

@@ -47,6 +47,15 @@ class BodyFacing(Facing):
         ball = self.deepest(nodes)
         return [ball] if ball.gap <= below else []
 
+    @property
+    def laid_at(self) -> FloatArray:
+        """None: a ball touches at one point."""
+        return np.zeros(0)
+
+    def laid_gaps(self, nodes: FloatArray) -> FloatArray:
+        """None."""
+        return np.zeros(0)
+
     def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:
         """The gap, where the ball does not touch already; else infinite."""
         return float("inf") if but else self.deepest(nodes).gap

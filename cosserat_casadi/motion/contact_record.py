@@ -28,6 +28,7 @@ class MotionContact:
         rod: name of the rod, or of the body.
         at: abscissa X of the section; 0 of a body.
         force: on the rod, world axes, shape (3,), N.
+        lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
         of_body: whether it is a body that touches.
     """
 
@@ -35,6 +36,7 @@ class MotionContact:
     rod: str
     at: float
     force: FloatArray
+    lies: bool = False
     of_body: bool = False
 
 
@@ -64,11 +66,13 @@ class Stretch:
         piece: of the inputs.
         touches: the sections, with their places where it begins.
         steps: of the motion, with the forces of contact behind the unknowns of the model.
+        laid: numbers of the rods and obstacles that lie on one another.
     """
 
     piece: Piece
     touches: Touches
     steps: Sequence[Step]
+    laid: frozenset[int]
 
 
 @dataclass(frozen=True)
@@ -97,10 +101,12 @@ class ContactRecord:
         size = self.model.size
         places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
         found = []
-        for facing, place, gap, force in zip(follower.facings, places, gaps, instant.x[size:], strict=True):
+        for touch, place, gap, force in zip(touches, places, gaps, instant.x[size:], strict=True):
+            facing = self._facings[touch.facing]
             total = force * facing.force_unit * gap.normal
-            within = min(max(place, 0.0), 1.0)
-            found.append(MotionContact(facing.obstacle.name, facing.rod, within, total, facing.of_body))
+            at = min(max(place, 0.0), 1.0)
+            lies = touch.facing in stretch.laid
+            found.append(MotionContact(facing.obstacle.name, facing.rod, at, total, lies, facing.of_body))
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
@@ -145,7 +151,7 @@ class ContactRecord:
         for stretch in self.stretches:
             follower = Follower(self._facings, stretch.touches)
             for step in stretch.steps:
-                places, _ = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
+                places, *_ = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
                 touches = [touch._replace(place=place) for touch, place in zip(stretch.touches, places, strict=True)]
                 begins.append((stretch, tuple(touches)))
         return begins

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +20,8 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.facing import Facing, Gap, Minimum, Rows
+from cosserat_casadi.motion.facing import FAR, Facing, Gap, Minimum, Rows
+from cosserat_casadi.motion.laid_sections import laid_sections
 from cosserat_casadi.motion.meeting_ends import watched_ends
 from cosserat_casadi.motion.moving_points import centre_of, nodes_of
 
@@ -36,11 +37,11 @@ MOST_HALVINGS = 40
 PLACED = 1e-14
 """Change of a place that counts as none."""
 
-FAR = 0.02
-"""Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
-
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
+
+REMEMBERED_SECTIONS = 512
+"""Sections whose weights are remembered."""
 
 BEYOND = 0.05
 """How far beyond the ends of a rod its polynomials are followed, over the length."""
@@ -74,6 +75,21 @@ class RodFacing(Facing):
         """Gaps at the sections looked at, over the length, shape (k,)."""
         positions = self._looking @ nodes
         return np.asarray(distances(self.obstacle, positions) - self._looked_radii) / self.length
+
+    def laid_gaps(self, nodes: FloatArray) -> FloatArray:
+        """Gaps at the sections at which the rod is held where it lies, over the length, shape (k,)."""
+        weights, radii = self._laid
+        return np.asarray(distances(self.obstacle, weights @ nodes) - radii) / self.length
+
+    @cached_property
+    def laid_at(self) -> FloatArray:
+        """Abscissae of these sections, base to tip, shape (k,)."""
+        return laid_sections(self.model, self.rod, self.watched_ends)
+
+    @cached_property
+    def _laid(self) -> tuple[FloatArray, FloatArray]:
+        radii = section_radius(self.model.discrete.rods[self.rod].properties, self.laid_at)
+        return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
     def at(self, nodes: FloatArray, X: float) -> Gap:
         """The gap at a section, a little beyond the ends of the rod too."""
@@ -226,25 +242,28 @@ class RodFacing(Facing):
         base, tip = section_radius(self.model.discrete.rods[self.rod].properties, np.array([0.0, 1.0])).tolist()
         return base, tip
 
-    @cached_property
-    def _derivatives(self) -> tuple[FloatArray, FloatArray]:
-        intervals = self._grid.intervals
-        return chebyshev.differentiation_matrix(intervals), chebyshev.differentiation_matrix(intervals, 2)
-
     def _rows(self, X: float) -> Rows:
-        ends = self._grid.known_places
-        element = int(self._grid.element_of(np.array([X]))[0])
-        width = ends[element + 1] - ends[element]
-        share = (X - ends[element]) / width
-        local = chebyshev.interpolation_matrix(self._grid.intervals, [share], beyond=BEYOND / width)[0]
-        first, second = self._derivatives
-        per_element = self._grid.intervals + 1
-        own = slice(element * per_element, (element + 1) * per_element)
-        rows = np.zeros((3, self._grid.size))
-        rows[0, own] = local
-        rows[1, own] = local @ first / width
-        rows[2, own] = local @ second / width**2
-        return Rows(*rows)
+        return _rows_of(self._grid, X)
+
+
+@lru_cache(maxsize=REMEMBERED_SECTIONS)
+def _rows_of(grid: Grid, X: float) -> Rows:
+    """Weights of the nodes of a grid for one section: those of a section that stays are asked for over and over."""
+    ends = grid.known_places
+    element = int(grid.element_of(np.array([X]))[0])
+    width = ends[element + 1] - ends[element]
+    share = (X - ends[element]) / width
+    local = chebyshev.interpolation_matrix(grid.intervals, [share], beyond=BEYOND / width)[0]
+    per_element = grid.intervals + 1
+    own = slice(element * per_element, (element + 1) * per_element)
+    rows = np.zeros((3, grid.size))
+    rows[0, own] = local
+    rows[1, own] = local @ _differentiated(grid.intervals, 1) / width
+    rows[2, own] = local @ _differentiated(grid.intervals, 2) / width**2
+    return Rows(*rows)
+
+
+_differentiated = lru_cache(maxsize=32)(chebyshev.differentiation_matrix)
 
 
 def _step_down(gaps: FloatArray, index: int) -> float:

@@ -4,27 +4,27 @@ Between events the sections that touch are the same, and the equations are smoot
 impact without rebound: impulses along the normals take the speed of approach, as little as keeps all that touch apart
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
-of accelerations. See docs/contact.md.
+of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
+where the bend comes to zero it lies down, and is kept out at sections of its own. See docs/contact.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.facing import Facing
-from cosserat_casadi.motion.meeting_ends import MeetingEnds
-from cosserat_casadi.motion.moving_inputs import InputState, Piece
+from cosserat_casadi.motion.facing import FLATTEST, Facing, Gap
+from cosserat_casadi.motion.meeting_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.restart import ContactEvent, Restart
 from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
-from cosserat_casadi.numerics.complementarity import active_constraints
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -34,26 +34,48 @@ SAME_PLACE = 0.02
 TOUCHING = 1e-9
 """Gap, over the length, up to which a section touches where it is looked at."""
 
-FLATTEST = 1e-3
-"""Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster."""
+CLOSE = 1e-7
+"""The same of a section of a rod that lies: it is held at that height."""
 
-STILL = 1e-9
-"""Speed of opening, over that of approach or in lengths per interval, that counts as none."""
+LEEWAY = 1e-8
+"""How much lower a section without a force may come than it was at the last event, over the length.
 
-PUSH = 1e-10
-"""Force in EI/ℓ², or impulse over the largest, below zero that counts as none."""
+It has left, or has come to rest, to rounding: without that it would be back in no time.
+"""
 
-BRIEF = 1e-4
-"""Time, over the interval in which gaps are smooth, after which a section that leaves is back at once."""
+MOST_IN_A_MOMENT = 8
+"""Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
 
-LEEWAY = 1e-6
-"""Depth over the length up to which what is on its way out of an obstacle is so by the error of a step."""
+MOMENT = 0.1
+"""Such a moment, over the interval after an event."""
 
-FORCE, END, BEND, GAP = range(4)
-"""What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch."""
+FORCE, END, BEND, GAP, CLEAR = range(5)
+"""What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch, and a
+rod that has got up."""
 
-TINY = float(np.finfo(np.float64).tiny)
-"""Least number to divide by."""
+
+@dataclass(frozen=True)
+class Arrangement:
+    """What touches during a stretch of a motion.
+
+    Attributes:
+        touches: the contacts.
+        laid: numbers of the rods and obstacles that lie on one another; never of bodies.
+        follower: of the contacts.
+        floors: least gaps that what does not touch may have, for each rod and obstacle: one for each section of a rod
+            that lies, else one.
+        forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
+        moment: beginning of the moment in which changes are counted, s.
+        changes: changes in it.
+    """
+
+    touches: Touches = ()
+    laid: frozenset[int] = frozenset()
+    follower: Follower = field(default_factory=lambda: Follower((), ()))
+    floors: tuple[FloatArray, ...] = ()
+    forces_from: float = -np.inf
+    moment: float = -np.inf
+    changes: int = 0
 
 
 @dataclass(frozen=True)
@@ -76,53 +98,55 @@ class ExactContacts:
         """Which ends of the rods are one point."""
         return MeetingEnds(self.facings)
 
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Touches:
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Arrangement:
         """What touches at a state."""
-        return self._touching(x, inputs, ())
+        found, laid = self._touching(x, inputs, (), frozenset())
+        # What is deeper inside is no contact: its constraint is told to be open.
+        touches = tuple(touch if abs(touch.height) <= CLOSE else touch._replace(height=0.0) for touch in found)
+        return Arrangement(touches, laid, Follower(self.facings, touches))
 
-    def equations(self, plain: MotionEquations, piece: Piece, phases: Touches) -> MotionEquations:
-        """Equations of motion while some sections touch.
-
-        Args:
-            plain: those of the model.
-            piece: of its inputs.
-            phases: what touches.
-        """
-        if not phases:
-            return plain
-        return with_touches(plain, Follower(self.facings, phases), piece)
-
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Touches) -> tuple[MotionEquations, Guards]:
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Arrangement) -> tuple[MotionEquations, Guards]:
         """The equations, and what has to stay at zero or above while they hold."""
-        follower = Follower(self.facings, phases)
-        equations = with_touches(plain, follower, piece) if phases else plain
-        return equations, self._guards(piece, follower)
+        guards = self._guards(piece, phases)
+        if not phases.touches:
+            return plain, guards
+        return with_touches(plain, phases.follower, piece), guards
 
-    def _guards(self, piece: Piece, follower: Follower) -> Guards:
+    def _guards(self, piece: Piece, arrangement: Arrangement) -> Guards:
         """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
-        phases = follower.touches
+        touches = arrangement.touches
+        follower = arrangement.follower
         size = self.model.size
-        # Where a stretch begins an event may have found what is about to leave a little inside.
-        inside: list[float] = []
 
         def values(instant: Instant) -> FloatArray:
             x = instant.x[:size]
             inputs = piece.at(instant.time).value
-            places, gaps = follower.follow(x, inputs)
+            places, gaps, gone = follower.follow(x, inputs)
             forces = instant.x[size:]
-            touches = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
-            ends = [self._within(touch, x, inputs) for touch in touches]
-            bends = [gap.bend - FLATTEST if touch.slides else 1.0 for touch, gap in zip(phases, gaps, strict=True)]
-            beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
-            others = []
+            if instant.time <= arrangement.forces_from:
+                forces = np.maximum(forces, 0.0)
+            ends = np.ones(len(touches))
+            bends = np.ones(len(touches))
+            placed = [touch._replace(place=place) for touch, place in zip(touches, places, strict=True)]
+            for k, (touch, gap) in enumerate(zip(placed, gaps, strict=True)):
+                if touch.facing not in arrangement.laid:
+                    ends[k] = self._within(touch, x, inputs)
+                if touch.slides:
+                    bends[k] = -1.0 if gone[k] else gap.bend - FLATTEST
+            others = np.ones(len(self.facings))
+            clear = np.ones(len(self.facings))
             for number, facing in enumerate(self.facings):
-                own = [touch.place for touch in touches if touch.facing == number]
-                left_out = [X for other, X in beside if other == number]
-                others.append(min(1.0, facing.lowest(facing.nodes(x, inputs), own, left_out)))
-            if not inside:
-                inside.extend(min(0.0, max(gap, -LEEWAY)) for gap in others)
-            others = [gap - least for gap, least in zip(others, inside, strict=True)]
-            return np.concatenate([forces, ends, bends, others])
+                nodes = facing.nodes(x, inputs)
+                floor = arrangement.floors[number]
+                if number not in arrangement.laid:
+                    others[number] = min(1.0, self._lowest(number, nodes, placed) - float(floor[0]))
+                    continue
+                own = [touch.place for touch in placed if touch.facing == number]
+                untouched = ~np.isin(facing.laid_at, own)
+                others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
+                if not own:
+                    clear[number] = TOUCHING - facing.deepest(nodes).gap
+            return np.concatenate([forces, ends, bends, others, clear])
 
         return values
 
@@ -134,12 +158,25 @@ class ExactContacts:
             return 1.0
         return self.meeting_ends.rise(touch, x, inputs)
 
+    def _lowest(self, number: int, nodes: FloatArray, touches: Sequence[Touch]) -> float:
+        """The least gap, over the length, of a rod that does not lie or of a body, but for what touches.
+
+        Args:
+            number: of the rod or body and obstacle.
+            nodes: positions, shape (M, 3), m.
+            touches: the contacts, at their places.
+        """
+        own = [touch.place for touch in touches if touch.facing == number]
+        beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
+        left_out = [X for other, X in beside if other == number]
+        return self.facings[number].lowest(nodes, own, left_out)
+
     def restarted(
         self,
         plain: MotionEquations,
         piece: Piece,
         at: Instant,
-        phases: Touches,
+        phases: Arrangement,
         guard: int | None,
         interval: float,
     ) -> Restart:
@@ -155,13 +192,18 @@ class ExactContacts:
         """
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
-        stretch = _Stretch(self, plain, piece, before, interval)
-        known = self._known(phases, guard, before, stretch.inputs.value)
-        if known.lying is not None:
-            return stretch.stopped((), self._lies_down(known.lying, at.time))
-        return self._struck(stretch, known)
+        moment, changes = phases.moment, phases.changes + 1
+        if at.time - moment > MOMENT * interval:
+            moment, changes = at.time, 0
+        onset = Onset(self.model, self.facings, plain, piece, before, interval, changes)
+        known = self._known(phases, guard, before, onset.inputs.value)
+        if changes > MOST_IN_A_MOMENT:
+            known = self._all_lie(known, before, onset.inputs.value)
+        restart = self._struck(onset, known)
+        counted = replace(restart.phases, moment=moment, changes=changes)
+        return replace(restart, phases=counted)
 
-    def _known(self, phases: Touches, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
+    def _known(self, phases: Arrangement, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
         """What a guard that came to zero makes of contacts that there were.
 
         Args:
@@ -170,92 +212,178 @@ class ExactContacts:
             before: state before the event.
             inputs: at its time.
         """
-        places, _ = Follower(self.facings, phases).gaps(before.x, inputs)
-        held = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
-        kind, number = _guarded(guard, len(phases))
+        places, _ = phases.follower.gaps(before.x, inputs)
+        held = [touch._replace(place=place) for touch, place in zip(phases.touches, places, strict=True)]
+        kind, number = _guarded(guard, len(held), len(self.facings))
         if kind == FORCE:
             left = held.pop(number)
-            return _Known(tuple(held), (left,), (self._event("lift_off", before.time, left),))
+            return _Known(tuple(held), phases.laid, (left,), (self._event("lift_off", before.time, left),))
+        known = _Known(tuple(held), phases.laid)
         if kind == BEND:
-            return _Known(tuple(held), lying=held[number])
+            if phases.follower.gone(before.x, inputs, places)[number]:
+                # Where it was last: beyond the event it is elsewhere.
+                held[number] = held[number]._replace(place=phases.follower.places[number])
+            return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
         if kind == END:
             end = held[number]
             moved = self.meeting_ends.gone_on(end, before.x, inputs)
+            if moved.facing in phases.laid:
+                # Where the next rod lies, this one lies down too.
+                return self._lying(known, end, before, inputs)
             held[number] = moved
-            # An end that is left where the gap is flat leaves no section for another.
+            known = replace(known, held=tuple(held))
             facing = self.facings[moved.facing]
             if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place).bend <= FLATTEST:
-                return _Known(tuple(held), lying=moved)
+                # An end that is left where the gap is flat leaves no section for another.
+                return self._lying(known, moved, before, inputs)
             name = "slide_from_end" if moved.slides else "slide_to_end"
             if moved.facing != end.facing:
                 name = "slide_over_joint"
-            return _Known(tuple(held), events=(self._event(name, before.time, moved),))
-        return _Known(tuple(held))
+            return replace(known, events=(self._event(name, before.time, moved),))
+        if kind == CLEAR:
+            return replace(known, laid=phases.laid - {number})
+        return known
 
-    def _struck(self, stretch: _Stretch, known: _Known) -> Restart:
+    def _lying(self, known: _Known, first: Touch, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
+        facing = self.facings[first.facing]
+        nodes = facing.nodes(before.x, inputs)
+        held = []
+        for touch in known.held:
+            stays = touch
+            if touch.facing == first.facing and touch.slides:
+                stays = touch._replace(slides=False, height=facing.at(nodes, touch.place).value)
+            held.append(stays)
+        event = self._event("lie_down", before.time, first)
+        return replace(known, held=tuple(held), laid=known.laid | {first.facing}, events=(*known.events, event))
+
+    def _all_lie(self, known: _Known, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts that change over and over in next to no time: all rods that touch lie down, but no bodies."""
+        for touch in (*known.held, *known.left):
+            if touch.facing not in known.laid and not self.facings[touch.facing].of_body:
+                known = self._lying(known, touch, before, inputs)
+        return known
+
+    def _struck(self, onset: Onset, known: _Known) -> Restart:
         """How a motion goes on after what touches anew has struck."""
-        before = stretch.before
-        touching = self._touching(before.x, stretch.inputs.value, (*known.held, *known.left))
-        new = touching[len(known.held) + len(known.left) :]
-        after = stretch.after_impact(touching, len(known.held))
-        if after is None:
-            return stretch.stopped(known.events, self._undecided(touching, before.time))
-        v, impulses, remaining = after
-        events = list(known.events)
-        lost = 0.0
-        for touch, speed in zip(touching, stretch.rates(touching, before.v), strict=True):
-            facing = self.facings[touch.facing]
-            impulse = impulses[touch] * facing.force_unit
-            # Half the impulse times the speed that it takes: of sections that touched before that is none.
-            energy = max(0.0, float(-0.5 * impulse * speed * facing.length))
-            lost += energy
-            if touch in new and impulse > 0.0:
-                events.append(self._event("impact", before.time, touch, energy, impulse))
-        work = stretch.kinetic(v) - stretch.kinetic(before.v) + lost if stretch.driven else 0.0
-        candidates = tuple(touch for touch in remaining if touch not in known.left)
-        stalled = None
-        pressing = stretch.pressing(candidates, v)
+        x, inputs = onset.before.x, onset.inputs.value
+        old = (*known.held, *known.left)
+        touching, laid = self._touching(x, inputs, old, known.laid)
+        onset = onset.held_still(touching[: len(old)])
+        struck = onset.struck(touching)
+        if struck is None:
+            return self._stopped(onset, known, touching)
+        laid_now = [touch for touch in touching[len(old) :] if touch.facing in laid - known.laid]
+        events = [*known.events, *self._impacts(onset, touching, struck, len(old))]
+        events += [self._event("lie_down", onset.before.time, touch) for touch in _one_of_each(laid_now)]
+        lost = sum(self._energies(touching, struck))
+        after = onset.at(struck.v)
+        work = after.kinetic() - onset.kinetic() + lost if onset.driven else 0.0
+        leaving = tuple(touch for touch in touching if touch not in struck.staying)
+        staying = tuple(touch for touch in struck.staying if touch not in known.left)
+        soon_back = after.soon_back(leaving, staying)
+        if soon_back:
+            stopped = after.held_still((*struck.staying, *soon_back))
+            lost += after.kinetic() - stopped.kinetic()
+            after = stopped
+        pressing = after.pressing(self._on_sections((*staying, *soon_back), laid))
         if pressing is None:
-            stalled = self._undecided(candidates, before.time)
-            pressing = ()
-        start = stretch.start(v, pressing)
-        leaving = tuple(touch for touch in touching if touch not in (*remaining, *known.left))
-        back = stretch.back_at_once(leaving, start.instant)
-        if back:
-            slowed = stretch.held_still(v, (*pressing, *back))
-            lost += max(0.0, stretch.kinetic(v) - stretch.kinetic(slowed))
-            pressing = stretch.pressing((*candidates, *back), slowed) or ()
-            start = stretch.start(slowed, pressing)
-        return Restart(start, pressing, lost, work, tuple(events), stalled)
+            return self._stopped(onset, known, touching)
+        arrangement = Arrangement(
+            pressing,
+            laid,
+            Follower(self.facings, pressing),
+            self._floors(x, inputs, pressing, laid),
+            onset.before.time + onset.brief,
+        )
+        return Restart(after.start(pressing), arrangement, lost, work, tuple(events))
 
-    def _touching(self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch]) -> Touches:
-        """Known contacts, and all others that touch at a state."""
+    def _impacts(self, onset: Onset, touching: Touches, struck: Struck, known: int) -> list[ContactEvent]:
+        """Impacts of the sections that touch anew, those behind the known ones."""
+        energies = self._energies(touching, struck)
+        found = []
+        for touch, impulse, energy in list(zip(touching, struck.impulses, energies, strict=True))[known:]:
+            if impulse > 0.0:
+                push = float(impulse * self.facings[touch.facing].force_unit)
+                found.append(self._event("impact", onset.before.time, touch, energy, push))
+        return found
+
+    def _energies(self, touching: Touches, struck: Struck) -> list[float]:
+        """Energy that the impulse at each section takes, J: half of it times the speed that it takes."""
+        energies = []
+        for touch, impulse, speed in zip(touching, struck.impulses, struck.speeds, strict=True):
+            unit = self.facings[touch.facing].energy_unit
+            # Of sections that touched before there is none.
+            energies.append(max(0.0, float(-0.5 * impulse * unit * speed)))
+        return energies
+
+    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart:
+        """The end of a motion, with everything as it was, because nothing is decided."""
+        names = sorted({self.facings[touch.facing].obstacle.name for touch in touching})
+        why = (
+            f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
+            f"{', '.join(names)} remain."
+        )
+        return Restart(onset.start(()), Arrangement(), events=known.events, stalled=why)
+
+    def _on_sections(self, touches: Touches, laid: frozenset[int]) -> Touches:
+        """Contacts of rods that lie at their sections: a place between two of them is given up where one touches."""
+        kept = []
+        for touch in touches:
+            at = self.facings[touch.facing].laid_at
+            if touch.facing in laid and touch.place not in at:
+                following = int(np.searchsorted(at, touch.place))
+                beside = at[max(following - 1, 0) : following + 1]
+                own = [other.place for other in touches if other.facing == touch.facing]
+                if np.isin(beside, own).any():
+                    continue
+            kept.append(touch)
+        return tuple(kept)
+
+    def _floors(
+        self, x: FloatArray, inputs: FloatArray, pressing: Touches, laid: frozenset[int]
+    ) -> tuple[FloatArray, ...]:
+        """The least gaps that what does not touch may have from now on."""
+        floors = []
+        for number, facing in enumerate(self.facings):
+            nodes = facing.nodes(x, inputs)
+            if number in laid:
+                gaps = facing.laid_gaps(nodes)
+            else:
+                gaps = np.array([self._lowest(number, nodes, pressing)])
+            floors.append(np.where(gaps > LEEWAY, 0.0, np.minimum(gaps, 0.0) - LEEWAY))
+        return tuple(floors)
+
+    def _touching(
+        self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch], laid: frozenset[int]
+    ) -> tuple[Touches, frozenset[int]]:
+        """Known contacts, and all others that touch at a state; and which rods lie then."""
         found: list[Touch] = []
+        lying: list[Touch] = []
         for number, facing in enumerate(self.facings):
             nodes = facing.nodes(x, inputs)
             own = [touch.place for touch in known if touch.facing == number]
-            found += [
-                Touch(number, minimum.place, minimum.inside)
-                for minimum in facing.minima(nodes, TOUCHING)
-                if all(abs(minimum.place - place) > SAME_PLACE for place in own)
+            if number not in laid:
+                minima = facing.minima(nodes, TOUCHING)
+                new = [one for one in minima if all(abs(one.place - place) > SAME_PLACE for place in own)]
+                if facing.of_body or not any(_is_flat(facing.at(nodes, one.place)) for one in new):
+                    found += [Touch(number, one.place, one.inside, min(one.gap, 0.0)) for one in new]
+                    continue
+                laid = laid | {number}
+            gaps = facing.laid_gaps(nodes)
+            lying += [
+                Touch(number, place, False, gap)
+                for place, gap in zip(facing.laid_at.tolist(), gaps.tolist(), strict=True)
+                if gap <= CLOSE and place not in own
             ]
-        return self.meeting_ends.distinct(tuple(known), tuple(found), SAME_PLACE)
+        touches = self.meeting_ends.distinct(tuple(known), tuple(found), SAME_PLACE)
+        still = [one._replace(slides=False) if one.facing in laid else one for one in touches]
+        return (*still, *lying), laid
 
     def _event(self, kind: str, time: float, touch: Touch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
         facing = self.facings[touch.facing]
         name = facing.obstacle.name
         return ContactEvent(kind, time, facing.rod, name, touch.place, energy, impulse, facing.of_body)
-
-    def _lies_down(self, touch: Touch, time: float) -> str:
-        facing = self.facings[touch.facing]
-        return (
-            f"At t = {time:.6g} s the rod {facing.rod!r} begins to lie down on {facing.obstacle.name!r} at X = "
-            f"{touch.place:.4g}: in motion contact is at points, not along stretches. Give the obstacle a width."
-        )
-
-    def _undecided(self, touches: Touches, time: float) -> str:
-        names = sorted({self.facings[touch.facing].obstacle.name for touch in touches})
-        return f"At t = {time:.6g} s it is not decided which of {len(touches)} contacts with {', '.join(names)} remain."
 
 
 @dataclass(frozen=True)
@@ -264,178 +392,38 @@ class _Known:
 
     Attributes:
         held: those that go on, where they are at the event.
+        laid: numbers of the rods and obstacles that lie on one another from now on.
         left: the one that lifts off, if one does.
         events: of them.
-        lying: the one whose rod begins to lie down; None where none does.
     """
 
     held: Touches
+    laid: frozenset[int]
     left: Touches = ()
     events: tuple[ContactEvent, ...] = ()
-    lying: Touch | None = None
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """The beginning of a stretch of a motion.
+def _guarded(guard: int | None, count: int, facings: int) -> tuple[int | None, int]:
+    """What a guard is of, and the number of its contact, or of the rod and obstacle.
 
-    Attributes:
-        contacts: of the model.
-        plain: equations of the model.
-        piece: of its inputs.
-        before: state before the event, without forces of contact.
-        interval: time after it in which gaps are smooth, s.
+    Args:
+        guard: its number; None for none.
+        count: number of contacts.
+        facings: number of rods and obstacles.
     """
-
-    contacts: ExactContacts
-    plain: MotionEquations
-    piece: Piece
-    before: Instant
-    interval: float
-
-    @property
-    def inputs(self) -> InputState:
-        """Inputs at the event, with their rates and accelerations."""
-        return self.piece.at(self.before.time)
-
-    @property
-    def driven(self) -> bool:
-        """Whether inputs move at the event: a base that does takes part in an impact."""
-        return bool(np.any(self.inputs.rate))
-
-    def stopped(self, events: tuple[ContactEvent, ...], stalled: str) -> Restart:
-        """The end of a motion, with everything as it was, because nothing is decided.
-
-        Args:
-            events: changes of contact until then.
-            stalled: why.
-        """
-        return Restart(self.start(self.before.v, ()), (), events=events, stalled=stalled)
-
-    def start(self, v: FloatArray, pressing: Touches) -> ConsistentStart:
-        """Accelerations and forces at some velocities while some sections press."""
-        equations = self.contacts.equations(self.plain, self.piece, pressing)
-        x = _padded(self.before.x, pressing)
-        return consistent_start(equations, self.before.time, x, _padded(v, pressing), self.interval)
-
-    def after_impact(self, touching: Touches, held: int) -> tuple[FloatArray, dict[Touch, float], Touches] | None:
-        """Velocities after an impact, its impulses, and what still touches; None where nothing settles it.
-
-        Impulses are in EI/ℓ² s.
-
-        Args:
-            touching: sections without a gap.
-            held: number of the first of them, which have touched all along.
-        """
-        if not touching:
-            return self.before.v, {}, ()
-        speeds = self.rates(touching, self.before.v)
-        # Steps keep their gaps at zero, and the rates of these to the error of the steps alone.
-        speeds[:held] = 0.0
-        still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
-        if speeds.min() >= -still:
-            return self.before.v, dict.fromkeys(touching, 0.0), self._staying(touching, speeds, still)
-
-        def solve(chosen: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-            v, impulses = self._impact(tuple(touching[k] for k in chosen))
-            rates = self.rates(touching, v)
-            rates[list(chosen)] = 0.0
-            return impulses / max(float(np.abs(impulses).max(initial=0.0)), TINY), rates
-
-        chosen = active_constraints(len(touching), solve, PUSH, still)
-        if chosen is None:
-            return None
-        struck = tuple(touching[k] for k in chosen)
-        v, impulses = self._impact(struck)
-        rates = self.rates(touching, v)
-        rates[list(chosen)] = 0.0
-        remaining = self._staying(touching, rates, still)
-        of_touch = dict.fromkeys(touching, 0.0)
-        of_touch.update(zip(struck, impulses.tolist(), strict=True))
-        return v, of_touch, remaining
-
-    @staticmethod
-    def _staying(touching: Touches, rates: FloatArray, still: float) -> Touches:
-        """Sections that do not leave."""
-        return tuple(touch for touch, rate in zip(touching, rates, strict=True) if rate <= still)
-
-    def pressing(self, candidates: Touches, v: FloatArray) -> Touches | None:
-        """Which of the sections that touch, and neither approach nor leave, press; None where nothing settles it."""
-        if not candidates:
-            return ()
-        size = self.plain.size
-        turning = self._follower(candidates).rates(self.before.x, v, self.inputs)[1]
-        by_unknowns = self._gradients(candidates)
-
-        def solve(chosen: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-            pressed = tuple(candidates[k] for k in chosen)
-            start = self.start(v, pressed)
-            opening = by_unknowns @ start.instant.a[:size] + turning
-            opening[list(chosen)] = 0.0
-            forces = start.instant.x[size:]
-            return forces / max(1.0, float(np.abs(forces).max(initial=0.0))), opening
-
-        scale = float(np.abs(turning).max()) + 1.0 / self.interval**2
-        chosen = active_constraints(len(candidates), solve, PUSH, STILL * scale)
-        if chosen is None:
-            return None
-        return tuple(candidates[k] for k in chosen)
-
-    def back_at_once(self, leaving: Touches, start: Instant) -> Touches:
-        """Sections that leave so slowly that they are back in next to no time.
-
-        Args:
-            leaving: the sections.
-            start: velocities and accelerations with which they do.
-        """
-        if not leaving:
-            return ()
-        size = self.plain.size
-        rates, turning = self._follower(leaving).rates(self.before.x, start.v[:size], self.inputs)
-        opening = self._gradients(leaving) @ start.a[:size] + turning
-        soon = 2.0 * rates < -opening * BRIEF * self.interval
-        return tuple(touch for touch, is_soon in zip(leaving, soon, strict=True) if is_soon)
-
-    def held_still(self, v: FloatArray, touches: Touches) -> FloatArray:
-        """Velocities nearest to given ones at which some sections neither approach nor leave."""
-        return replace(self, before=replace(self.before, v=v))._impact(touches)[0]
-
-    def kinetic(self, v: FloatArray) -> float:
-        """Kinetic energy, J."""
-        value, rate, *_ = self.inputs
-        kinetic, *_ = self.contacts.model.energies(self.before.x, v, value, rate)
-        return float(kinetic)
-
-    def _impact(self, touches: Touches) -> tuple[FloatArray, FloatArray]:
-        """Velocities after an impact at all of some sections, and its impulses."""
-        if not touches:
-            return self.before.v, np.zeros(0)
-        size = self.plain.size
-        equations = self.contacts.equations(self.plain, self.piece, touches)
-        x = _padded(self.before.x, touches)
-        blow = impact(equations, self.before.time, x, _padded(self.before.v, touches), self.interval)
-        # The impulse stands on the left of the balance, as the force does.
-        return blow.v[:size], blow.impulses[size:]
-
-    def rates(self, touches: Touches, v: FloatArray) -> FloatArray:
-        """Rates of the gaps of some sections, shape (m,), 1/s."""
-        return self._follower(touches).rates(self.before.x, v, self.inputs)[0]
-
-    def _gradients(self, touches: Touches) -> FloatArray:
-        return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
-
-    def _follower(self, touches: Touches) -> Follower:
-        return Follower(self.contacts.facings, touches)
-
-
-def _padded(values: FloatArray, touches: Touches) -> FloatArray:
-    """Unknowns, or their rates, with zeros for the forces of contact."""
-    return np.concatenate([values, np.zeros(len(touches))])
-
-
-def _guarded(guard: int | None, count: int) -> tuple[int | None, int]:
-    """What a guard is of, and the number of its contact, or of the rod and obstacle."""
     if guard is None:
         return None, 0
-    kind = min(guard // count, GAP) if count else GAP
-    return kind, guard - kind * count
+    if guard < GAP * count:
+        return guard // count, guard % count
+    of_facing = guard - GAP * count
+    return GAP + of_facing // facings, of_facing % facings
+
+
+def _one_of_each(touches: Sequence[Touch]) -> list[Touch]:
+    """One of the contacts of each rod with each obstacle."""
+    return list({touch.facing: touch for touch in touches}.values())
+
+
+def _is_flat(gap: Gap) -> bool:
+    """Whether a rod lies along the obstacle about a section, within it or at its end, whose gap is the least."""
+    return gap.bend <= FLATTEST and abs(gap.slope) <= SMOOTH

@@ -20,6 +20,12 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.moving_points import MovingPoints
 
+FAR = 0.02
+"""Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
+
+FLATTEST = 2e-2
+"""Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster."""
+
 
 class Rows(NamedTuple):
     """Weights of the points for a section, and for its first two derivatives with X, shape (M,) each."""
@@ -113,6 +119,15 @@ class Facing(ABC):
     @abstractmethod
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
         """Sections whose gaps are the least about them, and not above a bound over the length, base to tip."""
+
+    @property
+    @abstractmethod
+    def laid_at(self) -> FloatArray:
+        """Abscissae of the sections at which it is held where it lies, base to tip, shape (k,); none of a body."""
+
+    @abstractmethod
+    def laid_gaps(self, nodes: FloatArray) -> FloatArray:
+        """Gaps at these sections, over the length, shape (k,)."""
 
     @abstractmethod
     def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:

@@ -6,6 +6,7 @@ from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -220,7 +221,10 @@ class History:
         """What touches, and how hard; None in a scene without exact contact."""
         if not self.model.scene.touches_exactly:
             return None
-        stretches = [Stretch(leg.piece, leg.restart.phases, leg.integration.steps) for leg in self.legs]
+        stretches = []
+        for leg in self.legs:
+            phases = leg.restart.phases
+            stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches)
 
     @cached_property
@@ -241,6 +245,7 @@ def integrated(
     settings: StepSettings,
     after_step: AfterStep | None = None,
     p: FloatArray | None = None,
+    phases: Any = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -253,6 +258,7 @@ def integrated(
         settings: how to step.
         after_step: told of every step.
         p: stacked parameters; those of a model that has some.
+        phases: what holds at the start, as :class:`Switching` has it; None where that is looked for.
 
     Raises:
         SceneError: the start contradicts the constraints.
@@ -265,9 +271,10 @@ def integrated(
     frames = MeanFrames(model) if flies_alone(model) and coordinates is None else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
+    if phases is None:
+        phases = switching.first_phases(x, pieces[0].at(at.time).value)
     if coordinates is not None:
         at = coordinates.from_model(at)
-    phases = switching.first_phases(x, pieces[0].at(at.time).value)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
         plain = equations_of(model, piece, p, frames)
@@ -280,7 +287,7 @@ def integrated(
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
-                touches = model.scene.touches_exactly and len(restart.phases) > 0
+                touches = model.scene.touches_exactly and len(restart.phases.touches) > 0
                 _check_start(restart.start, pieces[-1].end, touches=touches)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant

@@ -154,7 +154,8 @@ class MeetingEnds:
             if not rises or min(rises)[0] > SMOOTH:
                 return end._replace(slides=False)
         _, (number, X) = min(rises)
-        return Touch(number, X, True)
+        height = touch.height * self._facings[touch.facing].length / self._facings[number].length
+        return Touch(number, X, True, height)
 
     def distinct(self, known: Touches, found: Touches, near: float) -> Touches:
         """Known contacts, and found ones that are no others seen from the next rod.

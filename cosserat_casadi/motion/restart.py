@@ -17,7 +17,7 @@ class ContactEvent:
     """A change of contact in a motion.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end", "slide_from_end" or "slide_over_joint".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down".
         time: s.
         rod: name of the rod, or of the body.
         obstacle: name of the obstacle.

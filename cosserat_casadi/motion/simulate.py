@@ -233,7 +233,9 @@ class Simulator:
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
-        return integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
+        return integrated(
+            self.model, pieces, self.start.x, still, method, settings, self._after_step, phases=self.start.phases
+        )
 
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
@@ -348,7 +350,14 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
 def ended_early(simulator: Simulator, history: History) -> Motion:
     """The motion as far as it was computed; of a part no error is estimated."""
     outcome = outcome_of(history)
-    return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
+    message = message_of(history, outcome)
+    if outcome is not MotionOutcome.INTERRUPTED:
+        entered = told_inside(history, history.end.time, tolerance_of(history.model, simulator.simulation))
+        if entered:
+            # What is pushed into an obstacle has no motion that goes on.
+            outcome = MotionOutcome.CONTACT_UNSETTLED
+            message = f"{outcome.value} {entered}"
+    return motion_of(simulator, history, outcome, float("nan"), message)
 
 
 def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:
@@ -396,6 +405,9 @@ def warnings(simulator: Simulator) -> list[str]:
 def _loaded_at_once(simulator: Simulator) -> bool:
     """Whether the start is out of balance: loads that were not there act from t = 0 on."""
     model = simulator.model
+    if simulator.start.phases is not None and simulator.start.phases.touches:
+        # Obstacles hold the rods.
+        return False
     inputs = simulator.moving.at(0.0).value
     residual = model.residual(simulator.start.x, inputs).full()[:, 0]
     return bool(np.abs(residual).max(initial=0.0) > OUT_OF_BALANCE)

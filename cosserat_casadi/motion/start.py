@@ -8,18 +8,25 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.metrics import prolong
+from cosserat_casadi.equilibrium.contact.projection import projected
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.exact_contact import Arrangement, ExactContacts
+from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 GIVEN = "At rest in the equilibrium that was given."
 TOUCHES = (
-    "The rods touch obstacles in the equilibrium of the inputs at t = 0; where obstacles have no width a motion starts "
-    'apart from them: start = "unloaded", or other inputs at t = 0.'
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on the modes of the motion no such "
+    'equilibrium was found: give more modes, start = "unloaded", or other inputs at t = 0.'
+)
+FREE_TOUCHES = (
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
+    'let go in contact is no start: give start = "unloaded", or other inputs at t = 0.'
 )
 
 
@@ -31,11 +38,13 @@ class Start:
         x: unknowns, shape (size,); multipliers and tensions are a guess.
         sentence: what the user is told; of a start that failed, why.
         found: whether there is a state to start from.
+        phases: what touches; None where that is looked for.
     """
 
     x: FloatArray
     sentence: str
     found: bool = True
+    phases: Arrangement | None = None
 
 
 def unloaded_start(model: Model) -> Start:
@@ -66,7 +75,8 @@ def given_start(model: Model, solution: Solution) -> Start:
     names = set(held.inputs.names)
     given = solution.model.inputs.unpack(solution.inputs)
     values = {name: value for name, value in given.items() if name in names}
-    guess = prolong(solution, held)
+    # Unknowns would name no contacts: a solution does, and they are tried first.
+    guess = solution if model.scene.touches_exactly else prolong(solution, held)
     return _started(model, solve(held, values, start=guess), GIVEN)
 
 
@@ -81,9 +91,25 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     if not solution.converged:
         return Start(x, solution.message, found=False)
     if model.scene.touches_exactly and solution.contacts:
-        return Start(x, TOUCHES, found=False)
+        if _held(model).size != model.size:
+            return Start(x, FREE_TOUCHES, found=False)
+        return _touching(model, solution, sentence)
     # Bases that are free begin where the scene puts them, where their unknowns are zero.
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
     return Start(np.asarray(x), sentence)
+
+
+def _touching(model: Model, solution: Solution, sentence: str) -> Start:
+    """The start in an equilibrium in contact: that of the motion's own modes, next to it."""
+    names = set(model.inputs.names)
+    # The forces of contacts are inputs of the solution's model.
+    given = solution.model.inputs.unpack(solution.inputs)
+    inputs = model.pack({name: value for name, value in given.items() if name in names})
+    guess = projected(solution, model)[: model.size]
+    found = resting(ExactContacts(model), guess, inputs, solution.contacts)
+    if found is None:
+        return Start(model.unloaded(), TOUCHES, found=False)
+    x, arrangement = found
+    return Start(x, sentence, phases=arrangement)

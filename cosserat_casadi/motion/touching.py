@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import Facing, Gap
+from cosserat_casadi.motion.facing import FAR, FLATTEST, Facing, Gap
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
@@ -24,12 +24,15 @@ class Touch(NamedTuple):
     Attributes:
         facing: number of the rod and obstacle among those that may touch.
         place: abscissa X of the section that touches, where the contact was last looked at.
-        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod, or a body.
+        slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along,
+            or a body.
+        height: gap, over the length, that it keeps: a share of what counts as touching.
     """
 
     facing: int
     place: float
     slides: bool
+    height: float = 0.0
 
 
 Touches = tuple[Touch, ...]
@@ -57,24 +60,50 @@ class Follower:
     Args:
         facings: rods and obstacles that may touch.
         touches: the contacts.
+
+    Attributes:
+        facings: what touches, of each contact.
+        touches: the contacts.
+        places: where they were last followed to.
     """
 
     def __init__(self, facings: Sequence[Facing], touches: Touches) -> None:
         self.facings = [facings[touch.facing] for touch in touches]
         self.touches = touches
-        self._places = [touch.place for touch in touches]
+        self.places = [touch.place for touch in touches]
 
-    def follow(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap]]:
-        """Places and gaps of the contacts at a state of the motion, next to which others are looked for from now on."""
+    def follow(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap], list[bool]]:
+        """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.
+
+        One that is gone is still looked for where it was.
+        """
         places, gaps = self.gaps(x, inputs)
-        self._places = places
-        return places, gaps
+        gone = self.gone(x, inputs, places)
+        kept = zip(places, self.places, gone, strict=True)
+        self.places = [old if is_gone else new for new, old, is_gone in kept]
+        return places, gaps, gone
+
+    def gone(self, x: FloatArray, inputs: FloatArray, places: Sequence[float]) -> list[bool]:
+        """Which contacts have jumped: they are elsewhere, and where they were the gap has lost its bend.
+
+        One that slides fast may have come as far between two looks at it, with a bend all the way.
+
+        Args:
+            x: unknowns, shape (n,).
+            inputs: stacked inputs, shape (m,).
+            places: of the contacts there.
+        """
+        found = []
+        for facing, old, new in zip(self.facings, self.places, places, strict=True):
+            is_far = abs(new - old) > FAR
+            found.append(is_far and facing.at(facing.nodes(x, inputs), old).bend <= FLATTEST)
+        return found
 
     def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap]]:
         """Places and gaps of the contacts."""
         gaps = []
         places = []
-        for touch, facing, near in zip(self.touches, self.facings, self._places, strict=True):
+        for touch, facing, near in zip(self.touches, self.facings, self.places, strict=True):
             nodes = facing.nodes(x, inputs)
             place = facing.place(nodes, near) if touch.slides else near
             places.append(place)
@@ -125,7 +154,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
         rows = plain.residual(t, x[:size], v[:size], a[:size])
         for force, gradient in zip(x[size:], state.gradients, strict=True):
             rows = rows - force * gradient
-        return np.concatenate([rows, [gap.value for gap in state.gaps]])
+        open_by = [gap.value - touch.height for gap, touch in zip(state.gaps, touches, strict=True)]
+        return np.concatenate([rows, open_by])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass = (_bordered(part, count) for part in plain.jacobians(t, x[:size], v[:size], a[:size]))

@@ -103,6 +103,52 @@ def consistent_start(
     )
 
 
+def response(equations: MotionEquations, instant: Instant, directions: FloatArray) -> FloatArray:
+    """Accelerations that unit forces make, or velocities that unit impulses make, all constraints kept, shape (n, k).
+
+    Args:
+        equations: the equations of motion.
+        instant: positions and velocities at which they are linearised.
+        directions: forces on the unknowns, one a column, shape (n, k).
+    """
+    differential = equations.differential
+    linearisation = equations.linearised(instant)
+    constraints = _constraint_rows(linearisation, differential)
+    inverse, _ = _pseudo_inverse(_saddle(linearisation, differential, constraints))
+    forced = np.where(constraints[:, None], 0.0, directions)
+    return np.where(differential[:, None], inverse @ forced, 0.0)
+
+
+def shortly_after(
+    equations: MotionEquations, instant: Instant, horizon: float, directions: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Mean accelerations over a short time, and those that unit forces make: a linear step of Euler's implicit method.
+
+    Damping and stiffness of what is stiff answer within that time: accelerations at its beginning say nothing of it.
+
+    Args:
+        equations: the equations of motion.
+        instant: with consistent accelerations.
+        horizon: the time h, s.
+        directions: forces on the unknowns, one a column, shape (n, k).
+
+    Returns:
+        accelerations, shape (n,), 1/s², and answers, shape (n, k).
+    """
+    differential = equations.differential
+    linearisation = equations.linearised(instant)
+    constraints = _constraint_rows(linearisation, differential)
+    stiffness, damping = linearisation.stiffness, linearisation.damping
+    answering = horizon * damping + horizon**2 * stiffness
+    answering[constraints] = 0.0
+    matrix = _saddle(linearisation, differential, constraints) + np.where(differential, answering, 0.0)
+    inverse, _ = _pseudo_inverse(matrix)
+    moved = -horizon * stiffness @ instant.v - answering @ instant.a
+    forced = np.where(constraints[:, None], 0.0, np.column_stack([moved, directions]))
+    answers = np.where(differential[:, None], inverse @ forced, 0.0)
+    return instant.a + answers[:, 0], answers[:, 1:]
+
+
 @dataclass(frozen=True)
 class Impact:
     """What a blow that closes constraints does in no time.

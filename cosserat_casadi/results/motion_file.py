@@ -127,6 +127,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "at": np.array([contact.at for contact in contacts]),
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
+        "lies": np.array([contact.lies for contact in contacts], dtype=bool),
         "events": {
             name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__
         },

@@ -14,6 +14,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 
@@ -27,7 +28,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
     """The equilibrium of a result file, for a scene that has it.
 
     A result file lists strains along the rods. They give the strain coordinates; multipliers and floating frames are
-    found by solving once more, at the inputs of the file and on its discretisation.
+    found by solving once more, at the inputs of the file and on its discretisation. So are contacts that are exact.
 
     Args:
         path: what ``cosserat solve`` has written.
@@ -43,7 +44,8 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
     held = scene.held().baked()
     try:
         model = build(held, _discretisation(data, held))
-        guess = _strain_coordinates(model, data)
+        # Contacts are looked for anew: the elements that they made of the rods are not those of the scene.
+        guess = None if held.touches_exactly else _strain_coordinates(model, data)
         solution = solve(model, _inputs(model, data), start=guess)
         distance = _distance(solution, data)
     except (KeyError, TypeError, ValueError, IndexError) as error:
@@ -76,10 +78,11 @@ def _discretisation(data: Mapping[str, Any], scene: Scene) -> dict[str, Discreti
     chosen = {}
     for rod in scene.rods:
         entry = data["discretisation"][rod.name]
+        breaks = element_ends(scene, rod.name) if scene.touches_exactly else tuple(entry["breaks"])
         chosen[rod.name] = Discretisation(
             modes=tuple(entry["modes"]),
             nodes=entry["nodes"],
-            breaks=tuple(entry["breaks"]),
+            breaks=breaks,
             transport=entry["transport"],
         )
     return chosen

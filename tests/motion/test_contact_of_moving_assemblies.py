@@ -16,7 +16,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.exact_contact import LEEWAY, ExactContacts
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.meeting_ends import MeetingEnds, RodEnd, meetings, watched_ends
 from cosserat_casadi.motion.simulate import moving_inputs
@@ -377,19 +377,25 @@ def test_a_head_that_is_shaken_off_the_floor_by_its_handle_does_not_leave_and_to
     motion = simulate(moving(CLUB))
     assert motion.converged, motion.message
     assert [event.rod for event in motion.events[:2]] == ["head", "handle"]
-    assert motion.events[1].energy > 100 * sum(event.energy for event in motion.events[2:])
+    lies = [event.kind for event in motion.events].index("lie_down")
+    assert motion.events[lies].rod == "handle"
+    assert motion.events[1].energy > 100 * sum(event.energy for event in motion.events[2:lies])
     heights = motion.body("head").position[:, 2] - 0.03
     assert heights.min() > -1e-4 * 0.4
     assert abs(motion.energy.imbalance).max() < 2e-3
 
 
-@pytest.mark.parametrize(("inside", "allowed"), [(1e-7, 0.0), (1e-3, -1e-3 + 1e-6)])
-def test_what_a_stretch_begins_inside_by_the_error_of_steps_may_leave(inside: float, allowed: float) -> None:
-    floor = FLOOR.format(height=-0.03 + inside * 0.4, who='bodies = ["ball"]')
+def test_what_a_stretch_begins_inside_may_leave_and_comes_no_deeper() -> None:
+    """A ball a little inside that is on its way out: the guard of its gap is LEEWAY there, over the length."""
+    floor = FLOOR.format(height=-0.03 + 1e-10 * 0.4, who='bodies = ["ball"]')
     model = moving(head() + rod() + BALL.format(rod="rod") + floor)
     (piece,) = moving_inputs(model).pieces(0.1)
-    _, guards = ExactContacts(model).arranged(equations_of(model, piece), piece, ())
-    still = np.zeros(model.size)
-    first = guards(Instant(0.0, model.unloaded(), still, still))
-    assert_allclose(first, [allowed], rtol=0, atol=1e-12)
-    assert_allclose(guards(Instant(0.0, model.unloaded(), still, still)), first, rtol=0, atol=0)
+    contacts = ExactContacts(model)
+    plain = equations_of(model, piece)
+    x, still = model.unloaded(), np.zeros(model.size)
+    upwards = contacts.facings[0].gradient(x, np.zeros(0), contacts.facings[0].at(np.zeros((1, 3)), 0.0))
+    begin = Instant(0.0, x, upwards, still)
+    restart = contacts.restarted(plain, piece, begin, contacts.first_phases(x, np.zeros(0)), None, 1e-3)
+    assert not restart.phases.touches
+    _, guards = contacts.arranged(plain, piece, restart.phases)
+    assert_allclose(guards(begin)[0], LEEWAY, rtol=1e-6, atol=0)

@@ -18,7 +18,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
-from cosserat_casadi.numerics.complementarity import active_constraints
 
 ROD = """
 schema = 1
@@ -200,15 +199,6 @@ def test_no_section_is_inside_and_no_force_pulls_between_steps(on_ball: Motion) 
 
 
 @pytest.mark.slow
-def test_a_rod_that_lies_down_ends_the_motion_and_is_told() -> None:
-    motion = simulate(moving(rod(FLOOR.format(height=-0.03), stiffness=0.01, duration=0.6, damping=0.05)))
-    assert motion.outcome is MotionOutcome.CONTACT_UNSETTLED
-    assert not motion.converged
-    assert "'rod'" in motion.message
-    assert "t = " in motion.message
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [
@@ -225,11 +215,8 @@ def test_energies_balance_with_a_base_that_moves_and_off_the_plane(changes: list
     assert abs(motion.energy.imbalance).max() < 3e-4
 
 
-def test_a_start_that_touches_is_told_and_one_that_does_not_is_an_equilibrium() -> None:
+def test_a_start_that_does_not_touch_is_an_equilibrium() -> None:
     text = rod(BALL).replace('start = "unloaded"', 'start = "equilibrium"')
-    touching = simulate(moving(text))
-    assert touching.outcome is MotionOutcome.NO_START
-    assert "touch obstacles" in touching.message
     apart = simulate(moving(text.replace("-9.81", "-2.0").replace("duration = 0.5", "duration = 0.05")))
     assert apart.converged, apart.message
     assert not apart.events
@@ -285,24 +272,3 @@ def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None
     write_motion(on_ball, tmp_path / "motion.npz")
     with np.load(tmp_path / "motion.npz") as arrays:
         assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
-
-
-def test_complementarity_of_three_constraints_is_that_of_all_choices() -> None:
-    rng = np.random.default_rng(5)
-    for _ in range(50):
-        factor = rng.normal(size=(3, 3))
-        matrix = factor @ factor.T + 0.1 * np.eye(3)
-        rates = rng.normal(size=3)
-
-        def solved(
-            chosen: tuple[int, ...], matrix: FloatArray = matrix, rates: FloatArray = rates
-        ) -> tuple[FloatArray, FloatArray]:
-            own = list(chosen)
-            forces = np.linalg.solve(matrix[np.ix_(own, own)], -rates[own])
-            return forces, rates + matrix[:, own] @ forces
-
-        chosen = active_constraints(3, solved, 1e-12, 1e-12)
-        assert chosen is not None
-        forces, opening = solved(chosen)
-        assert forces.min(initial=0.0) >= 0.0
-        assert opening.min() >= -1e-9

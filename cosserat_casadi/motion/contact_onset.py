@@ -1,0 +1,185 @@
+"""The beginning of a stretch of a motion: impacts, and which of the sections that touch press from then on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.facing import Facing
+from cosserat_casadi.motion.moving_inputs import InputState, Piece
+from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
+from cosserat_casadi.numerics.complementarity import least_pushes
+from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, response, shortly_after
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+STILL = 1e-9
+"""Speed of opening, over that of approach or in lengths per interval, that counts as none."""
+
+LOW = 1e-6
+"""Height over the length up to which a bounce is not followed: the section stays."""
+
+BRIEF = 1e-3
+"""Share of the interval after an event over which accelerations decide what presses.
+
+Stiff modes that are damped hard answer to a blow, and forget it, in far less: at the very beginning they would decide.
+"""
+
+LONGER = 2.0
+"""Factor on that time with each change of contact in a moment: what presses is then decided over longer times."""
+
+LONGEST = 0.1
+"""The longest such time, over the interval."""
+
+
+@dataclass(frozen=True)
+class Struck:
+    """What an impact leaves.
+
+    Attributes:
+        v: velocities after it, shape (n,), 1/s.
+        impulses: of the sections that touch, in EI/ℓ² s, shape (m,).
+        speeds: rates of their gaps before it, shape (m,), 1/s.
+        staying: those that do not leave.
+    """
+
+    v: FloatArray
+    impulses: FloatArray
+    speeds: FloatArray
+    staying: Touches
+
+
+@dataclass(frozen=True)
+class Onset:
+    """The state at which a stretch begins.
+
+    Attributes:
+        model: the model, built for a motion.
+        facings: its rods and obstacles that may touch.
+        plain: its equations without contact.
+        piece: of its inputs.
+        before: state before the event, without forces of contact.
+        interval: time after it in which gaps are smooth, s.
+        changes: of contact in the moment before: where there are many, longer times decide.
+    """
+
+    model: Model
+    facings: Sequence[Facing]
+    plain: MotionEquations
+    piece: Piece
+    before: Instant
+    interval: float
+    changes: int = 0
+
+    @property
+    def inputs(self) -> InputState:
+        """Inputs at the event, with their rates and accelerations."""
+        return self.piece.at(self.before.time)
+
+    @property
+    def driven(self) -> bool:
+        """Whether inputs move at the event: a base that does takes part in an impact."""
+        return bool(np.any(self.inputs.rate))
+
+    @property
+    def brief(self) -> float:
+        """Time over which accelerations decide what presses, s."""
+        return BRIEF * self.interval
+
+    def at(self, v: FloatArray) -> Onset:
+        """The same state with other velocities."""
+        return replace(self, before=replace(self.before, v=v))
+
+    def start(self, pressing: Touches) -> ConsistentStart:
+        """Accelerations and forces while some sections press."""
+        equations = self.plain
+        if pressing:
+            equations = with_touches(self.plain, self._follower(pressing), self.piece)
+        x = _padded(self.before.x, pressing)
+        return consistent_start(equations, self.before.time, x, _padded(self.before.v, pressing), self.interval)
+
+    def held_still(self, touches: Touches) -> Onset:
+        """With velocities at which some sections neither approach nor leave.
+
+        Steps keep gaps at zero, and their rates as far as the steps are exact: what is left would pass for an impact.
+        """
+        if not touches:
+            return self
+        gradients = self._gradients(touches)
+        answers = response(self.plain, self.before, gradients.T)
+        impulses, *_ = np.linalg.lstsq(gradients @ answers, self.rates(touches), rcond=None)
+        return self.at(self.before.v - answers @ impulses)
+
+    def struck(self, touching: Touches) -> Struck | None:
+        """What an impact at sections without a gap leaves; None where nothing settles it."""
+        if not touching:
+            return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
+        speeds = self.rates(touching)
+        still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
+        gradients = self._gradients(touching)
+        answers = response(self.plain, self.before, gradients.T)
+        impulses = least_pushes(gradients @ answers, speeds, still)
+        if impulses is None:
+            return None
+        v = self.before.v + answers @ impulses
+        rates = np.where(impulses > 0.0, 0.0, self.at(v).rates(touching))
+        staying = tuple(touch for touch, rate in zip(touching, rates, strict=True) if rate <= still)
+        return Struck(v, impulses, speeds, staying)
+
+    def soon_back(self, leaving: Touches, staying: Touches) -> Touches:
+        """Those of the sections that leave which would be back without having risen above the least bounce."""
+        if not leaving:
+            return ()
+        opening, compliance, tolerance = self._openings((*leaving, *staying))
+        own = slice(len(leaving), None)
+        forces = least_pushes(compliance[own, own], opening[own], tolerance)
+        if forces is None:
+            return ()
+        accelerations = (opening + compliance[:, own] @ forces)[: len(leaving)]
+        rates = self.rates(leaving)
+        # A section that leaves with the speed v and falls back with the acceleration a rises by v²/(2a).
+        low = (accelerations < 0.0) & (rates**2 < -2.0 * accelerations * LOW)
+        return tuple(touch for touch, is_low in zip(leaving, low, strict=True) if is_low)
+
+    def pressing(self, candidates: Touches) -> Touches | None:
+        """Which of the sections that touch, and neither approach nor leave, press; None where nothing settles it."""
+        if not candidates:
+            return ()
+        opening, compliance, tolerance = self._openings(candidates)
+        forces = least_pushes(compliance, opening, tolerance)
+        if forces is None:
+            return None
+        return tuple(touch for touch, force in zip(candidates, forces, strict=True) if force > 0.0)
+
+    def kinetic(self) -> float:
+        """Kinetic energy, J."""
+        kinetic, *_ = self.model.energies(self.before.x, self.before.v, self.inputs.value, self.inputs.rate)
+        return float(kinetic)
+
+    def rates(self, touches: Touches) -> FloatArray:
+        """Rates of the gaps of some sections, shape (m,), 1/s."""
+        return self._follower(touches).rates(self.before.x, self.before.v, self.inputs)[0]
+
+    def _openings(self, touches: Touches) -> tuple[FloatArray, FloatArray, float]:
+        """Second derivatives of gaps without forces, by forces, and the one that counts as none."""
+        _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
+        gradients = self._gradients(touches)
+        free = self.start(()).instant
+        horizon = min(self.brief * LONGER**self.changes, LONGEST * self.interval)
+        a, answers = shortly_after(self.plain, free, horizon, gradients.T)
+        tolerance = STILL * (float(np.abs(turning).max()) + 1.0 / self.interval**2)
+        return gradients @ a + turning, gradients @ answers, tolerance
+
+    def _gradients(self, touches: Touches) -> FloatArray:
+        return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
+
+    def _follower(self, touches: Sequence[Touch]) -> Follower:
+        return Follower(self.facings, tuple(touches))
+
+
+def _padded(values: FloatArray, touches: Touches) -> FloatArray:
+    """Unknowns, or their rates, with zeros for the forces of contact."""
+    return np.concatenate([values, np.zeros(len(touches))])

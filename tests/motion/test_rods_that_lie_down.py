@@ -1,0 +1,195 @@
+"""Rods that lie down in motion, and motions that start in contact: against contact at rest, and by their energy."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from typer.testing import CliRunner
+
+from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve, write_motion
+from cosserat_casadi.cli.main import app
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.laid_sections import lobatto
+from cosserat_casadi.motion.trajectory import MotionOutcome
+from cosserat_casadi.numerics.consistent_start import response, shortly_after
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+LIES = "examples/rod_lies_down.toml"
+LENGTH = 0.4
+
+
+def moved(*changes: str) -> Motion:
+    scene = read_scene(LIES, ["simulation.tolerance=2e-3", *changes])
+    return simulate(build(scene.with_motion_inputs(), moving=True))
+
+
+def at_rest(*changes: str) -> Solution:
+    """The rod on the table as statics has it, to 1e-6."""
+    text = Path(LIES).read_text().replace("modes = 6\nnodes = 16\n", "")
+    return solve(build(parse_scene(text, ["accuracy.modes=12", *changes])))
+
+
+def deepest(motion: Motion, times: FloatArray) -> float:
+    """Depth of the deepest section at any of some times, over the length."""
+    (facing,) = facings(motion.model)
+    states = [motion.at(float(time)) for time in times]
+    return -min(float(facing.gaps(facing.nodes(state.x, state.inputs)).min()) for state in states)
+
+
+@pytest.fixture(scope="module")
+def fallen() -> Motion:
+    return moved()
+
+
+@pytest.fixture(scope="module")
+def resting() -> Motion:
+    eight = ["accuracy.modes=8", "accuracy.nodes=18"]
+    return moved(*eight, 'simulation.start="equilibrium"', "simulation.duration=0.1", "simulation.frames=11")
+
+
+def test_a_rod_that_has_fallen_on_a_table_lies_as_statics_has_it(fallen: Motion) -> None:
+    assert fallen.converged, fallen.message
+    wanted = at_rest()
+    (line,) = wanted.contacts
+    assert line.kind == "line"
+    last = fallen.contacts[-1]
+    assert len(last) >= 2
+    assert any(contact.lies for contacts in fallen.contacts for contact in contacts)
+    # Six modes of one element stand for a rod whose shear force jumps where it lifts off.
+    resultant = np.sum([contact.force for contact in last], axis=0)
+    assert_allclose(resultant, line.force, rtol=0, atol=0.02 * np.linalg.norm(line.force))
+    assert_allclose(min(contact.at for contact in last), line.start, rtol=0, atol=0.06)
+    assert_allclose(fallen.tip().position[-1], wanted.tip().position[0], rtol=0, atol=2e-3 * LENGTH)
+    assert fallen.energy.kinetic[-1] < 1e-4 * fallen.energy.kinetic.max()
+
+
+def test_a_rod_that_lies_down_is_never_deep_nor_pulled_and_its_energy_only_falls(fallen: Motion) -> None:
+    kinds = [event.kind for event in fallen.events]
+    assert {"impact", "lie_down"} <= set(kinds)
+    assert deepest(fallen, np.linspace(0.0, 0.5, 251)) < 2e-3
+    forces = [contact.force[2] for contacts in fallen.contacts for contact in contacts]
+    assert min(forces) > 0.0
+    energy = fallen.energy
+    assert abs(energy.imbalance).max() < 1e-3
+    total = energy.kinetic + energy.elastic + energy.potential
+    assert np.diff(total).max() < 1e-4 * np.ptp(total)
+    assert np.diff(energy.impacts).min() >= 0.0
+
+
+def test_a_motion_that_starts_in_contact_stays_at_rest(resting: Motion) -> None:
+    assert resting.converged, resting.message
+    assert not resting.events
+    assert not resting.warnings
+    assert_allclose(resting.tip().position[-1], resting.tip().position[0], rtol=0, atol=1e-12)
+    assert np.abs(resting.v).max() < 1e-7
+    wanted = at_rest()
+    resultant = np.sum([contact.force for contact in resting.contacts[0]], axis=0)
+    assert_allclose(resultant, wanted.contacts[0].force, rtol=0, atol=5e-3 * np.linalg.norm(resultant))
+    assert_allclose(resting.tip().position[0], wanted.tip().position[0], rtol=0, atol=3e-4 * LENGTH)
+    assert deepest(resting, np.array([0.0])) < 1e-4
+
+
+@pytest.mark.slow
+def test_the_start_in_contact_converges_to_statics_with_the_modes() -> None:
+    wanted = at_rest().tip().position[0]
+    short = ['simulation.start="equilibrium"', "simulation.duration=0.01", "simulation.frames=2"]
+    apart = []
+    for modes in (4, 8, 16):
+        motion = moved(*short, f"accuracy.modes={modes}", f"accuracy.nodes={2 * modes + 4}")
+        apart.append(float(np.linalg.norm(motion.tip().position[0] - wanted)) / LENGTH)
+    assert apart[1] < 0.5 * apart[0]
+    assert apart[2] < 0.5 * apart[1]
+
+
+def test_a_motion_goes_on_from_a_result_in_contact(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(Path(LIES).read_text().replace("duration = 0.5", "duration = 0.02"))
+    result = tmp_path / "result.json"
+    run = CliRunner().invoke(app, ["solve", str(scene), "--output", str(result)])
+    assert run.exit_code == 0, run.output
+    assert json.loads(result.read_text())["contacts"][0]["kind"] == "line"
+    motion = tmp_path / "motion.json"
+    run = CliRunner().invoke(app, ["simulate", str(scene), "--from", str(result), "--output", str(motion)])
+    assert run.exit_code == 0, run.output
+    data = json.loads(motion.read_text())
+    assert data["contact"]["row"][0] == 0
+    assert all(data["contact"]["lies"])
+    assert not data["contact"]["events"]["kind"]
+
+
+def test_a_rod_on_a_ball_starts_at_the_section_that_touches() -> None:
+    ball = '{name="table",kind="sphere",centre=[0.25,0,-0.09],radius=0.03}'
+    motion = moved('simulation.start="equilibrium"', "simulation.duration=0.05", f"obstacles=[{ball}]")
+    assert motion.converged, motion.message
+    (contact,) = motion.contacts[-1]
+    assert not contact.lies
+    assert_allclose(motion.contacts[0][0].at, contact.at, rtol=0, atol=1e-9)
+    # Without friction the force stands on the rod.
+    before, after = motion.section("rod", [contact.at - 1e-5, contact.at + 1e-5]).position[-1]
+    tangent = (after - before) / (2e-5 * LENGTH)
+    assert_allclose(contact.force @ tangent, 0.0, rtol=0, atol=1e-5 * np.linalg.norm(contact.force))
+
+
+@pytest.mark.slow
+def test_a_rod_that_is_laid_down_slowly_follows_statics_and_comes_off_again() -> None:
+    lowered = "motions=[{input='rod.base.position',amplitude=[0,0,-0.175],frequency=0.5,wave='one_minus_cosine'}]"
+    changes = ["table.point=[0,0,-0.09]", "rod.damping.retardation_time=0.05", "accuracy.modes=6", "accuracy.nodes=16"]
+    apart = moved(lowered, *changes, "rod.base.position=[0,0,0.35]", 'simulation.start="equilibrium"',
+                  "simulation.duration=2.0", "simulation.frames=41")  # fmt: skip
+    assert apart.converged, apart.message
+    assert not apart.contacts[0]
+    assert not apart.contacts[-1]
+    assert [event.kind for event in apart.events].count("lift_off") >= 1
+    lowest = int(np.argmin(apart.section("rod", [0.0]).position[:, 0, 2]))
+    base = apart.section("rod", [0.0]).position[lowest, 0]
+    wanted = at_rest(*changes[:1], f"rod.base.position=[0,0,{base[2]}]")
+    assert_allclose(apart.tip().position[lowest], wanted.tip().position[0], rtol=0, atol=0.01 * LENGTH)
+    resultant = np.sum([contact.force for contact in apart.contacts[lowest]], axis=0)
+    assert_allclose(resultant, wanted.contacts[0].force, rtol=0, atol=0.05 * np.linalg.norm(resultant))
+
+
+@pytest.mark.slow
+def test_a_base_that_is_driven_into_the_table_is_told() -> None:
+    lowered = "motions=[{input='rod.base.position',amplitude=[0,0,-0.06],frequency=1.0,wave='one_minus_cosine'}]"
+    motion = moved(lowered, "accuracy.modes=4", "accuracy.nodes=12", "simulation.duration=0.5")
+    assert motion.outcome is MotionOutcome.CONTACT_UNSETTLED
+    assert "inside 'table'" in motion.message
+
+
+def test_files_tell_which_sections_lie(resting: Motion, tmp_path: Path) -> None:
+    write_motion(resting, tmp_path / "motion.npz")
+    with np.load(tmp_path / "motion.npz") as arrays:
+        assert arrays["contact.lies"].all()
+        assert len(arrays["contact.lies"]) == len(arrays["contact.at"])
+
+
+def test_nodes_of_lobatto_are_those_of_closed_form() -> None:
+    assert_allclose(lobatto(1), [0.0, 1.0], rtol=0, atol=0)
+    assert_allclose(lobatto(3), [0.0, (1 - 5**-0.5) / 2, (1 + 5**-0.5) / 2, 1.0], rtol=0, atol=1e-15)
+    assert_allclose(lobatto(4), [0.0, (1 - (3 / 7) ** 0.5) / 2, 0.5, (1 + (3 / 7) ** 0.5) / 2, 1.0], rtol=0, atol=1e-15)
+
+
+def test_what_happens_shortly_after_is_a_step_of_the_implicit_method() -> None:
+    mass, damping, stiffness, load = 2.0, 50.0, 3e4, 7.0
+
+    def residual(_: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        return np.asarray(mass * a + damping * v + stiffness * x - load)
+
+    def jacobians(*_: object) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return np.array([[stiffness]]), np.array([[damping]]), np.array([[mass]])
+
+    equations = MotionEquations(np.array([True]), residual, jacobians)
+    x, v, h = 1e-3, 0.4, 0.01
+    a = (load - damping * v - stiffness * x) / mass
+    instant = Instant(0.0, np.array([x]), np.array([v]), np.array([a]))
+    mean, answer = shortly_after(equations, instant, h, np.ones((1, 1)))
+    # M a + D (v + h a) + K (x + h v + h² a) = f
+    effective = mass + h * damping + h**2 * stiffness
+    assert_allclose(mean, (load - damping * v - stiffness * (x + h * v)) / effective, rtol=1e-12, atol=0)
+    assert_allclose(answer, 1.0 / effective, rtol=1e-12, atol=0)
+    assert_allclose(response(equations, instant, np.ones((1, 1))), 1.0 / mass, rtol=1e-12, atol=0)

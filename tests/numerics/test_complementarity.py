@@ -1,0 +1,64 @@
+"""Which one-sided constraints push: against all choices, and where constraints depend on each other."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.complementarity import least_pushes
+
+
+def by_all_choices(compliance: FloatArray, rates: FloatArray) -> FloatArray:
+    """The one choice of active constraints that neither pull nor let another close."""
+    count = len(rates)
+    for size in range(count + 1):
+        for chosen in combinations(range(count), size):
+            own = list(chosen)
+            forces = np.zeros(count)
+            forces[own] = np.linalg.solve(compliance[np.ix_(own, own)], -rates[own])
+            opening = rates + compliance @ forces
+            if forces.min() >= 0.0 and np.delete(opening, own).min(initial=0.0) >= 0.0:
+                return forces
+    raise AssertionError("a positive definite problem has a solution")
+
+
+def test_pushes_are_those_of_the_one_choice_that_holds() -> None:
+    rng = np.random.default_rng(5)
+    sizes = []
+    for _ in range(100):
+        factor = rng.normal(size=(5, 5)) * 10.0 ** rng.uniform(-2, 2, size=(5, 1))
+        compliance = factor @ factor.T
+        rates = rng.normal(size=5)
+        forces = least_pushes(compliance, rates, 0.0)
+        assert forces is not None
+        assert_allclose(forces, by_all_choices(compliance, rates), rtol=1e-6, atol=0)
+        sizes.append(int(np.sum(forces > 0.0)))
+    assert {1, 2, 3} <= set(sizes)
+
+
+@pytest.mark.parametrize("count", [12, 40])
+def test_more_constraints_than_there_are_motions_to_stop_settle_without_pulling(count: int) -> None:
+    rng = np.random.default_rng(count)
+    for _ in range(20):
+        directions = rng.normal(size=(count, 6))
+        compliance = directions @ directions.T
+        rates = directions @ rng.normal(size=6)
+        forces = least_pushes(compliance, rates, 1e-10)
+        assert forces is not None
+        opening = rates + compliance @ forces
+        assert forces.min() >= 0.0
+        assert np.sum(forces > 0.0) <= 6
+        assert opening.min() >= -1e-7
+        assert_allclose(opening * forces, 0.0, rtol=0, atol=1e-7)
+
+
+def test_a_constraint_twice_and_one_that_nothing_moves_take_no_force_of_their_own() -> None:
+    compliance = np.array([[2.0, 2.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 0.0]])
+    forces = least_pushes(compliance, np.array([-1.0, -1.0, -1.0]), 1e-12)
+    assert forces is not None
+    assert_allclose(forces.sum(), 0.5, rtol=1e-14, atol=0)
+    assert forces[2] == 0.0
