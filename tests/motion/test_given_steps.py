@@ -33,6 +33,8 @@ def largest_residual(history: History) -> float:
     largest = 0.0
     for leg, step in history.steps:
         equations = equations_of(history.model, leg.piece)
+        if history.coordinates is not None:
+            equations = history.coordinates.equations(equations)
         stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
         rows = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = max(largest, float(np.abs(rows).max()))
