@@ -21,10 +21,13 @@ from cosserat_casadi.codegen.routines import TOGETHER
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 
 FEW_PIECES = 8
-"""Pieces of other vectors of which a vector is put together one by one."""
+"""Pieces of other columns of which a column is put together one by one."""
 
 LONG_PIECES = 8
-"""Entries of such pieces from which on it is put together one by one however many they are."""
+"""Entries of such pieces from which on more of them are put together one by one."""
+
+PIECES_OF_EACH = 2
+"""Most pieces of each column that are put together so: of more, the entries are gathered in one loop."""
 
 LONGEST = 3000
 """Instructions up to which small steps are written together: compilers take more than twice as long for two."""
@@ -67,7 +70,11 @@ class _Writing:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.origins = program.origins
-        self._computed = dict[int, ca.MX]()
+        # Columns that hold what was computed, with the numbers of their entries; constants are in none of them.
+        self._columns: list[ca.MX] = [ca.MX(0, 1)]
+        self._numbers_in: list[Numbers] = [np.zeros(0, dtype=np.int64)]
+        self._column_of = np.zeros(self.origins.count, dtype=np.int64)
+        self._entry_of = np.arange(self.origins.count)
         self._ordered = dict[bytes, ca.MX]()
         self._symbols = [self._argument(argument) for argument in program.arguments]
         self._write()
@@ -142,8 +149,8 @@ class _Writing:
         """Write steps as one function without loops."""
         made = [owner for step in steps for owner in self._made(step)]
         operands = np.concatenate([operand.numbers for step in steps for operand in step.operands])
-        owners = self.origins.owners(operands)
-        given = [self._given(operands[owners == owner]) for owner in np.unique(owners) if owner and owner not in made]
+        columns = self._column_of[operands]
+        given = [self._given(operands[columns == k]) for k in np.unique(columns) if k]
         symbols = [ca.SX.sym("given", len(numbers)) for numbers in given]
         entry_of: dict[int, ca.SX] = {0: ca.SX(0.0)}
         for numbers, symbol in zip(given, symbols, strict=True):
@@ -154,16 +161,16 @@ class _Writing:
                 entry_of |= zip(result.numbers.tolist(), computed.nonzeros(), strict=True)
         inside = set[Step | None](steps)
         kept = [owner for owner in made if self._users[owner] - inside]
-        results = [ca.vertcat(*[entry_of[number] for number in self.origins.numbers(owner).tolist()]) for owner in kept]
-        together = ca.Function(TOGETHER, symbols, ca.cse(results))
-        columns = together.call([self._vector(numbers) for numbers in given])
-        for owner, column in zip(kept, columns, strict=True):
-            self._computed[owner] = column
+        numbers = np.concatenate([np.zeros(0, dtype=np.int64), *map(self.origins.numbers, kept)])
+        # One column of all results: what comes later takes from it in one loop.
+        result = ca.cse(ca.vertcat(*[entry_of[number] for number in numbers.tolist()]))
+        together = ca.Function(TOGETHER, symbols, [result])
+        self._hold(numbers, together.call([self._vector(numbers) for numbers in given])[0])
 
     def _given(self, numbers: Numbers) -> Numbers:
-        """What to hand over of one thing of which some entries are needed: all of it unless they are few."""
+        """What to hand over of one column of which some entries are needed: all of it unless they are few."""
         needed = np.unique(numbers)
-        whole = self.origins.numbers(int(self.origins.owners(needed[:1])[0]))
+        whole = self._numbers_in[self._column_of[needed[0]]]
         return whole if 2 * len(needed) > len(whole) else needed
 
     @cached_property
@@ -190,8 +197,14 @@ class _Writing:
 
     def _keep(self, value: Value, computed: ca.MX) -> None:
         if len(value.numbers):
-            owner = int(self.origins.owners(value.numbers[:1])[0])
-            self._computed[owner] = ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz())))
+            self._hold(value.numbers, ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz()))))
+
+    def _hold(self, numbers: Numbers, column: ca.MX) -> None:
+        """Note that these are the entries of a column."""
+        self._column_of[numbers] = len(self._columns)
+        self._entry_of[numbers] = np.arange(len(numbers))
+        self._columns.append(column)
+        self._numbers_in.append(numbers)
 
     def _matrix(self, value: Value) -> ca.MX:
         """A matrix of these entries."""
@@ -208,30 +221,32 @@ class _Writing:
     def _gathered(self, numbers: Numbers) -> ca.MX:
         if len(numbers) == 0:
             return ca.MX(0, 1)
-        owners = self.origins.owners(numbers)
-        starts = np.flatnonzero(np.diff(owners, prepend=-1))
-        if len(starts) <= max(FEW_PIECES, len(numbers) // LONG_PIECES):
+        columns = self._column_of[numbers]
+        starts = np.flatnonzero(np.diff(columns, prepend=-1))
+        long_ones = min(len(numbers) // LONG_PIECES, PIECES_OF_EACH * len(np.unique(columns)))
+        if len(starts) <= max(FEW_PIECES, long_ones):
             pieces = np.split(numbers, starts[1:])
-            return ca.vertcat(*[self._piece(int(owners[i]), piece) for i, piece in zip(starts, pieces, strict=True)])
+            return ca.vertcat(*[self._piece(piece) for piece in pieces])
         pool = []
         places = np.empty(len(numbers), dtype=np.int64)
         size = 0
-        for owner in np.unique(owners):
-            own = owners == owner
+        for k in np.unique(columns):
+            own = columns == k
             distinct, place = np.unique(numbers[own], return_inverse=True)
-            pool.append(self._piece(int(owner), distinct))
+            pool.append(self._piece(distinct))
             places[own] = size + place
             size += len(distinct)
         gathered: ca.MX = ca.vertcat(*pool).nz[places.tolist()]
         return gathered
 
-    def _piece(self, owner: int, numbers: Numbers) -> ca.MX:
-        """A column of entries of one thing."""
-        if owner == 0:
+    def _piece(self, numbers: Numbers) -> ca.MX:
+        """A column of entries of one column, or of constants."""
+        k = int(self._column_of[numbers[0]])
+        if k == 0:
             return ca.MX(ca.DM(self.origins.constants(numbers)))
-        if self.origins.is_whole(numbers):
-            return self._computed[owner]
-        entries = self.origins.entries(owner, numbers)
+        if np.array_equal(numbers, self._numbers_in[k]):
+            whole: ca.MX = self._columns[k]
+            return whole
         # Of one entry that is taken several times CasADi makes a row.
-        piece: ca.MX = ca.vec(self._computed[owner].nz[entries.tolist()])
+        piece: ca.MX = ca.vec(self._columns[k].nz[self._entry_of[numbers].tolist()])
         return piece

@@ -134,10 +134,6 @@ class Origins:
         first = int(self._first[thing])
         return np.arange(first, first + self.sizes[thing])
 
-    def entries(self, thing: int, numbers: Numbers) -> Numbers:
-        """Which entries of a thing these are."""
-        return numbers - int(self._first[thing])
-
     def owners(self, numbers: Numbers) -> Numbers:
         """For each number the thing that it is an entry of; 0 for all constants."""
         owners = self._things(numbers)

@@ -98,6 +98,12 @@ static const casadi_int casadi_s7[4] = {4, 1, 0, 0};
 static const casadi_int casadi_s8[3] = {1, 1, 1};
 static const casadi_int casadi_s9[4] = {1, 1, 0, 0};
 
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#define PLAINLY __attribute__((optimize("O1")))
+#else
+#define PLAINLY
+#endif
+
 /* increment:(turn[6])->(quaternion[4],omega[3],factors[2]) */
 static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
@@ -1860,7 +1866,7 @@ static int casadi_f5(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 /* fwd1_nitinol_wire_f_residual:(x[7],inputs[6],out_residual[7x1,0nz],fwd_x[7],fwd_inputs[6])->(fwd_residual[7]) */
-static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -4601,7 +4607,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 /* adj1_nitinol_wire_f_residual:(x[7],inputs[6],out_residual[7x1,0nz],adj_residual[7])->(adj_x[7],adj_inputs[6]) */
-static int casadi_f6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -8040,7 +8046,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 /* fwd1_adj1_nitinol_wire_f_residual:(x[7],inputs[6],out_residual[7x1,0nz],adj_residual[7],out_adj_x[7x1,0nz],out_adj_inputs[6x1,0nz],fwd_x[7],fwd_inputs[6],fwd_out_residual[7x1,0nz],fwd_adj_residual[7])->(fwd_adj_x[7],fwd_adj_inputs[6]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -14072,7 +14078,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_f_tip_work_bytes(casadi_int *sz_arg, casad
 }
 
 /* fwd1_nitinol_wire_f_tip:(x[7],inputs[6],out_position[3x1,0nz],out_quaternion[4x1,0nz],fwd_x[7],fwd_inputs[6])->(fwd_position[3],fwd_quaternion[4]) */
-static int casadi_f13(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f13(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -15236,7 +15242,7 @@ CASADI_SYMBOL_EXPORT int fwd1_nitinol_wire_f_tip_work_bytes(casadi_int *sz_arg, 
 }
 
 /* adj1_nitinol_wire_f_tip:(x[7],inputs[6],out_position[3x1,0nz],out_quaternion[4x1,0nz],adj_position[3],adj_quaternion[4])->(adj_x[7],adj_inputs[6x1,0nz]) */
-static int casadi_f14(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f14(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -16431,7 +16437,7 @@ CASADI_SYMBOL_EXPORT int adj1_nitinol_wire_f_tip_work_bytes(casadi_int *sz_arg, 
 }
 
 /* fwd1_adj1_nitinol_wire_f_tip:(x[7],inputs[6],out_position[3x1,0nz],out_quaternion[4x1,0nz],adj_position[3],adj_quaternion[4],out_adj_x[7x1,0nz],out_adj_inputs[6x1,0nz],fwd_x[7],fwd_inputs[6],fwd_out_position[3x1,0nz],fwd_out_quaternion[4x1,0nz],fwd_adj_position[3],fwd_adj_quaternion[4])->(fwd_adj_x[7],fwd_adj_inputs[6x1,0nz]) */
-static int casadi_f15(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f15(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -20212,7 +20218,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_f_shape_work_bytes(casadi_int *sz_arg, cas
 }
 
 /* fwd1_nitinol_wire_f_shape:(x[7],inputs[6],X,out_position[3x1,0nz],out_quaternion[4x1,0nz],fwd_x[7],fwd_inputs[6],fwd_X)->(fwd_position[3],fwd_quaternion[4]) */
-static int casadi_f17(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f17(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -22266,7 +22272,7 @@ CASADI_SYMBOL_EXPORT int fwd1_nitinol_wire_f_shape_work_bytes(casadi_int *sz_arg
 }
 
 /* adj1_nitinol_wire_f_shape:(x[7],inputs[6],X,out_position[3x1,0nz],out_quaternion[4x1,0nz],adj_position[3],adj_quaternion[4])->(adj_x[7],adj_inputs[6x1,0nz],adj_X) */
-static int casadi_f18(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f18(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -24347,7 +24353,7 @@ CASADI_SYMBOL_EXPORT int adj1_nitinol_wire_f_shape_work_bytes(casadi_int *sz_arg
 }
 
 /* fwd1_adj1_nitinol_wire_f_shape:(x[7],inputs[6],X,out_position[3x1,0nz],out_quaternion[4x1,0nz],adj_position[3],adj_quaternion[4],out_adj_x[7x1,0nz],out_adj_inputs[6x1,0nz],out_adj_X[1x1,0nz],fwd_x[7],fwd_inputs[6],fwd_X,fwd_out_position[3x1,0nz],fwd_out_quaternion[4x1,0nz],fwd_adj_position[3],fwd_adj_quaternion[4])->(fwd_adj_x[7],fwd_adj_inputs[6x1,0nz],fwd_adj_X) */
-static int casadi_f19(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int PLAINLY casadi_f19(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;

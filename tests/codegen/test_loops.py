@@ -14,7 +14,7 @@ from cosserat_casadi import Model, build, discretise, scene_from_dict
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
-from cosserat_casadi.codegen.routines import TOGETHER
+from cosserat_casadi.codegen.routines import LONG, PLAINLY, TOGETHER
 
 ROD = {
     "name": "rod",
@@ -157,3 +157,16 @@ def test_products_of_any_height() -> None:
         assert texts["products.c"].count(f" casadi_mtimes_dense_sparse_{rows}(") == 2
     library = compiled_texts("products", texts, find_compiler())
     assert_same(ca.external("products", os.fspath(library)), function, 1e-14)
+
+
+def test_long_functions_without_loops_are_marked() -> None:
+    """Those alone, and the macro stands once before them."""
+    x = ca.SX.sym("x", 3)
+    value = x
+    for _ in range(LONG):
+        value = ca.vertcat(value[1] * value[2], value[2] + x[0], value[0] * x[1])
+    short = ca.Function("short", [x], [ca.sin(x)])
+    text = sources([ca.Function("long", [x], [value]), short], "marked", "int")["marked.c"]
+    assert text.count(f"static int {PLAINLY} ") == 1
+    assert text.index(f"#define {PLAINLY}") < text.index(f"static int {PLAINLY} ")
+    assert PLAINLY not in sources([short], "plain", "int")["plain.c"]
