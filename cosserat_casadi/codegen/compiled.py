@@ -26,6 +26,7 @@ from cosserat_casadi.codegen.compiled_results import (
 )
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.library import VERBATIM
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary
 from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, read_manifest
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
@@ -43,7 +44,7 @@ OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner 
 
 
 @dataclass(frozen=True)
-class Compiled(CompiledMotion):
+class Compiled(LoadedLibrary, CompiledMotion):
     """An exported folder as compiled functions.
 
     Where the scene names parameters, functions and methods take them: by name, those not named keeping the scene's
@@ -59,8 +60,6 @@ class Compiled(CompiledMotion):
         manifest: what the folder says of itself.
     """
 
-    library: Path
-    manifest: dict[str, Any]
     _names: Names = field(repr=False)
     _scene: str = field(default="", repr=False)
 
@@ -294,18 +293,6 @@ class Compiled(CompiledMotion):
             for columns, poses in zip(d_x, d_poses, strict=True)
         )
         return by_inputs, by_parameters
-
-    @cached_property
-    def _handle(self) -> ctypes.CDLL:
-        return ctypes.CDLL(str(self.library))
-
-    def _function(self, word: str) -> Any:
-        return getattr(self._handle, self._names.function(word))
-
-    def _workspace(self) -> Any:
-        """Memory for one call, so that several threads may call at once."""
-        doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
-        return (ctypes.c_double * doubles)()
 
     def _casadi_function(self, entry: dict[str, Any]) -> ca.Function:
         """A function of the library, with derivatives where the folder holds them.

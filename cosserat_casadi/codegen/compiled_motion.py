@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues
@@ -214,7 +215,7 @@ class CompiledMotion(ABC):
 
     def step_memory(self) -> StepMemory:
         """What steps keep from one to the next, and work in: one for each motion, new for a new one."""
-        return StepMemory(_room(self._motion_function("step_memory_size")()), self._workspace())
+        return StepMemory(room(self._motion_function("step_memory_size")()), self._workspace())
 
     def rest(
         self,
@@ -393,8 +394,3 @@ class CompiledMotion(ABC):
         except AttributeError:
             remedy = "export(..., dynamics=True), or cosserat export --dynamics"
             raise AttributeError(f"the library has no motions: {remedy}") from None
-
-
-def _room(size: int) -> Any:
-    """Zeroed memory of so many bytes."""
-    return (ctypes.c_double * -(-size // ctypes.sizeof(ctypes.c_double)))()

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.tubes.status import STATUSES as TUBE_STATUSES
+from cosserat_casadi.codegen.tubes.status import TubeStatus
 from cosserat_casadi.numerics.outcome import Outcome
 
 OUTCOMES = tuple(outcome for outcome in Outcome if outcome is not Outcome.CONTACT_UNSETTLED)
@@ -18,23 +19,23 @@ CONTACT_OUTCOMES = tuple(Outcome)
 
 def status_words(names: Names) -> dict[str, str]:
     """What the templates of the solver say of statuses."""
-    return _outcome_words(names, OUTCOMES, "SOLVER")
+    return _status_words(names, OUTCOMES, "SOLVER")
 
 
 def contact_status_words(names: Names) -> dict[str, str]:
     """What the templates of exact contact say of statuses."""
-    return _outcome_words(names, CONTACT_OUTCOMES, "CONTACT")
+    return _status_words(names, CONTACT_OUTCOMES, "CONTACT")
 
 
-def _outcome_words(names: Names, outcomes: Sequence[Outcome], prefix: str) -> dict[str, str]:
-    """Statuses of outcomes, which sources that are alike in all folders call by a prefix of their own."""
-    symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in outcomes}
-    defined = [f"#define {prefix}_{outcome.name} {symbol}" for outcome, symbol in symbols.items()]
+def _status_words(names: Names, statuses: Sequence[Outcome | TubeStatus], prefix: str) -> dict[str, str]:
+    """Statuses of a folder, which sources that are alike in all folders call by a prefix of their own."""
+    symbols = {status: f"{names.macro}_{status.name}" for status in statuses}
+    defined = [f"#define {prefix}_{status.name} {symbol}" for status, symbol in symbols.items()]
     return {
-        "status_lines": _enumerators({symbol: outcome.value for outcome, symbol in symbols.items()}),
+        "status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
         "status_names": "\n".join(defined),
-        "text_cases": _cases({symbol: outcome.value for outcome, symbol in symbols.items()}),
-        "label_cases": _cases({symbol: outcome.label for outcome, symbol in symbols.items()}),
+        "text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
+        "label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
     }
 
 
@@ -52,13 +53,7 @@ def motion_status_words(names: Names) -> dict[str, str]:
 
 def tube_status_words(names: Names) -> dict[str, str]:
     """What the templates of concentric tubes say of statuses."""
-    symbols = {status: f"{names.macro}_{status.name}" for status in TUBE_STATUSES}
-    return {
-        "status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
-        "status_names": "\n".join(f"#define SOLVER_{status.name} {symbol}" for status, symbol in symbols.items()),
-        "text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
-        "label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
-    }
+    return _status_words(names, TUBE_STATUSES, "SOLVER")
 
 
 def _enumerators(sentences: Mapping[str, str]) -> str:

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -35,6 +35,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import Variations
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.borne_loads import BorneLoad, borne_loads
 from cosserat_casadi.model.constraints import ASSEMBLED, PlacedConstraint
@@ -45,40 +46,6 @@ from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, ro
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import Unknowns
 from cosserat_casadi.rod.reaction import Reaction
-
-
-@dataclass
-class Blocks:
-    """A square matrix made of blocks, those that meet in the same rows and columns added.
-
-    Attributes:
-        ends: last row of each block row, plus one; the same for columns.
-        entries: blocks by the first of their rows and the first of their columns.
-    """
-
-    ends: list[int]
-    entries: dict[tuple[int, int], Matrix] = field(default_factory=dict)
-
-    def add(self, rows: slice, columns: slice, block: Matrix) -> None:
-        """Add a block."""
-        corner = (rows.start, columns.start)
-        if corner in self.entries:
-            block = self.entries[corner] + block
-        self.entries[corner] = block
-
-    def matrix(self) -> Matrix:
-        """The whole, sparse."""
-        starts = [0, *self.ends[:-1]]
-        ranges = list(zip(starts, self.ends, strict=True))
-        rows = []
-        for top, bottom in ranges:
-            row = []
-            for left, right in ranges:
-                # Unknowns that do not meet have a block without a stored entry.
-                nothing = ca.DM(bottom - top, right - left)
-                row.append(self.entries.get((top, left), nothing))
-            rows.append(ca.horzcat(*row))
-        return ca.vertcat(*rows)
 
 
 def _turn_rows() -> ca.Function:
@@ -179,7 +146,7 @@ class Assembly:
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
         ends = [entries.stop for entries in self.unknowns.slices.values()]
-        blocks = Blocks(ends)
+        blocks = BlockMatrix(ends)
         for rod, tangent in self.system.tangents.items():
             strains = self.unknowns.strain(rod)
             blocks.add(strains, strains, tangent.jacobian)
@@ -214,7 +181,7 @@ class Assembly:
 
     # Rows of constraints
 
-    def _add_constraint(self, blocks: Blocks, placed: PlacedConstraint) -> None:
+    def _add_constraint(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
         """Rows of a constraint: c_section δ, c_base B, c_frame B."""
         rows = self.discrete.multipliers(placed)
         strains = self.unknowns.strain(placed.rod)
@@ -228,7 +195,7 @@ class Assembly:
 
     # Columns of the rods
 
-    def _add_constraint_wrench(self, blocks: Blocks, placed: PlacedConstraint) -> None:
+    def _add_constraint_wrench(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
         """What multipliers do to the residual of their rod, −δᵀ W / (EI/ℓ), and W that turns with its frame."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
@@ -244,7 +211,7 @@ class Assembly:
             deviation = self.discrete.deviation(name)
             blocks.add(strains, deviation, work @ derivative @ self.frame_poses[name].motion)
 
-    def _add_turned_loads(self, blocks: Blocks, rod: str) -> None:
+    def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
         """What the motion of a floating base does to its rod: dead loads turn back, pose-dependent ones change."""
         name = FrameName("rod", rod)
         frame_pose = self.frame_poses[name]
@@ -260,7 +227,7 @@ class Assembly:
             by_shift, _, _ = reaction.with_shift
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
-    def _add_borne_load(self, blocks: Blocks, borne: BorneLoad) -> None:
+    def _add_borne_load(self, blocks: BlockMatrix, borne: BorneLoad) -> None:
         """What the motion of a body does to a rod that is pressed by an obstacle on it."""
         strains = self.unknowns.strain(borne.rod)
         deviation = self.discrete.deviation(borne.body)
@@ -309,7 +276,7 @@ class Assembly:
             reactions[rod.name] = Reaction(tangent, self.system.dead_wrenches(rod.name))
         return reactions
 
-    def _add_balance(self, blocks: Blocks, name: FrameName) -> None:
+    def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
         """Rows of a frame's balance, from the variations of the wrench on it."""
         frame = self.frames[name]
         quaternion = self.frame_poses[name].quaternion
@@ -438,7 +405,7 @@ class Assembly:
 
     # Cables of given length
 
-    def _add_cable(self, blocks: Blocks, cable: CableOfLength) -> None:
+    def _add_cable(self, blocks: BlockMatrix, cable: CableOfLength) -> None:
         """Row of a cable of given length, and its tension's column in the residual of its rod."""
         equation = self.system.actuators.cable_lengths[cable.tendon.name]
         strains = self.unknowns.strain(equation.rod)
@@ -449,7 +416,7 @@ class Assembly:
 
     # From the unloaded scene to the scene
 
-    def _add_springs(self, blocks: Blocks) -> None:
+    def _add_springs(self, blocks: BlockMatrix) -> None:
         """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
         for entries, compliance in self._compliances():
             size = entries.stop - entries.start

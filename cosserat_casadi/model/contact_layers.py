@@ -27,6 +27,9 @@ MOST_ELEMENTS = 12
 NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
 
+SHARE_ON_BODY = 0.25
+"""What the thickness of an obstacle on a body counts: it comes to meet the rod, and neither may pass its middle."""
+
 
 def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
     """The push of each obstacle with a width on each rod that may not enter it.
@@ -92,12 +95,9 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
 
 
 def thinnest(scene: scenes.Scene) -> float:
-    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any.
-
-    One on a body counts a quarter: the body comes to meet the rod, and neither may come to be beyond its middle.
-    """
+    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any."""
     thicknesses = [
-        obstacle.thickness if obstacle.body is None else obstacle.thickness / 4
+        obstacle.thickness if obstacle.body is None else SHARE_ON_BODY * obstacle.thickness
         for obstacle in scene.obstacles
         if obstacle.is_smooth
     ]

@@ -12,7 +12,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.assembly import Blocks
+from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
@@ -90,9 +90,9 @@ class MotionEquations:
                 rods.append(name)
         return rods
 
-    def _blocks(self) -> Blocks:
+    def _blocks(self) -> BlockMatrix:
         ends = [entries.stop for entries in self.system.discrete.unknowns.slices.values()]
-        return Blocks(ends)
+        return BlockMatrix(ends)
 
     def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
         """What inertia of a rod and loads of its motion add to the rows of its strains, and of a base that floats."""

@@ -32,9 +32,10 @@ ORDERS = 3
 
 
 def can_be_centred(model: Model) -> bool:
-    """Whether a scene is one free rod whose steps nobody watches in the unknowns of the model.
+    """Whether a scene is one free rod without exact contact, without slack cables, and of a length that is no input.
 
-    Guards of contacts and slack cables do. A length that is an input would enter the frame with its rates.
+    Guards of contacts and cables read the steps in the unknowns of the model, and a length that is an input would enter
+    the frame with its rates.
     """
     if not flies_alone(model) or model.scene.touches_exactly or SlackCables(model).cables:
         return False

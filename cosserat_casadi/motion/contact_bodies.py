@@ -53,7 +53,7 @@ class BodyFacing(Facing):
         return np.zeros(0)
 
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
-        """None."""
+        """Gaps at these sections: none."""
         return np.zeros(0)
 
     def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:

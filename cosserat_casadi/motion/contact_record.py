@@ -66,7 +66,7 @@ class Stretch:
         piece: of the inputs.
         touches: the sections, with their places where it begins.
         steps: of the motion, with the forces of contact behind the unknowns of the model.
-        laid: numbers of the rods and obstacles that lie on one another.
+        laid: numbers of the pairs of a rod and an obstacle in which the rod lies.
     """
 
     piece: Piece

@@ -60,10 +60,10 @@ class Arrangement:
 
     Attributes:
         touches: the contacts.
-        laid: numbers of the rods and obstacles that lie on one another; never of bodies.
+        laid: numbers of the pairs of a rod and an obstacle in which the rod lies; never of pairs with a body.
         follower: of the contacts.
-        floors: least gaps that what does not touch may have, for each rod and obstacle: one for each section of a rod
-            that lies, else one.
+        floors: least gaps that what does not touch may have, an array for each pair: one for each section of a rod that
+            lies, else one.
         forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
         moment: beginning of the moment in which changes are counted, s.
         changes: changes in it.
@@ -392,7 +392,7 @@ class _Known:
 
     Attributes:
         held: those that go on, where they are at the event.
-        laid: numbers of the rods and obstacles that lie on one another from now on.
+        laid: numbers of the pairs of a rod and an obstacle in which the rod lies from now on.
         left: the one that lifts off, if one does.
         events: of them.
     """

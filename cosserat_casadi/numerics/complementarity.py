@@ -12,7 +12,10 @@ DEPENDENT = 1e-9
 """What active constraints leave of the compliance of another, over its own, below which it depends on them."""
 
 MOST_TURNS = 10
-"""Turns for each constraint before none is found."""
+"""Turns for each constraint before the search is given up."""
+
+TINY = float(np.finfo(np.float64).tiny)
+"""Least number to divide by."""
 
 
 def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) -> FloatArray | None:
@@ -42,8 +45,8 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
     passed_over = set(np.flatnonzero(~moves).tolist())
     for _ in range(MOST_TURNS * max(1, count)):
         opening = wanted + scaled @ forces
-        closing = [k for k in range(count) if opening[k] < -tolerance * scale[k] and k not in passed_over]
-        closing = [k for k in closing if k not in active]
+        idle = [k for k in range(count) if k not in passed_over and k not in active]
+        closing = [k for k in idle if opening[k] < -tolerance * scale[k]]
         if not closing:
             return forces * scale
         fastest = min(closing, key=lambda k: float(opening[k]))
@@ -79,7 +82,3 @@ def _left_of(scaled: FloatArray, active: Sequence[int], number: int) -> float:
     column = scaled[active, number]
     taken = column @ np.linalg.solve(scaled[np.ix_(active, active)], column)
     return float(scaled[number, number] - taken)
-
-
-TINY = float(np.finfo(np.float64).tiny)
-"""Least number to divide by."""

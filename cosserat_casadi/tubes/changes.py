@@ -103,7 +103,7 @@ def changing_step(staged: Staged, directions: Directions) -> ca.Function:
     Stacked are the state, what is carried, and the changes of both column after column. The lengths are that of the
     step and how it changes with each translation, (1 + n)×1; the section is without what is carried.
     """
-    stacked = ca.SX.sym("stacked", changing_width(staged) * (1 + directions.count))
+    stacked = ca.SX.sym("stacked", staged.width_with_carried * (1 + directions.count))
     before, length = (ca.SX.sym(name, 1 + directions.robot.size) for name in ("before", "length"))
     section = ca.SX.sym("section", staged.stage.size1_in(3) - staged.carried)
     stage = _changed(staged, staged.stage, directions, stacked, [before, length], section)
@@ -115,11 +115,6 @@ def changing_step(staged: Staged, directions: Directions) -> ca.Function:
     )
 
 
-def changing_width(staged: Staged) -> int:
-    """Entries of the state with what is carried."""
-    return staged.width + staged.carried
-
-
 def _changed(
     staged: Staged,
     function: ca.Function,
@@ -129,7 +124,7 @@ def _changed(
     section: ca.SX,
 ) -> Matrix:
     """What a stage makes of the state and its changes."""
-    width = changing_width(staged)
+    width = staged.width_with_carried
     state = stacked[: staged.width]
     carried = stacked[staged.width : width]
     after = function(state, *[length[0] for length in lengths], ca.vertcat(section, carried))

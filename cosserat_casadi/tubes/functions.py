@@ -16,7 +16,7 @@ import casadi as ca
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.changes import Directions, changing_step, changing_width, selected, with_changes
+from cosserat_casadi.tubes.changes import Directions, changing_step, selected, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stages import Staged
@@ -230,7 +230,7 @@ class TubeFunctions(ABC):
         """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
         x, inputs, _ = self._arguments
         staged = self._staged
-        width = changing_width(staged)
+        width = staged.width_with_carried
         begun = ca.Function("begun", [x, inputs], [self._begun])
         state, changes = with_changes(begun, directions, {0: directions.of_x, 1: directions.of_inputs})(x, inputs)
         ends = [(state, changes)]

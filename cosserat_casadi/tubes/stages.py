@@ -30,6 +30,11 @@ class Staged:
         """Entries of the state."""
         return int(self.stage.size1_in(0))
 
+    @property
+    def width_with_carried(self) -> int:
+        """Entries of the state with what is carried behind it."""
+        return self.width + self.carried
+
 
 def composed(name: str, stage: ca.Function, last: ca.Function) -> ca.Function:
     """(state, length, section) ↦ state: a step of order eight, in which one stage is written once and serves all.

@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
 from cosserat_casadi.codegen.library import FOURS
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_in_contact, read_manifest
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer, vector
@@ -104,16 +105,13 @@ class CompiledContactSolution:
 
 
 @dataclass(frozen=True)
-class CompiledContact:
+class CompiledContact(LoadedLibrary):
     """An exported folder of a scene in exact contact.
 
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
     """
-
-    library: Path
-    manifest: dict[str, Any]
 
     @cached_property
     def defaults(self) -> FloatArray:
@@ -249,29 +247,16 @@ class CompiledContact:
             contacts.append(contact)
         return tuple(contacts)
 
-    @cached_property
-    def _handle(self) -> ctypes.CDLL:
-        return ctypes.CDLL(str(self.library))
-
-    def _function(self, word: str) -> Any:
-        return getattr(self._handle, f"{self.manifest['name']}_{word}")
-
     def _room(self) -> Any:
         """A state without a solution."""
-        doubles = -(-self._function("state_size")() // ctypes.sizeof(ctypes.c_double))
-        return (ctypes.c_double * doubles)()
+        return room(self._function("state_size")())
 
     def _state(self, solution: CompiledContactSolution) -> Any:
-        room = self._room()
-        if len(solution.state) != ctypes.sizeof(room):
+        state = self._room()
+        if len(solution.state) != ctypes.sizeof(state):
             raise ValueError("the start is a solution of another library")
-        ctypes.memmove(room, solution.state, len(solution.state))
-        return room
-
-    def _workspace(self) -> Any:
-        """Memory for one call, so that several threads may call at once."""
-        doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
-        return (ctypes.c_double * doubles)()
+        ctypes.memmove(state, solution.state, len(solution.state))
+        return state
 
 
 def load_in_contact(

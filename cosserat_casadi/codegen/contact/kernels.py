@@ -13,8 +13,8 @@ from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.fours_sources import Kernel
 from cosserat_casadi.codegen.kernels import by_columns, kernel
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Written, obstacle_of
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Written
+from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, pairs
 from cosserat_casadi.equilibrium.contact.state import Touch
 from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
 from cosserat_casadi.loads.load import polynomials_at

@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary
 from cosserat_casadi.codegen.manifest import MANIFEST, read_manifest
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer, vector
@@ -25,17 +27,10 @@ from cosserat_casadi.maths.typing import FloatArray
 POSE_SIZE = 7
 
 
-class TubeInfo(ctypes.Structure):
-    """The struct in C that says how a call ended."""
+class TubeInfo(Info):
+    """The struct in C that says how a call ended: what there is of every solve, then what there is of tubes."""
 
-    _fields_ = (
-        ("status", ctypes.c_int),
-        ("iterations", ctypes.c_int),
-        ("jacobians", ctypes.c_int),
-        ("residual_norm", ctypes.c_double),
-        ("load_factor", ctypes.c_double),
-        ("determinant", ctypes.c_double),
-    )
+    _fields_ = (("determinant", ctypes.c_double),)
 
 
 class TubeOptions(ctypes.Structure):
@@ -87,16 +82,13 @@ class CompiledTubesSolution:
 
 
 @dataclass(frozen=True)
-class CompiledTubes:
+class CompiledTubes(LoadedLibrary):
     """An exported folder of concentric tubes.
 
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
     """
-
-    library: Path
-    manifest: dict[str, Any]
 
     @cached_property
     def defaults(self) -> FloatArray:
@@ -231,17 +223,6 @@ class CompiledTubes:
             load_factor=info.load_factor,
             **more,
         )
-
-    @cached_property
-    def _handle(self) -> ctypes.CDLL:
-        return ctypes.CDLL(str(self.library))
-
-    def _function(self, word: str) -> Any:
-        return getattr(self._handle, f"{self.manifest['name']}_{word}")
-
-    def _workspace(self) -> Any:
-        """Memory for one call, so that several threads may call at once."""
-        return ctypes.create_string_buffer(self._function("workspace_size")())
 
 
 def load_tubes(

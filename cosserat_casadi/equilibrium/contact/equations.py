@@ -18,32 +18,24 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius
+from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows
+from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
 from cosserat_casadi.equilibrium.contact.state import (
     SHORTEST,
     ContactState,
-    Place,
-    Touch,
     contact_loads,
     with_contacts,
 )
-from cosserat_casadi.equilibrium.contact.surfaces import surface
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.loads.contact_line import ContactLine
-from cosserat_casadi.loads.load import polynomials_at
-from cosserat_casadi.loads.penetration import section_radius
-from cosserat_casadi.maths.numbers import Scalar, as_matrix
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
 from cosserat_casadi.model.equations import Equations as SceneEquations
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.newton import Equations
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.rod.strain import DiscreteRod
 
 FIT = 1e-3
 """Singular values, relative to the largest, below which a first guess of forces does without them."""
@@ -167,128 +159,6 @@ class Placed:
     def obstacle(self, name: str) -> scenes.ObstacleRecord:
         """The obstacle of a name."""
         return obstacle_of(self.model.scene, name)
-
-
-def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:
-    """The obstacle of a name."""
-    (record,) = [obstacle for obstacle in scene.obstacles if obstacle.name == name]
-    return record
-
-
-def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
-    """What the contacts ask to be zero, without unit: for each, the rows of its sections, then the moments along it."""
-    rows: list[Matrix] = [ca.MX(0, 1)]
-    for touch in state.touches:
-        if touch.of_body:
-            rows.append(_body_gap(system, touch))
-            continue
-        distances = Distances(system, touch.rod, obstacle_of(system.discrete.scene, touch.obstacle))
-        for end, moves in zip(touch.carriers, touch.carriers_move, strict=True):
-            gap, slope = distances.at(end)
-            rows.append(gap)
-            if moves:
-                rows.append(slope)
-        if touch.is_line:
-            counts = touch.moment_counts(modes[touch.rod])
-            rows += [
-                distances.moments(start, end, count)
-                for (start, end), count in zip(touch.stretches, counts, strict=True)
-            ]
-    return ca.vertcat(*rows)
-
-
-def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | None]:
-    """For each row of the gaps over what its force is spread, relative to the rod; None for slopes, which have none.
-
-    A force at a section counts as spread over one: gaps at sections are no averages over a stretch.
-    """
-    widths: list[Place | None] = []
-    for touch in state.touches:
-        for moves in touch.carriers_move:
-            widths.append(1.0)
-            if moves:
-                widths.append(None)
-        if touch.is_line:
-            counts = touch.moment_counts(modes[touch.rod])
-            for (start, end), count in zip(touch.stretches, counts, strict=True):
-                widths += [end - start] * count
-    return widths
-
-
-def _body_gap(system: System, touch: Touch) -> Matrix:
-    """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
-    body = system.discrete.bodies[touch.rod]
-    position = system.frame(FrameName("body", touch.rod)).position
-    distance, _, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)
-    gap: Matrix = (distance - ball_radius(body)) / system.discrete.body_frame(touch.rod).length
-    return gap
-
-
-@dataclass(frozen=True)
-class Distances:
-    """Distances of a rod's surface from an obstacle, over the length of the rod, as expressions.
-
-    Attributes:
-        system: the scene.
-        rod: name of the rod.
-        obstacle: the obstacle.
-    """
-
-    system: System
-    rod: str
-    obstacle: scenes.ObstacleRecord
-
-    @property
-    def _discrete_rod(self) -> DiscreteRod:
-        return self.system.discrete.rods[self.rod]
-
-    @cached_property
-    def _world_R_base(self) -> Matrix:
-        return quaternion_to_matrix(self.system.base(self.rod).quaternion)
-
-    @cached_property
-    def _radii(self) -> FloatArray:
-        """Radius at base and tip, between which it is linear, shape (2,), m."""
-        return section_radius(self._discrete_rod.properties, np.array([0.0, 1.0]))
-
-    def _radius(self, X: Place) -> Place:
-        base, tip = self._radii.tolist()
-        return base + X * (tip - base)
-
-    def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
-        """Distance of the surface at a node, m, and the normal of the obstacle there, in the axes it is given in."""
-        shape = self.system.shapes[self.rod]
-        position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
-        distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
-        return distance - self._radius(X), normal
-
-    def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
-        """Distance and its rate with X at an end of an element, over the length."""
-        grid = self._discrete_rod.grid
-        node = grid.node_at(X)
-        gap, normal = self._gap(node, X)
-        tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
-        tangent = self.system.turned_to(self.obstacle.body, tangent)
-        # The tangent is the rate of the coordinate that integrals run over, which a moving element stretches.
-        rate = grid.rates_in(grid.element_of_node[[node]])
-        if rate is not None:
-            tangent = tangent / as_matrix(rate)[0]
-        base, tip = self._radii.tolist()
-        slope = ca.dot(normal, tangent) - (tip - base)
-        length = self._discrete_rod.properties.length
-        return gap / length, slope / length
-
-    def moments(self, start: Scalar, end: Scalar, count: int) -> Matrix:
-        """∫ P_j (d − ρ) over a stretch, relative to it, for the first Legendre polynomials, count×1."""
-        grid = self._discrete_rod.grid
-        nodes = grid.nodes_in(start, end)
-        X = grid.nodes_at(nodes)
-        width = end - start
-        gaps = ca.vertcat(*[self._gap(int(node), X[i])[0] for i, node in enumerate(nodes)])
-        polynomials = as_matrix(polynomials_at(count, (X - start) / width))
-        # Weights are of the whole rod: over the stretch they add up to one.
-        weights = grid.weights[nodes] / grid.weights[nodes].sum()
-        return polynomials @ (ca.DM(weights) * gaps) / self._discrete_rod.properties.length
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,12 @@ def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.Obstac
                 yield body, obstacle
 
 
+def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:
+    """The obstacle of a name."""
+    (record,) = [obstacle for obstacle in scene.obstacles if obstacle.name == name]
+    return record
+
+
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
     properties = solution.model.discrete.rods[rod].properties
@@ -91,7 +97,7 @@ def touching_points(solution: Solution, contact: Contact, along: int) -> FloatAr
     """Centres of the sections that touch, as many along a line as are asked for; of a body where its ball touches."""
     if contact.of_body:
         (body,) = [body for body in solution.model.scene.bodies if body.name == contact.rod]
-        (obstacle,) = [record for record in solution.model.scene.obstacles if record.name == contact.obstacle]
+        obstacle = obstacle_of(solution.model.scene, contact.obstacle)
         normal = body_normal(solution, body.name, obstacle)
         return np.asarray(solution.body(body.name).position - ball_radius(body) * normal)
     count = along if contact.start < contact.end else 1
