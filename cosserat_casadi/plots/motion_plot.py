@@ -130,7 +130,7 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
     """Draw rods and bodies at a few times, and where the rods begin and are held."""
     rows = shown_rows(motion.times)
     for order, row in enumerate(rows):
-        share = PALEST + (1 - PALEST) * (order + 1) / len(rows)
+        share = _share_of_colour(order, len(rows))
         last = order == len(rows) - 1
         for index, (name, lines) in enumerate(shapes.rods.items()):
             label = name if last else None
@@ -154,7 +154,7 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
     draw_surfaces(canvas, [one for one in obstacles if one.body is None], shapes.points, {})
     moving = [one for one in obstacles if one.body is not None]
     for order, row in enumerate(rows):
-        share = PALEST + (1 - PALEST) * (order + 1) / len(rows)
+        share = _share_of_colour(order, len(rows))
         bodies = {}
         for name in {str(one.body) for one in moving}:
             poses = motion.body(name)
@@ -191,6 +191,12 @@ def shown_rows(times: FloatArray) -> list[int]:
     wanted = np.linspace(times[0], times[-1], SHAPES)
     nearest = np.abs(times - wanted[:, None]).argmin(axis=1)
     return sorted(set(nearest.tolist()))
+
+
+def _share_of_colour(order: int, count: int) -> float:
+    """How much of its colour a shape keeps, the first of which has the order 0: the last one all of it."""
+    # The quotient comes first: the last share is then exactly one, and rounding leaves no component below zero.
+    return PALEST + (1 - PALEST) * ((order + 1) / count)
 
 
 def _faded(colour: str, share: float) -> tuple[float, float, float]:

@@ -15,7 +15,14 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import SceneError
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.plots.colours import rod_colour
-from cosserat_casadi.plots.motion_plot import SHAPES, plot_motion, save_motion_plot, shown_rows
+from cosserat_casadi.plots.motion_plot import (
+    SHAPES,
+    _faded,
+    _share_of_colour,
+    plot_motion,
+    save_motion_plot,
+    shown_rows,
+)
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
 from tests.families import mostly_slow
 from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, without_start
@@ -180,6 +187,15 @@ def test_motions_of_one_time_and_of_none_can_be_drawn(tmp_path: Path) -> None:
     figure = plot_motion(without_start())
     assert figure.axes == []
     assert MotionOutcome.NO_START.value in [text.get_text() for text in figure.texts]
+
+
+@pytest.mark.parametrize("frames", range(2, SHAPES + 1))
+def test_the_last_shape_has_its_own_colour_however_many_are_drawn(frames: int) -> None:
+    # The first rod is drawn without red, of which rounding must leave no less than nothing.
+    shares = [_share_of_colour(order, frames) for order in range(frames)]
+    assert np.all(np.diff(shares) > 0)
+    assert shares[-1] == 1
+    assert min(_faded(rod_colour(0), shares[-1])) >= 0
 
 
 def test_colours_and_strokes_tell_many_curves_apart() -> None:
