@@ -14,28 +14,24 @@ J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, final
+from typing import Literal, final
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
+from cosserat_casadi.loads.load import Section, Site
+from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
 from cosserat_casadi.loads.radius import section_radii
 from cosserat_casadi.maths.numbers import Numbers, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
-from cosserat_casadi.scene.loads import LoadRecord
 
 
-class ContactLayer(LoadRecord):
+class ContactLayer(ObstacleLoadRecord):
     """An obstacle with a width in front of one rod, or of a body that is a ball; no scene file names this load."""
 
     kind: Literal["contact_layer"] = "contact_layer"
-    obstacle: Any
     stiffness: float
-    rod: str | None = None
-    body: str | None = None
     radius: float = 0.0
 
     @property
@@ -45,21 +41,12 @@ class ContactLayer(LoadRecord):
 
 
 @final
-class ContactLayerLoad(Load[ContactLayer]):
+class ContactLayerLoad(ObstacleLoad[ContactLayer]):
     """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m."""
 
     record = ContactLayer
     # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
     growth = 2
-
-    def on_body(self, load: ContactLayer, body: scenes.Body) -> BodyPoint | None:
-        """The origin of the body, about which it is a ball."""
-        return BodyPoint() if load.body == body.name else None
-
-    def seen_from(self, load: ContactLayer) -> str | None:
-        """The body that the obstacle is fixed to."""
-        body: str | None = load.obstacle.body
-        return body
 
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body."""

@@ -12,28 +12,27 @@ from typing import Any, ClassVar, Literal, final
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.loads.load import Load, Section, Site, polynomials_at
+from cosserat_casadi.loads.load import Section, Site, polynomials_at
+from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
 from cosserat_casadi.maths.numbers import Numbers, Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
 
 
-class ContactLine(LoadRecord):
+class ContactLine(ObstacleLoadRecord):
     """An obstacle that a stretch of a rod lies on."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N/m", 1, polynomial=True)}
 
     kind: Literal["contact_line"] = "contact_line"
     rod: str
-    obstacle: Any
     span: Any
     force: tuple[tuple[float, ...]]
 
 
 @final
-class ContactLineLoad(Load[ContactLine]):
+class ContactLineLoad(ObstacleLoad[ContactLine]):
     """λ along the normal of the obstacle."""
 
     record = ContactLine
@@ -42,11 +41,6 @@ class ContactLineLoad(Load[ContactLine]):
         """The stretch that lies on the obstacle."""
         start, end = load.span
         return start, end
-
-    def seen_from(self, load: ContactLine) -> str | None:
-        """The body that the obstacle is fixed to."""
-        body: str | None = load.obstacle.body
-        return body
 
     def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−λ d(r), J/m."""

@@ -10,30 +10,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, final
 
-from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load, Section
+from cosserat_casadi.loads.load import Section
+from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
 
 
-class ContactPoint(LoadRecord):
+class ContactPoint(ObstacleLoadRecord):
     """An obstacle that touches one section of a rod, or a body."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N", 1, lower=0.0)}
 
     kind: Literal["contact_point"] = "contact_point"
-    rod: str | None
-    obstacle: Any
     at: Any
     force: float
-    body: str | None = None
 
 
 @final
-class ContactPointLoad(Load[ContactPoint]):
+class ContactPointLoad(ObstacleLoad[ContactPoint]):
     """N along the normal of the obstacle."""
 
     record = ContactPoint
@@ -42,15 +38,6 @@ class ContactPointLoad(Load[ContactPoint]):
         """The section that is touched."""
         at: Scalar = load.at
         return at
-
-    def on_body(self, load: ContactPoint, body: scenes.Body) -> BodyPoint | None:
-        """The origin of the body, about which it is a ball."""
-        return BodyPoint() if load.body == body.name else None
-
-    def seen_from(self, load: ContactPoint) -> str | None:
-        """The body that the obstacle is fixed to."""
-        body: str | None = load.obstacle.body
-        return body
 
     def energy(self, load: ContactPoint, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−N d(r), J."""

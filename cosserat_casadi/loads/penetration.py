@@ -7,23 +7,22 @@ guess of places and forces, never a result; no scene file names this load.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal, final
+from typing import ClassVar, Literal, final
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
+from cosserat_casadi.loads.load import Section, Site
+from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
 from cosserat_casadi.loads.radius import section_radii
 from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
 
 
-class Penetration(LoadRecord):
+class Penetration(ObstacleLoadRecord):
     """A soft obstacle, whose surface is raised by one height all along the rod, or by one at each node."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {
@@ -32,31 +31,19 @@ class Penetration(LoadRecord):
     }
 
     kind: Literal["penetration"] = "penetration"
-    rod: str | None
-    obstacle: Any
     stiffness: float
-    body: str | None = None
     radius: float = 0.0
     raised: tuple[tuple[float, ...]] = ((0.0,),)
 
 
 @final
-class PenetrationLoad(Load[Penetration]):
+class PenetrationLoad(ObstacleLoad[Penetration]):
     """k (ρ − d)² per length along the normal of the obstacle, where a section of radius ρ is in it; k in N/m³.
 
     On a body that is no force per length but a force, and k is in N/m².
     """
 
     record = Penetration
-
-    def on_body(self, load: Penetration, body: scenes.Body) -> BodyPoint | None:
-        """The origin of the body, about which it is a ball."""
-        return BodyPoint() if load.body == body.name else None
-
-    def seen_from(self, load: Penetration) -> str | None:
-        """The body that the obstacle is fixed to."""
-        body: str | None = load.obstacle.body
-        return body
 
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """k/3 (ρ − d)³, J/m, or J of a body."""

@@ -92,7 +92,7 @@ def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: fl
         f"{name}.c": render("contact_library.c.in", words),
         f"{name}_config.h": render("contact_config.h.in", words),
         f"{name}_demo.c": render("contact_demo.c.in", words),
-        "CMakeLists.txt": render("contact_cmake.in", words),
+        "CMakeLists.txt": render("solver_cmake.in", words),
         "README.md": render("contact_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
