@@ -85,9 +85,9 @@ class Onset:
         return bool(np.any(self.inputs.rate))
 
     @property
-    def brief(self) -> float:
+    def horizon(self) -> float:
         """Time over which accelerations decide what presses, s."""
-        return BRIEF * self.interval
+        return min(BRIEF * LONGER**self.changes, LONGEST) * self.interval
 
     def at(self, v: FloatArray) -> Onset:
         """The same state with other velocities."""
@@ -168,8 +168,7 @@ class Onset:
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
         gradients = self._gradients(touches)
         free = self.start(()).instant
-        horizon = min(self.brief * LONGER**self.changes, LONGEST * self.interval)
-        a, answers = shortly_after(self.plain, free, horizon, gradients.T)
+        a, answers = shortly_after(self.plain, free, self.horizon, gradients.T)
         tolerance = STILL * (float(np.abs(turning).max()) + 1.0 / self.interval**2)
         return gradients @ a + turning, gradients @ answers, tolerance
 

@@ -49,6 +49,9 @@ MOST_IN_A_MOMENT = 8
 MOMENT = 0.1
 """Such a moment, over the interval after an event."""
 
+NO_PULL = 1e-6
+"""Force, in its unit, that one counts as which may pull: a guard that is zero would be an event at once."""
+
 FORCE, END, BEND, GAP, CLEAR = range(5)
 """What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch, and a
 rod that has got up."""
@@ -124,7 +127,7 @@ class ExactContacts:
             places, gaps, gone = follower.follow(x, inputs)
             forces = instant.x[size:]
             if instant.time <= arrangement.forces_from:
-                forces = np.maximum(forces, 0.0)
+                forces = np.maximum(forces, NO_PULL)
             ends = np.ones(len(touches))
             bends = np.ones(len(touches))
             placed = [touch._replace(place=place) for touch, place in zip(touches, places, strict=True)]
@@ -145,7 +148,7 @@ class ExactContacts:
                 untouched = ~np.isin(facing.laid_at, own)
                 others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
                 if not own:
-                    clear[number] = TOUCHING - facing.deepest(nodes).gap
+                    clear[number] = CLOSE - facing.deepest(nodes).gap
             return np.concatenate([forces, ends, bends, others, clear])
 
         return values
@@ -294,7 +297,7 @@ class ExactContacts:
             laid,
             Follower(self.facings, pressing),
             self._floors(x, inputs, pressing, laid),
-            onset.before.time + onset.brief,
+            onset.before.time + onset.horizon,
         )
         return Restart(after.start(pressing), arrangement, lost, work, tuple(events))
 

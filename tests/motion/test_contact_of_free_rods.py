@@ -229,3 +229,17 @@ def test_a_free_rod_that_would_be_held_in_contact_has_no_start() -> None:
     motion = simulate(build(scene.with_motion_inputs(), moving=True))
     assert motion.outcome is MotionOutcome.NO_START
     assert "free bases held" in motion.message
+
+
+@pytest.mark.slow
+def test_a_thrown_rod_tumbles_and_comes_to_rest() -> None:
+    """It strikes a hundred times, ever more softly, at sections that take turns; nothing stops it along the floor."""
+    scene = read_scene("examples/rod_hits_floor.toml", ["simulation.duration=1.0"])
+    motion = simulate(build(scene.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    energy = motion.energy
+    assert np.ptp(energy.kinetic[-10:]) < 1e-4 * energy.kinetic.max()
+    assert abs(energy.imbalance[-1]) < 5e-3 * energy.kinetic.max()
+    weight = 1100.0 * np.pi * 8e-3**2 * 0.4 * 9.81
+    resultant = sum(contact.force[2] for contact in motion.contacts[-1])
+    assert_allclose(resultant, weight, rtol=0.05, atol=0)
