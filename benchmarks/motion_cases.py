@@ -2,7 +2,8 @@
 
 Takes minutes, up to LIMIT for a case. The cases of the reference folder are left out where that is not beside this
 checkout. Their costs are of the processor: other work on the machine lengthens them less than it lengthens the clock's.
-With ``--cost`` those cases alone, at COMMON, are printed, and nothing is written.
+With ``--cost`` those cases alone, at COMMON, are printed, and nothing is written; with ``--modes`` the free rod that is
+kicked, on more and more modes.
 """
 
 from __future__ import annotations
@@ -23,7 +24,11 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
 from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate_scene, solve  # noqa: E402
+from cosserat_casadi.accuracy.levels import SPARE_NODES  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
+from cosserat_casadi.model.discretise import discretise, nodes_for  # noqa: E402
+from cosserat_casadi.motion.poses import tip_poses  # noqa: E402
+from cosserat_casadi.motion.simulate import Simulator, started  # noqa: E402
 from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau  # noqa: E402
 from tests.conftest import case_files  # noqa: E402
@@ -49,6 +54,12 @@ CHAINS = {
 
 COMMON = 1e-4
 """Tolerance at which every one of them is timed, beside its own."""
+
+KICKED_MODES = (6, 8, 10, 14)
+"""Modes of every strain of the free rod that is kicked, on which it is computed to see what they leave."""
+
+KICKED_STEPS = 3e-4
+"""Tolerance of its steps, over the length: they leave less than its modes do."""
 
 LIMIT = 600.0
 """Processor time after which a case is stopped, s."""
@@ -265,10 +276,41 @@ def _rates(found: list[list[FloatArray]], exact: list[FloatArray]) -> FloatArray
     return np.asarray(orders(errors)[-1])
 
 
+def kicked_rows() -> Iterator[str]:
+    """The free rod that is kicked, on more and more modes: distance of its tip from the reference, steps, time."""
+    (path,) = (path for path in case_files("dynamics") if path.stem == "flying")
+    expected = json.loads(path.with_suffix(".json").read_text())["expected"]
+    scene = read_scene(path).with_motion_inputs()
+    simulation = scene.simulation
+    assert simulation is not None
+    distances = []
+    for modes in KICKED_MODES:
+        model = build(scene, discretise(scene, modes, nodes_for(modes) + SPARE_NODES), moving=True)
+        simulator = Simulator(model, simulation, started(model, simulation, None))
+        began = time.process_time()
+        history = simulator.controlled(KICKED_STEPS)
+        seconds = time.process_time() - began
+        x, inputs = history.rough_positions(np.array(expected["times"]))
+        (rod,) = scene.rods
+        tip = tip_poses(model, rod.name, x, inputs).position
+        distance = np.linalg.norm(tip - np.array(expected["tip"]), axis=1).max() / rod.length
+        distances.append(distance)
+        yield f"| {modes} | {distance:.1e} | {history.statistics.steps} | {seconds:.1f} |"
+    slope = -np.polyfit(np.log(KICKED_MODES), np.log(distances), 1)[0]
+    needed = KICKED_MODES[-1] * (distances[-1] / COMMON) ** (1.0 / slope)
+    yield f"distance ~ modes^-{slope:.1f}: {needed:.0f} modes for {COMMON:.0e}"
+
+
 def main(
-    cost: Annotated[bool, typer.Option(help="reference cases at COMMON alone; nothing is written")] = False,
+    cost: Annotated[bool, typer.Option("--cost", help="reference cases at COMMON alone; nothing is written")] = False,
+    modes: Annotated[bool, typer.Option("--modes", help="the kicked rod on more and more modes; as well")] = False,
 ) -> None:
     """Run all cases, write the tables."""
+    if modes:
+        print("| modes | distance | steps | processor, s |\n|---|---|---|---|", flush=True)
+        for line in kicked_rows():
+            print(line, flush=True)
+        return
     lines = ["| motion | reference | tolerance | distance | of the reference | estimate | steps | processor, s |"]
     lines.append("|---|---|---|---|---|---|---|---|")
     print("\n".join(lines), flush=True)

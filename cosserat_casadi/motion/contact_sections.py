@@ -37,6 +37,9 @@ MOST_HALVINGS = 40
 PLACED = 1e-14
 """Change of a place that counts as none."""
 
+AT_END = 1e-12
+"""Distance from an end, over the length, at which a place is that end."""
+
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
 
@@ -200,10 +203,10 @@ class RodFacing(Facing):
         beside = float(self.looked_at[index])
         here = self.at(nodes, beside).value
         X = self._stationary(nodes, beside)
-        if not (0.0 < X < 1.0 and abs(X - beside) <= FAR):
+        if not (_inside(X) and abs(X - beside) <= FAR):
             X = self._bracketed(nodes, index)
         # A flat gap, as of a straight rod along a plane, has no place of its own.
-        if not 0.0 < X < 1.0:
+        if not _inside(X):
             return Minimum(beside, here, 0.0 < beside < 1.0)
         return Minimum(X, self.at(nodes, X).value, True)
 
@@ -264,6 +267,11 @@ def _rows_of(grid: Grid, X: float) -> Rows:
 
 
 _differentiated = lru_cache(maxsize=32)(chebyshev.differentiation_matrix)
+
+
+def _inside(X: float) -> bool:
+    """Whether a section lies between the ends of the rod; rounding alone makes it no other one than the end."""
+    return AT_END < X < 1.0 - AT_END
 
 
 def _step_down(gaps: FloatArray, index: int) -> float:

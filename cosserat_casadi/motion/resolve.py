@@ -20,9 +20,9 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
+    MOST_TIGHTENINGS,
     Simulator,
     Tell,
     TimedHistory,
@@ -67,10 +67,10 @@ LAST = 3
 """One of so many coefficients counts as one of the last."""
 
 COARSER = 3.0
-"""Factor between the tolerances of a step of a free rod's motion and of the coarser one that tells its error."""
+"""Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
 
-LEFT_BY_FINER = 1.0
-"""Error of the finer of the two over their distance: it is 0.7 where errors go with the power SLOPE of tolerances."""
+LEFT_BY_FINER = 1.4
+"""Error of the finer of the two over their distance, where errors go with the square root of tolerances or faster."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ def _with_tolerance(search: _Search) -> Motion:
 def _on_level(search: _Search, simulator: Simulator) -> History:
     """The motion on one level: the first one settles how exact the steps have to be."""
     if not search.levels:
-        timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
+        timed = simulator.foretold(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.step_tolerance = timed.sufficient
         search.time_error = timed.error
         return timed.history
@@ -283,18 +283,37 @@ def _timed(search: _Search) -> TimedHistory:
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    allowed = TIME_SHARE * search.tolerance
-    if flies_free(level.simulator.model):
-        told = told_by_coarser(level, search.step_tolerance)
-        if told.error <= allowed or told.history.outcome is StepOutcome.INTERRUPTED:
-            return told
-    return level.simulator.tightened(level.history, search.step_tolerance, allowed)
+    # What the modes have left over of their share is the steps' to use.
+    allowed = max(TIME_SHARE * search.tolerance, search.tolerance - search.space_error)
+    return exact_in_time(level, search.step_tolerance, allowed)
+
+
+def exact_in_time(level: Level, step_tolerance: float, allowed: float) -> TimedHistory:
+    """The motion of a level with steps that are told to be exact enough, and their error.
+
+    Args:
+        level: the motion.
+        step_tolerance: tolerance of a step, over the length, that it was computed with.
+        allowed: error of the paths over the length.
+    """
+    told = told_by_coarser(level, step_tolerance)
+    for _ in range(MOST_TIGHTENINGS):
+        if not told.history.completed or told.error <= allowed:
+            break
+        told = _tighter(level.simulator, told)
+    return told
+
+
+def _tighter(simulator: Simulator, told: TimedHistory) -> TimedHistory:
+    """The same motion with more exact steps, and their error by the distance from it."""
+    tolerance = told.tolerance / COARSER
+    history = simulator.controlled(tolerance)
+    error = LEFT_BY_FINER * path_distance(simulator.paths(told.history), simulator.paths(history))
+    return TimedHistory(history, error, tolerance, tolerance)
 
 
 def told_by_coarser(level: Level, step_tolerance: float) -> TimedHistory:
     """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
-
-    The steps of what flies free are so exact, see :data:`simulate.CLEAR`, that this is mostly enough.
 
     Args:
         level: the motion.

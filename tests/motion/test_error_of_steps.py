@@ -1,0 +1,86 @@
+"""The error that the steps of a motion leave, as a coarser motion tells it, beside that of a far more exact one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from cosserat_casadi import build, scene_from_dict
+from cosserat_casadi.motion.paths import path_distance
+from cosserat_casadi.motion.resolve import COARSER, Level, exact_in_time, told_by_coarser
+from cosserat_casadi.motion.simulate import FORETOLD, TIGHTER, Simulator, started
+from tests.motion import transients
+
+STEP_TOLERANCE = 1e-3
+
+
+def simulator_of(asked: dict[str, Any]) -> Simulator:
+    """The motion of a scene on five modes."""
+    scene = scene_from_dict({**asked, "accuracy": {"modes": 5, "nodes": 10}})
+    model = build(scene.with_motion_inputs(), moving=True)
+    simulation = scene.simulation
+    assert simulation is not None
+    return Simulator(model, simulation, started(model, simulation, None))
+
+
+def free_rod() -> Simulator:
+    """A rod that is kicked in space."""
+    return simulator_of(transients.flying_in_space(duration=4.0, frames=2))
+
+
+def cantilever() -> Simulator:
+    """A cantilever on which a weight acts at once."""
+    return simulator_of(transients.sudden_weight(duration=1.0))
+
+
+@pytest.fixture(scope="module", params=[free_rod, cantilever], ids=["free rod", "cantilever"])
+def level(request: pytest.FixtureRequest) -> Level:
+    """A motion and the steps that it was computed with."""
+    simulator: Simulator = request.param()
+    history = simulator.controlled(STEP_TOLERANCE)
+    return Level(simulator, history, simulator.paths(history))
+
+
+def true_error(simulator: Simulator, found: Any) -> float:
+    """Distance from a motion with far more exact steps, over the length."""
+    exact = simulator.controlled(1e-2 * STEP_TOLERANCE)
+    return path_distance(simulator.paths(found), simulator.paths(exact))
+
+
+def test_error_told_by_a_coarser_motion_is_not_too_small(level: Level) -> None:
+    told = told_by_coarser(level, STEP_TOLERANCE)
+    error = true_error(level.simulator, level.history)
+    assert told.history is level.history
+    assert error <= told.error
+    # Nor is it without use.
+    assert told.error <= 100.0 * error
+
+
+def test_coarser_motion_that_does_not_end_tells_nothing(level: Level, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = level.history
+    monkeypatch.setattr(type(broken), "completed", False)
+    assert told_by_coarser(level, STEP_TOLERANCE).error == float("inf")
+
+
+def test_steps_are_made_more_exact_until_their_error_is_allowed(level: Level) -> None:
+    told = told_by_coarser(level, STEP_TOLERANCE)
+    allowed = told.error / 2.0
+    found = exact_in_time(level, STEP_TOLERANCE, allowed)
+    assert found.tolerance <= STEP_TOLERANCE / COARSER
+    assert found.error <= allowed
+    assert true_error(level.simulator, found.history) <= found.error
+
+
+def test_tolerance_of_steps_is_foretold_from_two_motions() -> None:
+    simulator = cantilever()
+    first = STEP_TOLERANCE
+    distance = path_distance(
+        simulator.paths(simulator.controlled(first)), simulator.paths(simulator.controlled(first / TIGHTER))
+    )
+    # Half the distance counts, and it lies below what is enough, but above the error that is wanted.
+    wanted = 0.5 * distance / (0.9 * FORETOLD)
+    foretold = simulator.foretold(wanted, first)
+    assert foretold.tolerance == pytest.approx(first / TIGHTER)
+    assert first / TIGHTER < foretold.sufficient < first
+    assert true_error(simulator, simulator.controlled(foretold.sufficient)) <= wanted
