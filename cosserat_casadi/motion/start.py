@@ -13,7 +13,8 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.exact_contact import Arrangement, ExactContacts
+from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
