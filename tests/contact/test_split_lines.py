@@ -120,6 +120,32 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert lifted.stable
 
 
+def test_a_load_inside_a_line_over_a_drum() -> None:
+    """Along a drum the bending moment is constant, and so there is no shear force: each normal force is borne at once.
+
+    The drum takes of a load downwards at a section what is along its normal, and at the end of the line that share of
+    the weight of what hangs beyond; the rest is tension.
+    """
+    load, radius, place = 0.5, 0.5, 0.45
+    axis = np.array([0.35, 0.0, -0.02 - radius])
+    drum = (
+        f'[[obstacles]]\nname = "drum"\nkind = "capsule"\nradius = {radius}\n'
+        f"from = [{axis[0]}, -1.0, {axis[2]}]\nto = [{axis[0]}, 1.0, {axis[2]}]\n"
+    )
+    scene = parse_scene(TABLE[: TABLE.index("[[obstacles]]")] + drum + point_load(place, -load))
+    solution = solve(build(scene, discretise(scene, 7)))
+    check_contact(solution)
+    check_balance(solution, -load)
+    (line,) = solution.contacts
+    (section,) = line.inside
+    assert (line.kind, section.at) == ("line", place)
+    upwards = (solution.pose(np.array([place, line.end])).position - axis)[:, 2] / radius
+    # As exact as the turn along the drum is integrated.
+    assert_allclose(section.force, load * upwards[0], rtol=1e-6, atol=0)
+    hanging = WEIGHT * LENGTH * (1.0 - line.end)
+    assert_allclose(line.ends[1], hanging * upwards[1], rtol=1e-6, atol=0)
+
+
 @pytest.mark.slow
 def test_a_load_on_the_free_span() -> None:
     """Shooting of the heavy elastica with a load at 0.48 of the rod, which lies down beyond it."""
