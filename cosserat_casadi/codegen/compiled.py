@@ -27,8 +27,8 @@ from cosserat_casadi.codegen.compiled_results import (
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary
-from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, read_manifest
-from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
+from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, is_sound, read_manifest
+from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
@@ -343,7 +343,7 @@ def load(
     if is_in_contact(described):
         problem = "is the folder of a scene in exact contact, whose unknowns change with the contacts"
         raise ExportError(Problem(str(folder), problem, "load it with load_in_contact"))
-    if not _is_manifest(described):
+    if not is_sound(described, _has_rods):
         raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", EXPORT_FIRST))
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
@@ -366,15 +366,10 @@ def _scene_text(folder: Path) -> str:
         return ""
 
 
-def _is_manifest(described: Any) -> bool:
-    """Whether what is read of a manifest is there."""
-    try:
-        library_names(described["name"])
-        rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
-        numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
-        files = all(isinstance(file, str) for file in described["files"])
-        functions = all(isinstance(entry, dict) for entry in described["functions"])
-        listed_parameters(described.get("parameters", []))
-    except (ExportError, KeyError, TypeError, ValueError):
-        return False
-    return rods and files and functions and all(value.ndim == 1 for value in numbers)
+def _has_rods(described: Any) -> bool:
+    """Whether what is read of a manifest of rods is there."""
+    rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
+    files = all(isinstance(file, str) for file in described["files"])
+    functions = all(isinstance(entry, dict) for entry in described["functions"])
+    listed_parameters(described.get("parameters", []))
+    return rods and files and functions

@@ -187,6 +187,7 @@ def version_words() -> dict[str, str]:
 
 
 def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
+    without_workspace = {function.kernel for function in public_functions(model, names)}
     return {
         "name": names.name,
         "MACRO": names.macro,
@@ -200,7 +201,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
         "max_reuses": newton.MAX_REUSES,
-        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
+        "stack_kb": f"{np.ceil(stack_bytes(generated, without_workspace) / 500) / 2:g}",
     }
 
 

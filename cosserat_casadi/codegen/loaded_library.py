@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
+
+from cosserat_casadi.maths.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,35 @@ class LoadedLibrary:
     def _workspace(self) -> Any:
         """Memory for one call, so that several threads may call at once."""
         return room(self._function("workspace_size")())
+
+
+def budget(options: type[ctypes.Structure], first: int | None, second: int | None) -> Any:
+    """A reference to the struct of the two budgets of a turn; None where the header's are to hold.
+
+    Args:
+        options: the struct, whose members are the budgets.
+        first: value of the first; None for none.
+        second: of the second; likewise.
+
+    Raises:
+        ValueError: one is given without the other.
+    """
+    if (first is None) != (second is None):
+        names = " and ".join(name for name, *_ in options._fields_)
+        raise ValueError(f"give both {names}, or none")
+    if first is None:
+        return None
+    return ctypes.byref(options(first, second))
+
+
+def by_tip(names: Sequence[str], columns: FloatArray) -> dict[str, FloatArray]:
+    """The d(position, quaternion)/dinputs of each tip, shape (7, m).
+
+    Args:
+        names: of the rods, or of the tubes.
+        columns: what the library wrote, shape (tips, m, 7).
+    """
+    return {name: own.T for name, own in zip(names, columns, strict=True)}
 
 
 def room(size: int) -> Any:

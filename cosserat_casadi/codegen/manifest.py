@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
-from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
@@ -47,6 +48,21 @@ def read_manifest(folder: Path) -> Any:
 def is_in_contact(described: Any) -> bool:
     """Whether a manifest is of a scene in exact contact."""
     return isinstance(described, dict) and ARRANGEMENTS in described
+
+
+def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
+    """Whether what is read of a manifest is there: the name of the library, values of inputs, and what a kind has else.
+
+    Args:
+        described: what was read.
+        is_own: whether what this kind of folder has is there; it may raise what a look at wrong data raises.
+    """
+    try:
+        library_names(described["name"])
+        values = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+        return all(value.ndim == 1 for value in values) and is_own(described)
+    except (ExportError, KeyError, TypeError, ValueError):
+        return False
 
 
 def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: float | None) -> dict[str, Any]:

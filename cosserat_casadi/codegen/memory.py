@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 REAL, INTEGER = 8, 4
 """Bytes of a number in double precision, of an int."""
 
 FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
-
-
-WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$")
-"""Names of kernels that are called with a workspace alone, however large it is."""
 
 
 def largest_room(generated: Mapping[str, str], kind: str) -> int:
@@ -32,28 +28,51 @@ def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
     return {name: int(size) for name, size in re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)}
 
 
-def stack_bytes(generated: Mapping[str, str]) -> int:
-    """Stack that a call needs, in double precision.
+def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str] = ()) -> int:
+    """Stack that a call needs, in double precision: that of the kernel which needs most.
 
     A kernel in straight-line code keeps its values in local variables, which all lie on the stack where nothing is
-    optimised; functions without a workspace have the room of their kernel there as well.
+    optimised, with those of the functions that it calls, one below the other. A kernel that is called without a
+    workspace has its room there as well; all others work in the room of the workspace.
 
     Args:
         generated: source and header of the kernels by file name.
+        without_workspace: names of the kernels that are called without one.
     """
-    source = "".join(text for file, text in generated.items() if file.endswith(".c"))
-    functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     rooms = _rooms(generated, "W")
-    on_stack = {name: 0 if WITH_WORKSPACE.search(name) else room for name, room in rooms.items()}
-    in_fours = dict[str, int]()
+    deepest = _on_calls(generated)
+    needed = []
+    for name in rooms:
+        room = rooms[name] if name in without_workspace else 0
+        needed.append(room + deepest[name])
+    return REAL * max(needed) + FRAMES
+
+
+def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
+    """Numbers in local variables of each function of the kernels, with those of the deepest of its calls."""
+    deepest: dict[str, int] = {}
     for file, text in generated.items():
         if file.endswith("_in_fours.h"):
-            in_fours |= _locals_in_fours(text)
-    largest = max(map(_locals, functions))
-    largest += max((room for name, room in on_stack.items() if name not in in_fours), default=0)
-    for name, room in on_stack.items():
-        largest = max(largest, in_fours.get(name, 0) + room)
-    return REAL * largest + FRAMES
+            deepest |= _locals_in_fours(text)
+    for file, text in generated.items():
+        if file.endswith(".c"):
+            deepest |= _locals_of_calls(text)
+    return deepest
+
+
+def _locals_of_calls(source: str) -> dict[str, int]:
+    """Numbers on the stack of each function in straight-line code, with the largest function that it calls."""
+    needed: dict[str, int] = {}
+    # Functions come before those that call them.
+    for function in re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)[1:]:
+        head, _, body = function.partition("{")
+        defined = re.search(r"(\w+)\(", head)
+        if defined is None:
+            # A table of numbers.
+            continue
+        called = [name for name in re.findall(r"(\w+)\(", body) if name in needed]
+        needed[defined[1]] = _locals(function) + max((needed[name] for name in called), default=0)
+    return needed
 
 
 def _locals(function: str) -> int:

@@ -15,9 +15,10 @@ from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
-from cosserat_casadi.control.target_errors import POSE_ENTRIES, Gap, length_of, model_error, target_errors, wanted_poses
+from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, wanted_poses
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -128,7 +129,7 @@ def _searched(model: Model, rows: Sequence[Targets], stable: bool, progress: Pro
     first = first_solution(model)
     problem = lifted_problem(model, rows[0], first, stable)
     lengths = np.array([length_of(model, target) for target in rows[0]])
-    wanted = np.array([wanted_poses(targets).reshape(-1, POSE_ENTRIES) for targets in rows])
+    wanted = np.array([wanted_poses(targets).reshape(-1, POSE_SIZE) for targets in rows])
     starts = [first] * len(rows)
     # The nearest to where the rods are anyway comes first.
     distances = np.array([_distance(target_errors(first, targets), lengths) for targets in rows])

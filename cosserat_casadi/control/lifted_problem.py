@@ -10,9 +10,10 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
-from cosserat_casadi.control.target_errors import POSE_ENTRIES, target_errors, wanted_poses, weighted_errors
+from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -244,7 +245,7 @@ def _optimiser(
     centre = ca.MX.sym("centre", count)
     damping = ca.MX.sym("damping")
     origin = ca.MX.sym("origin", model.inputs.size)
-    wanted = ca.MX.sym("wanted", POSE_ENTRIES * len(targets))
+    wanted = ca.MX.sym("wanted", POSE_SIZE * len(targets))
     inputs = origin + _scatter(variables, scale, model.inputs.size) @ change
     errors = weighted_errors(model, targets, wanted, x, inputs)
     damped = damping * ca.sumsqr(change - centre)

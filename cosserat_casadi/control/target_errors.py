@@ -11,12 +11,10 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-
-POSE_ENTRIES = 7
-"""Numbers of a wanted pose: three of its position, four of its quaternion."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ def length_of(model: Model, target: scenes.Target) -> float:
 
 def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
     """Positions and quaternions that targets ask for, 7 numbers for each; zeros for what a target leaves free."""
-    poses = np.zeros((len(targets), POSE_ENTRIES))
+    poses = np.zeros((len(targets), POSE_SIZE))
     for pose, target in zip(poses, targets, strict=True):
         if not isinstance(target, scenes.CurveTarget):
             pose[:3] = target.position
@@ -89,7 +87,7 @@ def weighted_errors(
     """
     errors = []
     for i, target in enumerate(targets):
-        pose = wanted[POSE_ENTRIES * i : POSE_ENTRIES * (i + 1)]
+        pose = wanted[POSE_SIZE * i : POSE_SIZE * (i + 1)]
         error = _error(model, target, pose, x, inputs)
         errors.append(np.sqrt(target.weight) * error)
     stacked: Matrix = ca.vertcat(*errors)

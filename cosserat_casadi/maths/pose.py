@@ -12,6 +12,9 @@ from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, know
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
+POSE_SIZE = 7
+"""Numbers of a pose: position and quaternion."""
+
 
 @dataclass(frozen=True)
 class Pose:

@@ -16,7 +16,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import stays_in_plane
-from cosserat_casadi.maths.pose import NumericPose, Pose, numeric
+from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import matrix_to_quaternion
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
@@ -53,7 +53,7 @@ class FloatingFrame:
     length: float
     start: NumericPose
 
-    SIZE = 7
+    SIZE = POSE_SIZE
     """Number of unknowns."""
 
 

@@ -18,7 +18,8 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.motion_load import motion_matrices
-from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
+from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.motion_tangent import MotionTangent
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
@@ -23,9 +24,6 @@ from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.rod.motion import StrainRates
-
-POSE_SIZE = 7
-"""Unknowns of a frame."""
 
 ORDERS = 3
 """Positions, rates and accelerations."""

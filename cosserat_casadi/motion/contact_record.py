@@ -151,7 +151,8 @@ class ContactRecord:
         for stretch in self.stretches:
             follower = Follower(self._facings, stretch.touches)
             for step in stretch.steps:
-                places, *_ = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
-                touches = [touch._replace(place=place) for touch, place in zip(stretch.touches, places, strict=True)]
+                followed = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
+                both = zip(stretch.touches, followed.places, strict=True)
+                touches = [touch._replace(place=place) for touch, place in both]
                 begins.append((stretch, tuple(touches)))
         return begins

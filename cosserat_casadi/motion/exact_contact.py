@@ -11,13 +11,21 @@ where the bend comes to zero it lies down, and is kept out at sections of its ow
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_guards import (
+    CLOSE,
+    SAME_PLACE,
+    Arrangement,
+    ContactGuards,
+    GuardKind,
+    guarded,
+)
 from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.facing import FLATTEST, Facing, Gap
@@ -28,14 +36,8 @@ from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touch
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
-SAME_PLACE = 0.02
-"""Distance of two sections, over the length, that touch one obstacle, up to which they count as one."""
-
 TOUCHING = 1e-9
 """Gap, over the length, up to which a section touches where it is looked at."""
-
-CLOSE = 1e-7
-"""The same of a section of a rod that lies: it is held at that height."""
 
 LEEWAY = 1e-8
 """How much lower a section without a force may come than it was at the last event, over the length.
@@ -48,37 +50,6 @@ MOST_IN_A_MOMENT = 8
 
 MOMENT = 0.1
 """Such a moment, over the interval after an event."""
-
-NO_PULL = 1e-6
-"""Force, in its unit, that one counts as which may pull: a guard that is zero would be an event at once."""
-
-FORCE, END, BEND, GAP, CLEAR = range(5)
-"""What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch, and a
-rod that has got up."""
-
-
-@dataclass(frozen=True)
-class Arrangement:
-    """What touches during a stretch of a motion.
-
-    Attributes:
-        touches: the contacts.
-        laid: numbers of the pairs of a rod and an obstacle in which the rod lies; never of pairs with a body.
-        follower: of the contacts.
-        floors: least gaps that what does not touch may have, an array for each pair: one for each section of a rod that
-            lies, else one.
-        forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
-        moment: beginning of the moment in which changes are counted, s.
-        changes: changes in it.
-    """
-
-    touches: Touches = ()
-    laid: frozenset[int] = frozenset()
-    follower: Follower = field(default_factory=lambda: Follower((), ()))
-    floors: tuple[FloatArray, ...] = ()
-    forces_from: float = -np.inf
-    moment: float = -np.inf
-    changes: int = 0
 
 
 @dataclass(frozen=True)
@@ -101,6 +72,11 @@ class ExactContacts:
         """Which ends of the rods are one point."""
         return MeetingEnds(self.facings)
 
+    @cached_property
+    def guards(self) -> ContactGuards:
+        """What has to stay at zero or above while contacts do not change."""
+        return ContactGuards(self.model.size, self.facings, self.meeting_ends)
+
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Arrangement:
         """What touches at a state."""
         found, laid = self._touching(x, inputs, (), frozenset())
@@ -110,69 +86,10 @@ class ExactContacts:
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Arrangement) -> tuple[MotionEquations, Guards]:
         """The equations, and what has to stay at zero or above while they hold."""
-        guards = self._guards(piece, phases)
+        guards = self.guards.of(piece, phases)
         if not phases.touches:
             return plain, guards
         return with_touches(plain, phases.follower, piece), guards
-
-    def _guards(self, piece: Piece, arrangement: Arrangement) -> Guards:
-        """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
-        touches = arrangement.touches
-        follower = arrangement.follower
-        size = self.model.size
-
-        def values(instant: Instant) -> FloatArray:
-            x = instant.x[:size]
-            inputs = piece.at(instant.time).value
-            places, gaps, gone = follower.follow(x, inputs)
-            forces = instant.x[size:]
-            if instant.time <= arrangement.forces_from:
-                forces = np.maximum(forces, NO_PULL)
-            ends = np.ones(len(touches))
-            bends = np.ones(len(touches))
-            placed = [touch._replace(place=place) for touch, place in zip(touches, places, strict=True)]
-            for k, (touch, gap) in enumerate(zip(placed, gaps, strict=True)):
-                if touch.facing not in arrangement.laid:
-                    ends[k] = self._within(touch, x, inputs)
-                if touch.slides:
-                    bends[k] = -1.0 if gone[k] else gap.bend - FLATTEST
-            others = np.ones(len(self.facings))
-            clear = np.ones(len(self.facings))
-            for number, facing in enumerate(self.facings):
-                nodes = facing.nodes(x, inputs)
-                floor = arrangement.floors[number]
-                if number not in arrangement.laid:
-                    others[number] = min(1.0, self._lowest(number, nodes, placed) - float(floor[0]))
-                    continue
-                own = [touch.place for touch in placed if touch.facing == number]
-                untouched = ~np.isin(facing.laid_at, own)
-                others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
-                if not own:
-                    clear[number] = CLOSE - facing.deepest(nodes).gap
-            return np.concatenate([forces, ends, bends, others, clear])
-
-        return values
-
-    def _within(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> float:
-        """How far a place is from the ends of the rod; of an end, how fast the gap rises towards all rods there."""
-        if touch.slides:
-            return min(touch.place, 1.0 - touch.place)
-        if self.facings[touch.facing].of_body:
-            return 1.0
-        return self.meeting_ends.rise(touch, x, inputs)
-
-    def _lowest(self, number: int, nodes: FloatArray, touches: Sequence[Touch]) -> float:
-        """The least gap, over the length, of a rod that does not lie or of a body, but for what touches.
-
-        Args:
-            number: of the rod or body and obstacle.
-            nodes: positions, shape (M, 3), m.
-            touches: the contacts, at their places.
-        """
-        own = [touch.place for touch in touches if touch.facing == number]
-        beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
-        left_out = [X for other, X in beside if other == number]
-        return self.facings[number].lowest(nodes, own, left_out)
 
     def restarted(
         self,
@@ -182,7 +99,7 @@ class ExactContacts:
         phases: Arrangement,
         guard: int | None,
         interval: float,
-    ) -> Restart:
+    ) -> Restart[Arrangement]:
         """How a motion goes on, or begins.
 
         Args:
@@ -217,35 +134,57 @@ class ExactContacts:
         """
         places, _ = phases.follower.gaps(before.x, inputs)
         held = [touch._replace(place=place) for touch, place in zip(phases.touches, places, strict=True)]
-        kind, number = _guarded(guard, len(held), len(self.facings))
-        if kind == FORCE:
-            left = held.pop(number)
-            return _Known(tuple(held), phases.laid, (left,), (self._event("lift_off", before.time, left),))
         known = _Known(tuple(held), phases.laid)
-        if kind == BEND:
-            if phases.follower.gone(before.x, inputs, places)[number]:
-                # Where it was last: beyond the event it is elsewhere.
-                held[number] = held[number]._replace(place=phases.follower.places[number])
-            return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
-        if kind == END:
-            end = held[number]
-            moved = self.meeting_ends.gone_on(end, before.x, inputs)
-            if moved.facing in phases.laid:
-                # Where the next rod lies, this one lies down too.
-                return self._lying(known, end, before, inputs)
-            held[number] = moved
-            known = replace(known, held=tuple(held))
-            facing = self.facings[moved.facing]
-            if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place).bend <= FLATTEST:
-                # An end that is left where the gap is flat leaves no section for another.
-                return self._lying(known, moved, before, inputs)
-            name = "slide_from_end" if moved.slides else "slide_to_end"
-            if moved.facing != end.facing:
-                name = "slide_over_joint"
-            return replace(known, events=(self._event(name, before.time, moved),))
-        if kind == CLEAR:
-            return replace(known, laid=phases.laid - {number})
-        return known
+        kind, number = guarded(guard, len(held), len(self.facings))
+        match kind:
+            case GuardKind.FORCE:
+                return self._lifted_off(known, number, before)
+            case GuardKind.END:
+                return self._come_to_end(known, number, before, inputs)
+            case GuardKind.BEND:
+                return self._without_bend(known, number, phases.follower, before, inputs)
+            case GuardKind.CLEAR:
+                return replace(known, laid=known.laid - {number})
+            case GuardKind.GAP | None:
+                # What touches anew is looked for in any case.
+                return known
+
+    def _lifted_off(self, known: _Known, number: int, before: Instant) -> _Known:
+        """Contacts without one whose force would pull."""
+        held = list(known.held)
+        left = held.pop(number)
+        event = self._event("lift_off", before.time, left)
+        return replace(known, held=tuple(held), left=(left,), events=(event,))
+
+    def _come_to_end(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts of which one has come to an end of its rod, or leaves it: it goes on there, or the rod lies down."""
+        end = known.held[number]
+        moved = self.meeting_ends.gone_on(end, before.x, inputs)
+        if moved.facing in known.laid:
+            # Where the next rod lies, this one lies down too.
+            return self._lying(known, end, before, inputs)
+        held = list(known.held)
+        held[number] = moved
+        known = replace(known, held=tuple(held))
+        facing = self.facings[moved.facing]
+        if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place).bend <= FLATTEST:
+            # An end that is left where the gap is flat leaves no section for another.
+            return self._lying(known, moved, before, inputs)
+        name = "slide_from_end" if moved.slides else "slide_to_end"
+        if moved.facing != end.facing:
+            name = "slide_over_joint"
+        return replace(known, events=(self._event(name, before.time, moved),))
+
+    def _without_bend(
+        self, known: _Known, number: int, follower: Follower, before: Instant, inputs: FloatArray
+    ) -> _Known:
+        """Contacts of which one has lost the bend of its gap: its rod lies down."""
+        held = list(known.held)
+        places = [touch.place for touch in held]
+        if follower.gone(before.x, inputs, places)[number]:
+            # Where it was last: beyond the event it is elsewhere.
+            held[number] = held[number]._replace(place=follower.places[number])
+        return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
 
     def _lying(self, known: _Known, first: Touch, before: Instant, inputs: FloatArray) -> _Known:
         """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
@@ -267,7 +206,7 @@ class ExactContacts:
                 known = self._lying(known, touch, before, inputs)
         return known
 
-    def _struck(self, onset: Onset, known: _Known) -> Restart:
+    def _struck(self, onset: Onset, known: _Known) -> Restart[Arrangement]:
         """How a motion goes on after what touches anew has struck."""
         x, inputs = onset.before.x, onset.inputs.value
         old = (*known.held, *known.left)
@@ -320,7 +259,7 @@ class ExactContacts:
             energies.append(max(0.0, float(-0.5 * impulse * unit * speed)))
         return energies
 
-    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart:
+    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[Arrangement]:
         """The end of a motion, with everything as it was, because nothing is decided."""
         names = sorted({self.facings[touch.facing].obstacle.name for touch in touching})
         why = (
@@ -353,7 +292,7 @@ class ExactContacts:
             if number in laid:
                 gaps = facing.laid_gaps(nodes)
             else:
-                gaps = np.array([self._lowest(number, nodes, pressing)])
+                gaps = np.array([self.guards.lowest(number, nodes, pressing)])
             floors.append(np.where(gaps > LEEWAY, 0.0, np.minimum(gaps, 0.0) - LEEWAY))
         return tuple(floors)
 
@@ -404,22 +343,6 @@ class _Known:
     laid: frozenset[int]
     left: Touches = ()
     events: tuple[ContactEvent, ...] = ()
-
-
-def _guarded(guard: int | None, count: int, facings: int) -> tuple[int | None, int]:
-    """What a guard is of, and the number of its contact, or of the rod and obstacle.
-
-    Args:
-        guard: its number; None for none.
-        count: number of contacts.
-        facings: number of rods and obstacles.
-    """
-    if guard is None:
-        return None, 0
-    if guard < GAP * count:
-        return guard // count, guard % count
-    of_facing = guard - GAP * count
-    return GAP + of_facing // facings, of_facing % facings
 
 
 def _one_of_each(touches: Sequence[Touch]) -> list[Touch]:

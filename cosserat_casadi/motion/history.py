@@ -6,7 +6,6 @@ from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from typing import Any
 
 import numpy as np
 
@@ -15,13 +14,14 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.contact_guards import Arrangement
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.mean_frames import MeanFrames
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_alone, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.restart import ContactEvent, Restart, Switching
+from cosserat_casadi.motion.restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -94,7 +94,7 @@ class Leg:
     """
 
     piece: Piece
-    restart: Restart
+    restart: Restart[object]
     integration: Integration
 
     @property
@@ -224,6 +224,7 @@ class History:
         stretches = []
         for leg in self.legs:
             phases = leg.restart.phases
+            assert isinstance(phases, Arrangement), "where rods touch exactly no cable goes slack"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches)
 
@@ -245,7 +246,7 @@ def integrated(
     settings: StepSettings,
     after_step: AfterStep | None = None,
     p: FloatArray | None = None,
-    phases: Any = None,
+    phases: Arrangement | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -258,12 +259,33 @@ def integrated(
         settings: how to step.
         after_step: told of every step.
         p: stacked parameters; those of a model that has some.
-        phases: what holds at the start, as :class:`Switching` has it; None where that is looked for.
+        phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
 
     Raises:
         SceneError: the start contradicts the constraints.
     """
-    switching: Switching = ExactContacts(model) if model.scene.touches_exactly else SlackCables(model)
+    inputs = pieces[0].at(pieces[0].start).value
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p)
+    if not model.scene.touches_exactly:
+        cables = SlackCables(model)
+        return switched(cables, cables.first_phases(x, inputs))
+    contacts = ExactContacts(model)
+    return switched(contacts, contacts.first_phases(x, inputs) if phases is None else phases)
+
+
+def _switched(
+    model: Model,
+    pieces: Sequence[Piece],
+    x: FloatArray,
+    v: FloatArray,
+    method: Collocation,
+    settings: StepSettings,
+    after_step: AfterStep | None,
+    p: FloatArray | None,
+    switching: Switching[Phases],
+    phases: Phases,
+) -> History:
+    """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
     coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
     to_model = None if coordinates is None else coordinates.to_model
@@ -271,8 +293,6 @@ def integrated(
     frames = MeanFrames(model) if flies_alone(model) and coordinates is None else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
-    if phases is None:
-        phases = switching.first_phases(x, pieces[0].at(at.time).value)
     if coordinates is not None:
         at = coordinates.from_model(at)
     guard: int | None = None
@@ -287,7 +307,7 @@ def integrated(
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
-                touches = model.scene.touches_exactly and len(restart.phases.touches) > 0
+                touches = isinstance(phases, Arrangement) and len(phases.touches) > 0
                 _check_start(restart.start, pieces[-1].end, touches=touches)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant

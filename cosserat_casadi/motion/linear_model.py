@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -25,10 +24,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
+from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
 from cosserat_casadi.motion.modes import check_mass, small_motions
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
-
-AXES = ("x", "y", "z")
 
 UNHELD = 1e-7
 """Share of what an input moves a constraint by that may be left open, as rounding."""
@@ -127,10 +125,6 @@ class LinearModel:
         )
 
 
-Place: TypeAlias = tuple[str, float]
-"""A section of a rod: its name and the abscissa X."""
-
-
 def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) -> LinearModel:
     """Linearise a model about one of its equilibria, at rest.
 
@@ -147,85 +141,10 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
     refuse_obstacles(solution.model.scene, "a linear model")
     if not solution.converged:
         raise SolveError(solution.message)
-    watched = _outputs(solution, outputs)
+    watched = outputs_of(solution, outputs)
     equations = _Equations.about(solution)
     check_mass(equations.motions)
     return _linear_model(equations, watched)
-
-
-@dataclass(frozen=True)
-class _Outputs:
-    """Outputs as linear functions of unknowns and inputs.
-
-    Attributes:
-        names: of all outputs.
-        by_x: derivatives with x, shape (outputs, size).
-        by_inputs: derivatives with the inputs, shape (outputs, inputs).
-    """
-
-    names: tuple[str, ...]
-    by_x: FloatArray
-    by_inputs: FloatArray
-
-
-def _outputs(solution: Solution, wanted: Sequence[str | Place] | None) -> _Outputs:
-    """The wanted outputs.
-
-    Raises:
-        SceneError: with every one that is none.
-    """
-    model = solution.model
-    x = ca.MX.sym("x", model.size)
-    inputs = ca.MX.sym("inputs", model.inputs.size)
-    known = _known_outputs(model, x, inputs)
-    chosen = _default_outputs(model) if wanted is None else list(wanted)
-    problems: list[Problem] = []
-    values = []
-    names: list[str] = []
-    for output in chosen:
-        if isinstance(output, str) and output in known:
-            name = output
-            value = known[name]
-        elif not isinstance(output, str) and output[0] in model.shape and 0.0 <= output[1] <= 1.0:
-            rod, X = output
-            name = f"{rod}.position({X:g})"
-            value = model.shape[rod](x, inputs, X)[0]
-        else:
-            remedy = f"its outputs are sections (rod, X) with X in [0, 1], and {', '.join(known)}"
-            problems.append(Problem("outputs", f"{output!r} is not an output of this scene", remedy))
-            continue
-        values.append(value)
-        names += [name] if value.shape[0] == 1 else [f"{name}.{axis}" for axis in AXES]
-    if problems:
-        raise SceneError(*problems)
-    stacked = ca.vertcat(*values)
-    derivatives = ca.Function("outputs", [x, inputs], [ca.jacobian(stacked, x), ca.jacobian(stacked, inputs)])
-    by_x, by_inputs = derivatives(solution.x, solution.inputs)
-    return _Outputs(tuple(names), by_x.full(), by_inputs.full())
-
-
-def _default_outputs(model: Model) -> list[str | Place]:
-    """Tips, and middles of rods whose tip a support holds."""
-    held = {support.rod for support in model.scene.supports}
-    chosen: list[str | Place] = []
-    for rod in model.discrete.rods:
-        if rod in held:
-            chosen.append((rod, 0.5))
-        else:
-            chosen.append(f"{rod}.tip.position")
-    return chosen
-
-
-def _known_outputs(model: Model, x: ca.MX, inputs: ca.MX) -> dict[str, ca.MX]:
-    """All that has a name and may be an output."""
-    known = {}
-    for rod in model.discrete.rods:
-        known[f"{rod}.tip.position"] = model.tip[rod](x, inputs)[0]
-    for body in model.body:
-        known[f"{body}.position"] = model.body[body](x, inputs)[0]
-    for actuator, function in model.actuator.items():
-        known[f"{actuator}.{function.name_out(1)}"] = function(x, inputs)[1]
-    return known
 
 
 @dataclass(frozen=True)
@@ -341,7 +260,7 @@ def _coordinates(motions: SmallMotions) -> _Coordinates:
     return _Coordinates(modal, massless @ directions[:, damped], massless @ directions[:, ~damped])
 
 
-def _linear_model(equations: _Equations, watched: _Outputs) -> LinearModel:
+def _linear_model(equations: _Equations, watched: Outputs) -> LinearModel:
     """The model in modal coordinates."""
     motions = equations.motions
     coordinates = _coordinates(motions)
@@ -416,7 +335,7 @@ def _first_order(
     return A, B
 
 
-def _descriptor(equations: _Equations, watched: _Outputs) -> DescriptorModel:
+def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
     """The model in the unknowns: coordinates, their rates, then multipliers and tensions."""
     motions = equations.motions
     moving = motions.moving

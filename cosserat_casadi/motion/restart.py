@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Generic, Protocol, TypeVar
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+Phases = TypeVar("Phases")
+"""What holds for a while: which cables are taut, or what touches."""
+
+HeldPhases = TypeVar("HeldPhases", covariant=True)
+"""The same, of what only holds and does not take it."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +44,7 @@ class ContactEvent:
 
 
 @dataclass(frozen=True)
-class Restart:
+class Restart(Generic[HeldPhases]):
     """How a motion goes on after an event, or begins.
 
     Attributes:
@@ -51,23 +57,23 @@ class Restart:
     """
 
     start: ConsistentStart
-    phases: Any
+    phases: HeldPhases
     lost: float = 0.0
     work: float = 0.0
     events: tuple[ContactEvent, ...] = ()
     stalled: str | None = None
 
 
-class Switching(Protocol):
+class Switching(Protocol[Phases]):
     """What switches between equations of motion that are smooth for a while each."""
 
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Any:
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
         """What holds at a state."""
 
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Any) -> tuple[MotionEquations, Guards | None]:
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
         """The equations that hold with it, and what has to stay at zero or above while they do."""
 
     def restarted(
-        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Any, guard: int | None, interval: float
-    ) -> Restart:
+        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float
+    ) -> Restart[Phases]:
         """How a motion goes on, or begins."""

@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.consistent_start import consistent_start, impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
-Phases = tuple[bool, ...]
+Tautness = tuple[bool, ...]
 """Of each cable that may go slack whether it is taut."""
 
 TOUCHING = 1e-9
@@ -54,7 +54,7 @@ class SlackCables:
         """Rows of their equations, which are the entries of their tensions."""
         return [self.model.discrete.tension(cable).start for cable in self.cables]
 
-    def equations(self, plain: MotionEquations, piece: Piece, phases: Phases) -> MotionEquations:
+    def equations(self, plain: MotionEquations, piece: Piece, phases: Tautness) -> MotionEquations:
         """Equations of motion in which each of these cables is either slack or taut.
 
         Args:
@@ -85,11 +85,11 @@ class SlackCables:
 
         return replace(plain, residual=residual, jacobians=jacobians)
 
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Tautness) -> tuple[MotionEquations, Guards | None]:
         """The equations, and what has to stay at zero or above while they hold."""
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
-    def guards(self, piece: Piece, phases: Phases) -> Guards | None:
+    def guards(self, piece: Piece, phases: Tautness) -> Guards | None:
         """What has to stay at zero or above: the sag of a slack cable, the tension of a taut one; None without any."""
         if not self.cables:
             return None
@@ -101,7 +101,7 @@ class SlackCables:
 
         return values
 
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Tautness:
         """Which cables are taut at a state."""
         if not self.cables:
             return ()
@@ -112,10 +112,10 @@ class SlackCables:
         plain: MotionEquations,
         piece: Piece,
         at: Instant,
-        phases: Phases,
+        phases: Tautness,
         guard: int | None,
         interval: float,
-    ) -> Restart:
+    ) -> Restart[Tautness]:
         """How a motion goes on, or begins.
 
         Args:
@@ -143,8 +143,8 @@ class SlackCables:
             phases = _changed(phases, slack)
 
     def _after_impact(
-        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, interval: float
-    ) -> tuple[FloatArray, Phases]:
+        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Tautness, interval: float
+    ) -> tuple[FloatArray, Tautness]:
         """Velocities after a cable has snapped taut, and which cables are taut then: impulses only pull."""
         while True:
             struck = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
@@ -153,7 +153,7 @@ class SlackCables:
                 return struck.v, phases
             phases = _changed(phases, pushing)
 
-    def _pushing(self, x: FloatArray, phases: Phases) -> list[int]:
+    def _pushing(self, x: FloatArray, phases: Tautness) -> list[int]:
         """Taut cables whose tension is negative."""
         tensions = self._softness * x[self.rows]
         return [k for k, taut in enumerate(phases) if taut and tensions[k] < -THROUGH]
@@ -189,6 +189,6 @@ class SlackCables:
         return ca.densify(ca.vertcat(*[lengths[cable.tendon.name].sag for cable in self.cables]))
 
 
-def _changed(phases: Phases, cables: Sequence[int]) -> Phases:
-    """Phases of which those of some cables are the other one."""
+def _changed(phases: Tautness, cables: Sequence[int]) -> Tautness:
+    """Tautness of which those of some cables are the other one."""
     return tuple(taut != (k in cables) for k, taut in enumerate(phases))

@@ -13,7 +13,8 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.exact_contact import Arrangement, ExactContacts
+from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
@@ -21,8 +22,14 @@ EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 GIVEN = "At rest in the equilibrium that was given."
 TOUCHES = (
-    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on the modes of the motion no such "
-    'equilibrium was found: give more modes, start = "unloaded", or other inputs at t = 0.'
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on {modes} modes of each strain no such "
+    "equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
+    'accuracy.modes = {more} or more, start = "unloaded", or other inputs at t = 0.'
+)
+GIVEN_TOUCHES = (
+    "The rods touch obstacles in the equilibrium that was given, and on {modes} modes of each strain no such "
+    "equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
+    "accuracy.modes = {more} or more; the equilibrium that was given may stay."
 )
 FREE_TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
@@ -110,6 +117,8 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
     guess = projected(solution, model)[: model.size]
     found = resting(ExactContacts(model), guess, inputs, solution.contacts)
     if found is None:
-        return Start(model.unloaded(), TOUCHES, found=False)
+        modes = max(max(own.modes) for own in model.discretisation.values())
+        refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
+        return Start(model.unloaded(), refused.format(modes=modes, more=2 * modes), found=False)
     x, arrangement = found
     return Start(x, sentence, phases=arrangement)

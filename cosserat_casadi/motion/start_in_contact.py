@@ -13,7 +13,8 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.exact_contact import SAME_PLACE, Arrangement, ExactContacts
+from cosserat_casadi.motion.contact_guards import SAME_PLACE, Arrangement
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.facing import FLATTEST, Facing
 from cosserat_casadi.motion.touching import Follower, Touch, Touches
 from cosserat_casadi.numerics.complementarity import least_pushes

@@ -54,6 +54,20 @@ class State:
     gradients: list[FloatArray]
 
 
+class Followed(NamedTuple):
+    """Where contacts are that were followed to a state.
+
+    Attributes:
+        places: abscissae, one for each.
+        gaps: their gaps there, over the length of their rods.
+        gone: which of them are elsewhere than where they were, see :meth:`Follower.gone`.
+    """
+
+    places: list[float]
+    gaps: list[Gap]
+    gone: list[bool]
+
+
 class Follower:
     """Contacts whose places are found next to those that they had where they were last followed to.
 
@@ -72,7 +86,7 @@ class Follower:
         self.touches = touches
         self.places = [touch.place for touch in touches]
 
-    def follow(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap], list[bool]]:
+    def follow(self, x: FloatArray, inputs: FloatArray) -> Followed:
         """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.
 
         One that is gone is still looked for where it was.
@@ -81,7 +95,7 @@ class Follower:
         gone = self.gone(x, inputs, places)
         kept = zip(places, self.places, gone, strict=True)
         self.places = [old if is_gone else new for new, old, is_gone in kept]
-        return places, gaps, gone
+        return Followed(places, gaps, gone)
 
     def gone(self, x: FloatArray, inputs: FloatArray, places: Sequence[float]) -> list[bool]:
         """Which contacts have jumped: they are elsewhere, and where they were the gap has lost its bend.

@@ -21,7 +21,8 @@ import casadi as ca
 
 from cosserat_casadi.maths.blocks import hat_operator
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
+from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.motion_tangent import MotionTangent
 from cosserat_casadi.rod.pose_load import LoadedSections
 
 Variation = tuple[Matrix | None, Matrix | None, Matrix | None]

@@ -32,51 +32,11 @@ from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_sym
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
+from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.tangent import Tangent
 
 ORDERS = 3
 """Derivatives with z, with ż and with z̈."""
-
-
-@dataclass(frozen=True)
-class Jet:
-    """A matrix and its first two time derivatives."""
-
-    value: Matrix
-    rate: Matrix
-    acceleration: Matrix
-
-    @property
-    def orders(self) -> tuple[Matrix, Matrix, Matrix]:
-        """Value, rate and acceleration."""
-        return self.value, self.rate, self.acceleration
-
-
-@dataclass(frozen=True)
-class MotionMatrices:
-    """Derivatives of forces with coordinates z, ż and z̈.
-
-    Attributes:
-        stiffness: with z, n×n.
-        damping: with ż, n×n.
-        mass: with z̈, n×n.
-    """
-
-    stiffness: Matrix
-    damping: Matrix
-    mass: Matrix
-
-    def along(self, jet: Jet) -> MotionMatrices:
-        """The same in other coordinates u with δz = P δu: the jet of P, n×k. Forces at fixed z̈ are left out.
-
-        The second derivative of y is Y(P ü + 2 Ṗ u̇ + P̈ u): each order of the jet meets the one above.
-        """
-        to_z, to_z_rate, to_z_acceleration = jet.orders
-        mass = self.mass @ to_z
-        damping = self.damping @ to_z + 2 * (self.mass @ to_z_rate)
-        stiffness = self.stiffness @ to_z + self.damping @ to_z_rate + self.mass @ to_z_acceleration
-        pulled = to_z.T
-        return MotionMatrices(pulled @ stiffness, pulled @ damping, pulled @ mass)
 
 
 @dataclass(frozen=True)

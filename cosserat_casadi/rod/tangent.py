@@ -35,6 +35,7 @@ from cosserat_casadi.maths.blocks import (
 from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.actuation_stiffness import actuation_stiffness
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape
@@ -232,7 +233,7 @@ class Tangent:
         if self.shape.ratio is not None:
             elastic = elastic / self.shape.ratio
         matrix = elastic + self._frozen_wrenches()
-        for part in (self._following_forces(), self._pose_stiffness(), self._actuation_stiffness()):
+        for part in (self._following_forces(), self._pose_stiffness(), actuation_stiffness(self.igm)):
             if part is not None:
                 matrix = matrix + part
         return matrix
@@ -383,54 +384,6 @@ class Tangent:
         if not parts:
             return None
         return sum(parts[1:], parts[0]) / -self.rod.energy_unit
-
-    def _actuation_stiffness(self) -> Matrix | None:
-        """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts, n×n; None where it vanishes."""
-        parts = []
-        curved = self._curvature_stiffness()
-        if curved is not None:
-            parts.append(curved)
-        for effort, conjugate in self.igm.efforts:
-            further = conjugate.further_stiffness
-            if further is not None:
-                parts.append(effort / self.rod.energy_unit * further)
-        if not parts:
-            return None
-        return sum(parts[1:], parts[0])
-
-    def _curvature_stiffness(self) -> Matrix | None:
-        """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
-        admitted = self.rod.admitted
-        blocks = {}
-        for a in admitted:
-            for b in admitted:
-                if a <= b:
-                    blocks[a, b] = self._curvature_block(a, b)
-        if not any(block.nnz() for block in blocks.values()):
-            return None
-        for a, b in list(blocks):
-            if a < b:
-                blocks[b, a] = blocks[a, b].T
-        return ca.blockcat([[blocks[a, b] for b in admitted] for a in admitted])
-
-    def _curvature_block(self, a: int, b: int) -> Matrix:
-        """Rows of the coordinates of strain a, columns of those of strain b."""
-        phi_a = ca.sparsify(ca.DM(self.rod.at_nodes[a]))
-        phi_b = ca.sparsify(ca.DM(self.rod.at_nodes[b]))
-        # Efforts first add their rows at the nodes: one product with Φ for all of them.
-        rows = []
-        for effort, conjugate in self.igm.efforts:
-            curvature = conjugate.curvature(a, b)
-            if curvature is not None:
-                rows.append(effort / self.rod.energy_unit * curvature)
-        if not rows:
-            return ca.DM(phi_a.shape[1], phi_b.shape[1])
-        total = sum(rows[1:], rows[0])
-        block = phi_a.T @ (ca.diag(total) @ phi_b)
-        # Symmetric to the last digit, and half the products.
-        if a == b:
-            return ca.triu2symm(ca.triu(block))
-        return block
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""

@@ -138,11 +138,3 @@ def _changed(
     moved = ca.jtimes(ca.vertcat(after, carried), arguments, ca.vertcat(changes, of_lengths))
     both: Matrix = ca.cse(ca.vertcat(after, carried, ca.vec(ca.densify(moved))))
     return both
-
-
-def selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
-    """The column of a number that is known as the function is evaluated."""
-    chosen: Matrix = ca.DM(0.0)
-    for number, column in enumerate(columns):
-        chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)
-    return chosen

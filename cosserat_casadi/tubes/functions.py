@@ -13,10 +13,10 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.changes import Directions, changing_step, selected, with_changes
+from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stages import Staged
@@ -27,9 +27,6 @@ NEWTON_TOLERANCE = 1e-12
 
 NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
-
-POSE = 7
-"""Numbers of a pose: position and quaternion."""
 
 
 class TubeFunctions(ABC):
@@ -185,7 +182,7 @@ class TubeFunctions(ABC):
         following = -ca.solve(jacobian, by_inputs)
         changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
-        for pose, change in zip(ca.horzsplit(poses), ca.vertsplit(changes, POSE), strict=True):
+        for pose, change in zip(ca.horzsplit(poses), ca.vertsplit(changes, POSE_SIZE), strict=True):
             back = quaternion_conjugate(pose[3:])
             # δQ = ½ (0, δθ) ⊗ Q.
             turns = [2 * quaternion_product(column, back)[1:] for column in ca.horzsplit(change[3:, :])]
@@ -210,8 +207,8 @@ class TubeFunctions(ABC):
         poses: list[Matrix] = []
         changes: list[Matrix] = []
         for index, rank in enumerate(self._ranks):
-            reached = selected(rank, [state for state, _ in ends[:-1]])
-            reached_changes = selected(rank, [change for _, change in ends[:-1]])
+            reached = _selected(rank, [state for state, _ in ends[:-1]])
+            reached_changes = _selected(rank, [change for _, change in ends[:-1]])
             of_tip = with_changes(self._of_tip(index), directions, {2: directions.of_x})
             pose, moved = of_tip(plate, reached, x, plate_changes, reached_changes)
             poses.append(pose)
@@ -413,7 +410,7 @@ class TubeFunctions(ABC):
     def _tips(self) -> list[Pose]:
         """Pose of every tube's tip in base axes."""
         ends = self._whole.ends
-        return [self._tip_pose(index, ends[-1], selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
+        return [self._tip_pose(index, ends[-1], _selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
 
     def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
         """A function of unknowns, inputs and load factor."""
@@ -429,3 +426,11 @@ class TubeFunctions(ABC):
 def _reversed(row: ca.MX) -> ca.MX:
     """A row from its end to its start."""
     return ca.horzcat(*reversed(ca.horzsplit(row)))
+
+
+def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
+    """The column of a number that is known as the function is evaluated."""
+    chosen: Matrix = ca.DM(0.0)
+    for number, column in enumerate(columns):
+        chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)
+    return chosen

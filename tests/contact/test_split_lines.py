@@ -9,7 +9,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
+from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.steps import sought
+from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 from cosserat_casadi.results.solution_file import result
 from tests.contact.test_contact import TABLE, check_forces_sum, free_span
 
@@ -35,7 +40,7 @@ def check_contact(solution: Solution, tolerance: float = 1e-8) -> None:
         for contact in solution.contacts:
             touching = np.linspace(contact.start, contact.end, 301)
             assert_allclose(gap_along(solution, rod, obstacle, touching), 0.0, rtol=0, atol=tolerance)
-            assert min(contact.ends) >= -tolerance
+            assert min(contact.ends) >= 0.0
             assert all(section.force > 0.0 for section in contact.inside)
 
 
@@ -82,6 +87,20 @@ def test_from_a_solution_the_line_is_tried_first(pressed: Solution) -> None:
     assert again.iterations < 15
 
 
+@pytest.mark.parametrize("moved", [0.003, 0.004])
+def test_places_are_sought_until_rounding_is_left(pressed: Solution, moved: float) -> None:
+    """Steps from these starts would end at the aim of 1e-13 before: forces of short stretches need the digits."""
+    scene = without_contacts(pressed.model.scene)
+    own = state_in(pressed.model.scene)
+    beside = own.at((own.places + moved).tolist())
+    grids = Grids(pressed.model.discretisation)
+    equations = ContactEquations(scene, input_layout(scene).pack(None), grids, beside)
+    start = np.concatenate([pressed.x, equations.nominal.fitting_forces(pressed.x), beside.places])
+    z, holds, _ = sought(equations, start, NewtonSettings())
+    assert holds
+    assert relative_norm(equations.residual(z, equations.given), z) < 1e-16
+
+
 @pytest.mark.parametrize("lift", [0.15, pytest.param(0.05, marks=pytest.mark.slow)])
 def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     """A heavy beam on a rigid plane rises over 3P/4q on either side; each end of what rises presses with P/4.
@@ -99,6 +118,32 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert_allclose(first.start * LENGTH, length, rtol=0, atol=1e-7)
     check_balance(lifted, lift)
     assert lifted.stable
+
+
+def test_a_load_inside_a_line_over_a_drum() -> None:
+    """Along a drum the bending moment is constant, and so there is no shear force: each normal force is borne at once.
+
+    The drum takes of a load downwards at a section what is along its normal, and at the end of the line that share of
+    the weight of what hangs beyond; the rest is tension.
+    """
+    load, radius, place = 0.5, 0.5, 0.45
+    axis = np.array([0.35, 0.0, -0.02 - radius])
+    drum = (
+        f'[[obstacles]]\nname = "drum"\nkind = "capsule"\nradius = {radius}\n'
+        f"from = [{axis[0]}, -1.0, {axis[2]}]\nto = [{axis[0]}, 1.0, {axis[2]}]\n"
+    )
+    scene = parse_scene(TABLE[: TABLE.index("[[obstacles]]")] + drum + point_load(place, -load))
+    solution = solve(build(scene, discretise(scene, 7)))
+    check_contact(solution)
+    check_balance(solution, -load)
+    (line,) = solution.contacts
+    (section,) = line.inside
+    assert (line.kind, section.at) == ("line", place)
+    upwards = (solution.pose(np.array([place, line.end])).position - axis)[:, 2] / radius
+    # As exact as the turn along the drum is integrated.
+    assert_allclose(section.force, load * upwards[0], rtol=1e-6, atol=0)
+    hanging = WEIGHT * LENGTH * (1.0 - line.end)
+    assert_allclose(line.ends[1], hanging * upwards[1], rtol=1e-6, atol=0)
 
 
 @pytest.mark.slow

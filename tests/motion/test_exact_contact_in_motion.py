@@ -11,11 +11,12 @@ from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, parse_scene, read_scene, simulate, simulate_scene, solve, write_motion
+from cosserat_casadi import build, discretise, parse_scene, read_scene, simulate, simulate_scene, solve, write_motion
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.start import given_start
 from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 
@@ -272,3 +273,18 @@ def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None
     write_motion(on_ball, tmp_path / "motion.npz")
     with np.load(tmp_path / "motion.npz") as arrays:
         assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
+
+
+def test_a_start_on_too_few_modes_names_how_many_start() -> None:
+    """A soft rod that lies on a table from a quarter of its length on: the modes that are named are enough."""
+    heavy = read_scene("examples/rod_on_table.toml", ["simulation={duration=0.1}"])
+    on_few = solve(build(heavy, discretise(heavy, 4)))
+    assert on_few.converged
+    refused = given_start(build(heavy, discretise(heavy, 4), moving=True), on_few)
+    assert not refused.found
+    assert "on 4 modes of each strain" in refused.sentence
+    assert "accuracy.modes = 8 or more" in refused.sentence
+    begun = given_start(build(heavy, discretise(heavy, 8), moving=True), on_few)
+    assert begun.found, begun.sentence
+    assert begun.phases is not None
+    assert all(touch.place > 0.25 for touch in begun.phases.touches)

@@ -13,8 +13,9 @@ from typer.testing import CliRunner
 from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve, write_motion
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_guards import Arrangement
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.exact_contact import Arrangement, ExactContacts
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.laid_sections import lobatto
 from cosserat_casadi.motion.simulate import moving_inputs

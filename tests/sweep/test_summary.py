@@ -34,6 +34,8 @@ def summary(chosen: dict[str, Any], *checked: dict[str, Any]) -> str:
         ({"error_estimate": None, "converged": 0}, [], "none of which has an equilibrium"),
         ({"discretisation": None, "error_estimate": None}, [], "as the scene fixes them"),
         ({"error_estimate": 3e-5}, [FINE], "1 row solved again in Python: estimated error at most 2.0e-05, within"),
+        ({"error_estimate": 3e-5}, [FINE], "poses differ by at most 1.0e-12."),
+        ({"error_estimate": 3e-5}, [FINE | {"difference": 1.4e-63}], "poses differ by rounding alone."),
         ({"error_estimate": 3e-5}, [FINE, FINE | {"error_estimate": 2e-3}], "2 rows solved again in Python"),
         ({"error_estimate": 3e-5}, [FINE | {"error_estimate": 2e-3}], "2.0e-03, more than 0.0001"),
         ({"error_estimate": 3e-5}, [FINE | {"difference": 0.1}], "another equilibrium for row 2."),

@@ -18,6 +18,9 @@ from cosserat_casadi.sweep.outcome_file import STABLE, record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan
 
+ROUNDING = float(np.finfo(np.float64).eps)
+"""Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
+
 
 def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None, *, finished: bool) -> None:
     """Print how the rows ended, on what they were computed, what the check of some rows gave, and the files.
@@ -102,9 +105,10 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
         estimates = [_or_infinite(entry["error_estimate"]) for entry in compared]
         error = max(estimates)
         difference = max(entry["difference"] for entry in compared)
+        differing_by = "by rounding alone" if difference <= ROUNDING else f"by at most {difference:.1e}"
         yield (
             f"{counted(len(compared), 'row')} solved again in Python: estimated error at most {error:.1e}, "
-            f"{_within(error, tolerance)} {tolerance:g}; poses differ by at most {difference:.1e}."
+            f"{_within(error, tolerance)} {tolerance:g}; poses differ {differing_by}."
         )
     lost = [entry for entry in checked if entry["difference"] is None]
     if lost:

@@ -2,8 +2,8 @@
    equations.
 
    The library's own source includes, in this order: its configuration, its kernels, this header, its tables, then
-   contact_newton.c, contact_shape.c, contact_settle.c and contact.c. All is one translation unit, so that nothing but the
-   functions of the library's header is visible to a linker.
+   contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c. All is one translation unit, so that
+   nothing but the functions of the library's header is visible to a linker.
 
    An arrangement says who touches what, at points or along lines. Its unknowns are z = (x, f, p): the unknowns of the rods,
    the forces of the contacts, and the abscissae of contact that are not at a tip. */

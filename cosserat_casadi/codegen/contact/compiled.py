@@ -18,17 +18,15 @@ from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
 from cosserat_casadi.codegen.library import FOURS
-from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_in_contact, read_manifest
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-
-POSE_SIZE = 7
 
 
 class ContactInfo(Info):
@@ -174,11 +172,7 @@ class CompiledContact(LoadedLibrary):
             ValueError: the inputs are of the wrong size, or one budget is given without the other.
         """
         given = vector(inputs, len(self.defaults), "inputs")
-        if (max_iterations is None) != (max_parts is None):
-            raise ValueError("give both max_iterations and max_parts, or none")
-        options = None
-        if max_iterations is not None:
-            options = ctypes.byref(ContactOptions(max_iterations, max_parts))
+        options = budget(ContactOptions, max_iterations, max_parts)
         state = self._state(start)
         info = ContactInfo()
         columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
@@ -195,10 +189,7 @@ class CompiledContact(LoadedLibrary):
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
         columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
         status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
-        return None if status != 0 else self._by_rod(columns)
-
-    def _by_rod(self, columns: FloatArray) -> dict[str, FloatArray]:
-        return {rod: own.T for rod, own in zip(self.rods, columns, strict=True)}
+        return None if status != 0 else by_tip(self.rods, columns)
 
     def _answer(
         self, outcome: Outcome, state: Any, info: ContactInfo, derivatives: FloatArray | None
@@ -215,7 +206,7 @@ class CompiledContact(LoadedLibrary):
             load_factor=info.load_factor,
             tries=info.tries,
             parts=info.parts,
-            derivatives=None if derivatives is None else self._by_rod(derivatives),
+            derivatives=None if derivatives is None else by_tip(self.rods, derivatives),
             state=bytes(state),
         )
 
@@ -274,7 +265,7 @@ def load_in_contact(
     """
     folder = Path(directory)
     described = read_manifest(folder)
-    if not _is_manifest(described):
+    if not is_sound(described, _has_contacts):
         problem = "is not the manifest of a scene in exact contact"
         raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
     name = described["name"]
@@ -286,16 +277,8 @@ def load_in_contact(
     return CompiledContact(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
 
 
-def _is_manifest(described: Any) -> bool:
-    """Whether what is read of a manifest is there."""
-    if not is_in_contact(described):
-        return False
-    try:
-        library_names(described["name"])
-        numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
-        names = [*described["rods"], *described["obstacles"]]
-        contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
-    except (ExportError, KeyError, TypeError, ValueError):
-        return False
-    sound = all(isinstance(name, str) for name in names)
-    return sound and contacts and all(value.ndim == 1 for value in numbers)
+def _has_contacts(described: Any) -> bool:
+    """Whether what is read of a manifest of exact contact is there."""
+    names = [*described["rods"], *described["obstacles"]]
+    contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
+    return contacts and all(isinstance(name, str) for name in names)

@@ -25,7 +25,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
 
-VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_settle.c", "contact.c")
+VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_faults.c", "contact_settle.c", "contact.c")
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 MOST_TRIES = 24

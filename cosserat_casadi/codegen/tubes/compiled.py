@@ -15,16 +15,14 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
-from cosserat_casadi.codegen.loaded_library import LoadedLibrary
-from cosserat_casadi.codegen.manifest import MANIFEST, read_manifest
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
+from cosserat_casadi.codegen.manifest import MANIFEST, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
 from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
-
-POSE_SIZE = 7
 
 
 class TubeInfo(Info):
@@ -162,11 +160,7 @@ class CompiledTubes(LoadedLibrary):
             ValueError: the inputs are of the wrong size, or one budget is given without the other.
         """
         given = self._given(inputs)
-        if (max_iterations is None) != (max_continuation_steps is None):
-            raise ValueError("give both max_iterations and max_continuation_steps, or none")
-        options = None
-        if max_iterations is not None:
-            options = ctypes.byref(TubeOptions(max_iterations, max_continuation_steps))
+        options = budget(TubeOptions, max_iterations, max_continuation_steps)
         x = self._start(start)
         memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
         columns = np.zeros((len(self.tubes), given.size, POSE_SIZE))
@@ -176,7 +170,7 @@ class CompiledTubes(LoadedLibrary):
             pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
         )
         end = STATUSES[status]
-        found = self._by_tube(columns) if derivatives and end is TubeStatus.CONVERGED else None
+        found = by_tip(self.tubes, columns) if derivatives and end is TubeStatus.CONVERGED else None
         return self._answer(end, given, x, info, derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
@@ -184,7 +178,7 @@ class CompiledTubes(LoadedLibrary):
         columns = np.zeros((len(self.tubes), solution.inputs.size, POSE_SIZE))
         arguments = (pointer(solution.inputs), pointer(solution.x), None, pointer(columns), self._workspace())
         status = self._function("solve_sensitivity")(*arguments)
-        return None if status != 0 else self._by_tube(columns)
+        return None if status != 0 else by_tip(self.tubes, columns)
 
     def residual(self, x: npt.ArrayLike, inputs: npt.ArrayLike) -> FloatArray:
         """The residual, shape (unknowns,)."""
@@ -199,9 +193,6 @@ class CompiledTubes(LoadedLibrary):
 
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
         return np.zeros(self.unknowns) if start is None else start.x.copy()
-
-    def _by_tube(self, columns: FloatArray) -> dict[str, FloatArray]:
-        return {tube: own.T for tube, own in zip(self.tubes, columns, strict=True)}
 
     def _answer(
         self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, **more: Any
@@ -240,7 +231,7 @@ def load_tubes(
     """
     folder = Path(directory)
     described = read_manifest(folder)
-    if not _is_manifest(described):
+    if not is_sound(described, _has_tubes):
         problem = "is not the manifest of concentric tubes"
         raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
     name = described["name"]
@@ -250,14 +241,11 @@ def load_tubes(
     return CompiledTubes(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
 
 
-def _is_manifest(described: Any) -> bool:
-    """Whether what is read of a manifest is there."""
-    if not isinstance(described, dict) or not isinstance(described.get(KIND), list):
-        return False
-    try:
-        library_names(described["name"])
-        values = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
-        sound = isinstance(described["unknowns"], int)
-    except (ExportError, KeyError, TypeError, ValueError):
-        return False
-    return sound and all(isinstance(tube, str) for tube in described[KIND]) and all(v.ndim == 1 for v in values)
+def _has_tubes(described: Any) -> bool:
+    """Whether what is read of a manifest of concentric tubes is there."""
+    tubes = described[KIND]
+    return (
+        isinstance(tubes, list)
+        and isinstance(described["unknowns"], int)
+        and all(isinstance(tube, str) for tube in tubes)
+    )

@@ -151,7 +151,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "max_reuses": newton.MAX_REUSES,
         "default_iterations": TRACK_ITERATIONS,
         "default_continuation_steps": TRACK_STEPS,
-        "motion_config": render("tubes_config.h.in", basics),
+        "further_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),

@@ -2,7 +2,9 @@
 
 Forces of a short stretch hardly tell on the shape, so that a large error of theirs is a large residual although the
 shape is near its own: the residual is no measure of progress. Full steps are taken instead, from places that are held
-first, with shape and forces in balance there; a step is shortened only where it would squeeze an element.
+first, with shape and forces in balance there; a step is shortened only where it would squeeze an element. Steps end
+where rounding is all that is left and not at a residual that is given: forces of a short stretch are known worse than
+the shape by the cube of its length, and whether a force presses or pulls is read from its sign.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
     Args:
         equations: of one state.
         start: z, shape (n,).
-        settings: its tolerance and aim count.
+        settings: of these the tolerance counts; steps end at rounding, not at the aim.
 
     Returns:
         the last z, whether it solves the equations, and the steps that were taken.
@@ -55,8 +57,6 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
             break
         best = z
         least = norm
-        if norm <= settings.aim:
-            break
         if _narrowest(equations, z) < COLLAPSED:
             break
         step = _step(equations.jacobian(z, equations.given), -residual)

@@ -1,0 +1,187 @@
+/* What is at fault in an arrangement of contacts: forces that pull, and stretches of rods that are inside an obstacle.
+   cosserat_casadi/equilibrium/contact/settle.py looks for the same. */
+
+enum { MOST_FAULTS = 16 };
+
+/* A stretch of a rod that is inside an obstacle. */
+typedef struct {
+  int rod;
+  int obstacle;
+  real start;
+  real end;
+  real deepest;
+  real depth;
+  int touch; /* number of the contact that it is at; -1 of none */
+} penetration;
+
+/* A contact of an arrangement at the places in z. */
+static touch touch_at(const arrangement *at, const real *z, int number) {
+  const contact_entry *entry = at->touch + number;
+  const real *places = z + at->unknowns + at->forces + entry->first_place;
+  touch made = {.rod = entry->rod, .obstacle = entry->obstacle, .is_line = entry->is_line, .start = 1, .end = 1};
+  if (entry->moving > 0) made.start = places[0];
+  if (entry->ends == 1) made.end = made.start;
+  else if (entry->moving > 1) made.end = places[1];
+  return made;
+}
+
+/* The largest force, or EI/l2: what forces are compared with. */
+static real largest_force(const arrangement *at, const real *z) {
+  real largest = 1;
+  for (int i = 0; i < at->forces; i++) largest = larger(largest, fabs(z[at->unknowns + i]));
+  return largest;
+}
+
+/* How much a contact would have to pull at most, relative to the largest force. */
+static real pull_of(const arrangement *at, const real *z, int number, real largest) {
+  const contact_entry *entry = at->touch + number;
+  const real *forces = z + at->unknowns + entry->first_force;
+  real least = forces[0];
+  if (entry->is_line) {
+    const touch own = touch_at(at, z, number);
+    least = smaller(least, forces[1]);
+    for (int k = 0; k <= SAMPLES; k++) {
+      const real along = polynomial(0, forces + entry->ends, entry->along, (real)k / SAMPLES);
+      least = smaller(least, along * (own.end - own.start));
+    }
+  }
+  return larger(-least, 0) / largest;
+}
+
+/* Gap of the section at an abscissa; the nodes stand in the workspace. */
+static real gap_of_section(const arrangement *at, const real *z, const pair_entry *pair, real X, workspace *work) {
+  real position[3];
+  position_at(at, z, work->nodes, pair->rod, X, position);
+  return gap_at(pair, position, X, work);
+}
+
+/* Where between two abscissae the gap is least, by golden sections: J. Kiefer, Sequential minimax search for a maximum,
+   Proc. AMS 4 (1953). */
+static real lowest_between(const arrangement *at, const real *z, const pair_entry *pair, real first, real last,
+                           workspace *work) {
+  const real share = 0.38196601125010515;
+  real inner[2] = {first + share * (last - first), last - share * (last - first)};
+  real gaps[2];
+  for (int i = 0; i < 2; i++) gaps[i] = gap_of_section(at, z, pair, inner[i], work);
+  for (int k = 0; k < GOLDEN_SECTIONS; k++) {
+    if (gaps[1] < gaps[0]) {
+      first = inner[0];
+      inner[0] = inner[1];
+      gaps[0] = gaps[1];
+      inner[1] = last - share * (last - first);
+      gaps[1] = gap_of_section(at, z, pair, inner[1], work);
+    } else {
+      last = inner[1];
+      inner[1] = inner[0];
+      gaps[1] = gaps[0];
+      inner[0] = first + share * (last - first);
+      gaps[0] = gap_of_section(at, z, pair, inner[0], work);
+    }
+  }
+  return (inner[0] + inner[1]) / 2;
+}
+
+/* Whether an abscissa is within a line of contact of this rod and obstacle. */
+static int is_on_line(const arrangement *at, const real *z, const pair_entry *pair, real X) {
+  for (int k = 0; k < at->touches; k++) {
+    const touch own = touch_at(at, z, k);
+    if (own.rod != pair->rod || own.obstacle != pair->obstacle || !own.is_line) continue;
+    if (own.start <= X && X < own.end) return 1;
+  }
+  return 0;
+}
+
+/* Distance of an abscissa from the nearest end of its element. */
+static real distance_from_end(const arrangement *at, const real *z, int rod, real X) {
+  const int e = element_at(at, z, rod, X);
+  const real before = X - end_of_element(at, z, rod, e);
+  const real behind = end_of_element(at, z, rod, e + 1) - X;
+  return before > 0 && behind > 0 ? smaller(before, behind) : 0;
+}
+
+/* Step along a rod to the next section that is looked at. A gap changes by no more than X does, but for what the rod
+   stretches and tapers; beside ends of elements, where a rod that lies on starts to enter, steps are shorter. */
+static real step_along(const arrangement *at, const real *z, const pair_entry *pair, real X, real gap) {
+  if (is_on_line(at, z, pair, X)) return LOOKED_ALONG;
+  const real least = smaller(larger(distance_from_end(at, z, pair->rod, X), BESIDE_END), CLOSEST);
+  return smaller(larger(gap / FASTEST, least), FARTHEST);
+}
+
+/* Adds a section to the stretches that are inside obstacles; joins it to the last one where the rod has not left. */
+static int add_inside(penetration *found, int count, int joins, const pair_entry *pair, real X, real depth) {
+  if (joins) {
+    penetration *own = found + count - 1;
+    own->end = X;
+    if (depth > own->depth) {
+      own->depth = depth;
+      own->deepest = X;
+    }
+    return count;
+  }
+  if (count == MOST_FAULTS) return count;
+  const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, -1};
+  found[count] = begun;
+  return count + 1;
+}
+
+/* Finds the stretches of one rod that are inside one obstacle, behind those found before. Returns the number of all. */
+static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, penetration *found, int count,
+                       workspace *work) {
+  real X = 0, before = 0, before_last = 0;
+  real gap_before = HUGE_VAL, gap_before_last = HUGE_VAL;
+  int is_inside = 0;
+  for (;;) {
+    const real gap = gap_of_section(at, z, pair, X, work);
+    /* Between the last three sections the rod may enter for less than a step. */
+    if (gap_before <= gap && gap_before <= gap_before_last && gap_before >= -ACCEPTED &&
+        gap_before < FASTEST * (X - before_last) && !is_on_line(at, z, pair, before)) {
+      const real lowest = lowest_between(at, z, pair, before_last, X, work);
+      const real least = gap_of_section(at, z, pair, lowest, work);
+      if (least < -ACCEPTED) count = add_inside(found, count, 0, pair, lowest, -least);
+    }
+    if (gap < -ACCEPTED) {
+      count = add_inside(found, count, is_inside, pair, X, -gap);
+      if (count == MOST_FAULTS) return count;
+    }
+    is_inside = gap < -ACCEPTED;
+    if (X == 1) return count;
+    before_last = before;
+    gap_before_last = gap_before;
+    before = X;
+    gap_before = gap;
+    X = smaller(X + step_along(at, z, pair, X, gap), 1);
+  }
+}
+
+/* Finds the stretches that are inside obstacles; the nodes stand in the workspace. Returns their number. */
+static int find_penetrations(const arrangement *at, const real *z, penetration *found, workspace *work) {
+  int count = 0;
+  for (int p = 0; p < PAIRS; p++) count = find_inside(at, z, PAIR + p, found, count, work);
+  return count;
+}
+
+/* Tells each stretch inside an obstacle the contact that it is at, and joins those at one contact. Returns their number. */
+static int join_at_contacts(const arrangement *at, const real *z, penetration *found, int count) {
+  int kept = 0;
+  for (int i = 0; i < count; i++) {
+    penetration own = found[i];
+    for (int k = 0; k < at->touches && own.touch < 0; k++) {
+      const touch other = touch_at(at, z, k);
+      if (other.rod != own.rod || other.obstacle != own.obstacle) continue;
+      if (other.start - NEAR_CONTACT <= own.end && own.start <= other.end + NEAR_CONTACT) own.touch = k;
+    }
+    int joined = 0;
+    for (int j = 0; j < kept && own.touch >= 0; j++) {
+      if (found[j].touch != own.touch) continue;
+      found[j].start = smaller(found[j].start, own.start);
+      found[j].end = larger(found[j].end, own.end);
+      if (own.depth > found[j].depth) {
+        found[j].depth = own.depth;
+        found[j].deepest = own.deepest;
+      }
+      joined = 1;
+    }
+    if (!joined) found[kept++] = own;
+  }
+  return kept;
+}

@@ -1,0 +1,59 @@
+"""What efforts of actuators add to the Jacobian of a rod by working on lengths that curve with the strains."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.igm import InverseGeometricModel
+
+
+def actuation_stiffness(igm: InverseGeometricModel) -> Matrix | None:
+    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts, n×n; None where it vanishes."""
+    parts = []
+    curved = _curvature_stiffness(igm)
+    if curved is not None:
+        parts.append(curved)
+    for effort, conjugate in igm.efforts:
+        further = conjugate.further_stiffness
+        if further is not None:
+            parts.append(effort / igm.rod.energy_unit * further)
+    if not parts:
+        return None
+    return sum(parts[1:], parts[0])
+
+
+def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:
+    """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
+    admitted = igm.rod.admitted
+    blocks = {}
+    for a in admitted:
+        for b in admitted:
+            if a <= b:
+                blocks[a, b] = _curvature_block(igm, a, b)
+    if not any(block.nnz() for block in blocks.values()):
+        return None
+    for a, b in list(blocks):
+        if a < b:
+            blocks[b, a] = blocks[a, b].T
+    return ca.blockcat([[blocks[a, b] for b in admitted] for a in admitted])
+
+
+def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
+    """Rows of the coordinates of strain a, columns of those of strain b."""
+    phi_a = ca.sparsify(ca.DM(igm.rod.at_nodes[a]))
+    phi_b = ca.sparsify(ca.DM(igm.rod.at_nodes[b]))
+    # Efforts first add their rows at the nodes: one product with Φ for all of them.
+    rows = []
+    for effort, conjugate in igm.efforts:
+        curvature = conjugate.curvature(a, b)
+        if curvature is not None:
+            rows.append(effort / igm.rod.energy_unit * curvature)
+    if not rows:
+        return ca.DM(phi_a.shape[1], phi_b.shape[1])
+    total = sum(rows[1:], rows[0])
+    block = phi_a.T @ (ca.diag(total) @ phi_b)
+    # Symmetric to the last digit, and half the products.
+    if a == b:
+        return ca.triu2symm(ca.triu(block))
+    return block
