@@ -24,12 +24,12 @@ GIVEN = "At rest in the equilibrium that was given."
 TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on {modes} modes of each strain no such "
     "equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
-    'accuracy.modes = {more} or more, start = "unloaded", or other inputs at t = 0.'
+    'another number of accuracy.modes, mostly a larger one, start = "unloaded", or other inputs at t = 0.'
 )
 GIVEN_TOUCHES = (
     "The rods touch obstacles in the equilibrium that was given, and on {modes} modes of each strain no such "
     "equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
-    "accuracy.modes = {more} or more; the equilibrium that was given may stay."
+    "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
 )
 FREE_TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
@@ -119,6 +119,6 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
     if found is None:
         modes = max(max(own.modes) for own in model.discretisation.values())
         refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
-        return Start(model.unloaded(), refused.format(modes=modes, more=2 * modes), found=False)
+        return Start(model.unloaded(), refused.format(modes=modes), found=False)
     x, arrangement = found
     return Start(x, sentence, phases=arrangement)
