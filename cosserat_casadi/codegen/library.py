@@ -149,6 +149,7 @@ def _words(
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
+    sizes["batch"] = render("batch.c.in", {**sizes, "solve": "solver_solve"})
     functions = public_functions(model, names)
     weights = model.discrete.unknowns.step_weights
     return {
