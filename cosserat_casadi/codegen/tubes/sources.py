@@ -154,6 +154,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "default_continuation_steps": TRACK_STEPS,
         "motion_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
+        "batch_config": "",
         "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
