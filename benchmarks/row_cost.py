@@ -1,6 +1,7 @@
 """What a row of a sweep costs in C on one core: processor time of the compiled function for rows, best of several.
 
-*Without vectors* is the same C, row after row, compiled with FOURS_ONE_BY_ONE. Left out is all around it: reading and writing tables, choosing the discretisation, generating and compiling.
+*Without vectors* is the same C, row after row, compiled with FOURS_ONE_BY_ONE. Left out is all around it: reading and
+writing tables, choosing the discretisation, generating and compiling.
 """
 
 from __future__ import annotations

@@ -45,7 +45,6 @@ typedef struct {
 } row;
 
 typedef solver_lanes_room lanes_room;
-typedef solver_batch_workspace batch_workspace;
 
 /* What the solver is given of a row; it may lie in the workspace. */
 static const real *given_of_row(const batch_of_rows *batch, int i, workspace *work);
@@ -373,7 +372,7 @@ static void serve(row *rows, waiting state, lanes_room *room) {
 }
 
 /* Rows first to last of a batch. */
-static void solve_side_by_side(const batch_of_rows *batch, int first, int last, batch_workspace *work) {
+static void solve_side_by_side(const batch_of_rows *batch, int first, int last, solver_batch_workspace *work) {
   row rows[ROWS];
   lanes_room *room = &work->room;
   int begun = first;
