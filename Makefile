@@ -52,7 +52,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/motion_peers.py --write
 
 dial: $(STAMP)
-	$(BIN)/python benchmarks/compiled_cost.py
+	$(BIN)/python benchmarks/compiled_cost.py --write
 	$(BIN)/python benchmarks/dial.py --write
 
 format: $(STAMP)

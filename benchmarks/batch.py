@@ -1,60 +1,78 @@
-"""How many load cases a second an exported library solves, and how that grows with the threads."""
+"""What a load case takes in ``NAME_solve_batch`` of exported folders, on one core: processor time, best of several.
+
+Cases are drawn about the scene's own inputs. *Without vectors* is the same C compiled with -DFOURS_ONE_BY_ONE.
+"""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
+import ctypes
 import tempfile
+import time
 from pathlib import Path
+from typing import Annotated
 
-from rich.console import Console
-from rich.table import Table
+import numpy as np
+import typer
 
-ROOT = Path(__file__).parents[1]
-FLAGS = ("-O2", "-std=c99", "-fopenmp")
+from benchmarks.markdown import put, table
+from benchmarks.row_cost import drawn_inputs, robot, wire
+from cosserat_casadi import Model, export
+from cosserat_casadi.codegen import compiler
+from cosserat_casadi.codegen.compiled import load
+from cosserat_casadi.codegen.compiled_results import Info
+from cosserat_casadi.codegen.loaded_library import room
+from cosserat_casadi.codegen.plain import pointer
 
+PAGE = Path("docs/c-interface.md")
+BEGIN, END = "<!-- batches: written by benchmarks/batch.py -->", "<!-- end of batches -->"
 
-def compiled(folder: Path, target: Path) -> None:
-    """The harness linked with the library of an exported folder."""
-    described = json.loads((folder / "manifest.json").read_text())
-    name = described["name"]
-    own = ", ".join(repr(value) for entry in described["inputs"] for value in entry["value"])
-    defines = [f"-DNAME={name}", f"-DMACRO={name.upper()}", f"-DOWN_INPUTS={own}", f'-DLIBRARY_HEADER="{name}.h"']
-    sources = [str(ROOT / "benchmarks" / "batch.c"), f"{name}.c", f"{name}_kernels.c"]
-    command = ["gcc", *FLAGS, *defines, "-I.", *sources, "-o", str(target), "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
+CASES = 2000
+REPEATS = 7
 
-
-def microseconds(program: Path, threads: int, cases: int) -> float:
-    """Best time of a case over five runs."""
-    environment = {**os.environ, "OMP_NUM_THREADS": str(threads)}
-    found = []
-    for _ in range(5):
-        done = subprocess.run(
-            [program, str(cases), str(threads)], env=environment, capture_output=True, text=True, check=True
-        )
-        solved, converged, took = done.stdout.split()
-        if converged != solved:
-            raise RuntimeError(f"{converged} of {solved} cases converged")
-        found.append(float(took))
-    return min(found)
+SCENES = (("nitinol wire, three forces", wire), ("robot of two sections, tensions", robot))
 
 
-def main() -> None:
-    table = Table(title="Batches of 20 000 load cases")
-    for heading in ("library", "1 thread, µs a case", "2 threads, µs a case", "ratio", "cases a second"):
-        table.add_column(heading, justify="left" if heading == "library" else "right")
-    with tempfile.TemporaryDirectory() as scratch:
-        # Of the largest folders generated/ holds the hashes alone.
-        folders = [path for path in (ROOT / "generated").iterdir() if (path / f"{path.name}_kernels.c").exists()]
-        for folder in sorted(folders):
-            program = Path(scratch) / folder.name
-            compiled(folder, program)
-            one, two = (microseconds(program, threads, 20_000) for threads in (1, 2))
-            table.add_row(folder.name, f"{one:.2f}", f"{two:.2f}", f"{one / two:.2f}", f"{1e6 / two:,.0f}")
-    Console().print(table)
+def microseconds(model: Model, *, batches: bool) -> float:
+    """Processor time of a case."""
+    inputs = drawn_inputs(model)[:CASES]
+    x = np.zeros((CASES, model.size))
+    infos = (Info * CASES)()
+    with tempfile.TemporaryDirectory() as folder:
+        library = ctypes.CDLL(str(load(export(model, Path(folder) / "batch", "batch", batches=batches)).library))
+    size = library.batch_batch_workspace_size() if batches else library.batch_workspace_size()
+    work = room(size)
+    best = np.inf
+    for _ in range(REPEATS):
+        began = time.process_time()
+        converged = library.batch_solve_batch(CASES, pointer(inputs), pointer(x), work, 1, infos)
+        best = min(best, time.process_time() - began)
+        assert converged == CASES, "a case has no equilibrium"
+    return 1e6 * best / CASES
+
+
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put the table into docs/c-interface.md.")] = False,
+) -> None:
+    """Print what a case takes."""
+    flags = compiler.FLAGS
+    rows = []
+    for name, model_of in SCENES:
+        model = model_of()
+        apart = microseconds(model, batches=False)
+        together = microseconds(model, batches=True)
+        compiler.FLAGS = (*flags, "-DFOURS_ONE_BY_ONE")
+        plain = microseconds(model, batches=False)
+        compiler.FLAGS = flags
+        cells = [f"{value:.1f}" for value in (together, apart, plain, apart / together, plain / together)]
+        rows.append((name, str(model.size), *cells))
+    headings = (
+        "scene", "unknowns", "`--batches`, µs a case", "without it", "without vectors", "gain", "gain over no vectors",
+    )  # fmt: skip
+    text = table(headings, rows)
+    print(text)
+    if write:
+        put(PAGE, BEGIN, END, text)
 
 
 if __name__ == "__main__":
-    main()
+    typer.run(main)

@@ -376,7 +376,7 @@ def main(
         compile_sample(read(cheapest), compiled, sample)
     except KeyboardInterrupt:
         print("stopped; the same command goes on from here")
-    results = Results(read(judged_rows), read(cheapest), read(sample), read(folder / "compiled.csv"))
+    results = Results(read(judged_rows), read(cheapest), read(sample))
     print(results.text)
     if write:
         write_results(results)

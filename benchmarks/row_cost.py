@@ -1,12 +1,14 @@
 """What a row of a sweep costs in C on one core: processor time of the compiled function for rows, best of several.
 
-Left out is all around it: reading and writing tables, choosing the discretisation, generating and compiling.
+*Without vectors* is the same C, row after row, compiled with FOURS_ONE_BY_ONE. Left out is all around it: reading and
+writing tables, choosing the discretisation, generating and compiling.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -92,16 +94,31 @@ CASES: tuple[tuple[str, Callable[[], Model], dict[str, bool]], ...] = (
 )
 
 
+def without_vectors(library: RowLibrary) -> RowLibrary:
+    """The same C, whose kernels compute one number after the other."""
+    files = [
+        (name, f"#define FOURS_ONE_BY_ONE\n{text}" if name.endswith(".c") else text) for name, text in library.files
+    ]
+    return replace(library, files=tuple(files))
+
+
+HEADINGS = ("what is swept", "unknowns", "µs a row", "rows a second of one core", "rows without vectors, µs", "×")
+
+
 def main(
     write: Annotated[bool, typer.Option("--write", help="Put the table into docs/sweeps.md.")] = False,
 ) -> None:
     """Print what a row costs."""
     rows = []
+    plain = 0.0
     for name, model_of, chosen in CASES:
         model = model_of()
         spent = microseconds(model, row_library(model, **chosen))
-        rows.append((name, str(model.size), f"{spent:.1f}", f"{1e6 / spent:,.0f}"))
-    text = table(("what is swept", "unknowns", "µs a row", "rows a second of one core"), rows)
+        if not chosen:
+            plain = microseconds(model, without_vectors(row_library(model)))
+        cells = ["–", "–"] if chosen.get("stability") else [f"{plain:.1f}", f"{plain / spent:.1f}"]
+        rows.append((name, str(model.size), f"{spent:.1f}", f"{1e6 / spent:,.0f}", *cells))
+    text = table(HEADINGS, rows)
     print(text)
     if write:
         put(PAGE, BEGIN, END, text)

@@ -19,6 +19,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -27,7 +28,7 @@ from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 
-LANES = 4
+LANES = TOGETHER
 """Columns that are computed together."""
 
 GIVEN = ["x", "inputs", "load_factor"]

@@ -25,10 +25,11 @@ from cosserat_casadi.codegen.compiled_results import (
     solution_of,
 )
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.library import VERBATIM
-from cosserat_casadi.codegen.loaded_library import LoadedLibrary
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
 from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, is_sound, read_manifest
-from cosserat_casadi.codegen.names import FUNCTIONS, Names
+from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
@@ -196,7 +197,9 @@ class Compiled(LoadedLibrary, CompiledMotion):
         x = np.zeros((count, self.size))
         infos = (Info * count)()
         passed = [pointer(p)] if self.parameters.size else []
-        self._function("solve_batch")(count, pointer(given), *passed, pointer(x), self._workspace(), 1, infos)
+        side_by_side = lanes_files(self._names.name)[0] in self.manifest["files"]
+        work = room(self._function("batch_workspace_size")()) if side_by_side else self._workspace()
+        self._function("solve_batch")(count, pointer(given), *passed, pointer(x), work, 1, infos)
         return [solution_of(row, info) for row, info in zip(x, infos, strict=True)]
 
     def sensitivity(
@@ -349,10 +352,10 @@ def load(
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
     sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels")]
-    asked_for = (f"{names.name}_derivatives.c", stability_files(names.name)[0])
+    asked_for = (f"{names.name}_derivatives.c", stability_files(names.name)[0], lanes_files(names.name)[0])
     sources += [folder / file for file in asked_for if file in described["files"]]
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
-    beside = {*VERBATIM, f"{names.name}_kernels_in_fours.h", stability_files(names.name)[1]}
+    beside = {*VERBATIM, f"{names.name}_kernels_in_fours.h", stability_files(names.name)[1], lanes_files(names.name)[1]}
     headers += [folder / file for file in described["files"] if file in beside]
     library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
     return Compiled(library, described, names, _scene_text(folder))

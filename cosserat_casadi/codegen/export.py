@@ -14,6 +14,7 @@ from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
+from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
@@ -37,6 +38,7 @@ def export(
     derivatives: bool = False,
     dynamics: bool = False,
     stability: bool = False,
+    batches: bool = False,
     load_cases: FloatArray | None = None,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
@@ -51,6 +53,8 @@ def export(
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
+        batches: whether its function for many load cases solves them four at a time in the vectors of the processor; a
+            compiler takes about twice as long.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
 
@@ -61,7 +65,7 @@ def export(
         ExportError: the name, the folder, a motion, the stability or the contact of this scene is refused; nothing was
             written.
     """
-    asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability}
+    asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
     check_contact(model.scene, asked)
     check_load_cases(model.scene, load_cases)
     if stability:
@@ -110,6 +114,7 @@ def folder_files(
     derivatives: bool = False,
     dynamics: bool = False,
     stability: bool = False,
+    batches: bool = False,
 ) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
 
@@ -120,9 +125,10 @@ def folder_files(
         derivatives: as for :func:`export`.
         dynamics: as for :func:`export`.
         stability: as for :func:`export`.
+        batches: as for :func:`export`.
 
     Raises:
-        ExportError: the scene has no motion, and one is asked for.
+        ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
     """
     refuse_obstacles(model.scene, "exported C")
     names = model_names(name, model, dynamics=dynamics)
@@ -131,7 +137,15 @@ def folder_files(
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names)
     by_hand = library_sources(
-        model, names, parts, generated, error_estimate, derivatives=derivatives, stability=stability, motion=motion
+        model,
+        names,
+        parts,
+        generated,
+        error_estimate,
+        derivatives=derivatives,
+        stability=stability,
+        motion=motion,
+        rows=_side_by_side(model, names) if batches else None,
     )
     files = {
         **by_hand,
@@ -147,6 +161,20 @@ def folder_files(
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files
+
+
+def _side_by_side(model: Model, names: Names) -> InLanes:
+    """What solves load cases side by side.
+
+    Raises:
+        ExportError: the equations have no form for that.
+    """
+    found = in_lanes(model, names)
+    if found is None:
+        problem = "the equations of this scene have no form for several load cases at once"
+        remedy = "leave it out: NAME_solve_batch solves them one after the other"
+        raise ExportError(Problem("--batches", problem, remedy))
+    return found
 
 
 def _derivative_source(model: Model, names: Names) -> dict[str, str]:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import casadi as ca
 
-from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
@@ -34,9 +34,6 @@ PARTED = ("path_residual", "path_jacobian")
 
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
-
-MOST_IN_COLUMNS = 60_000
-"""Statements up to which a Jacobian is written by columns: compilers take more than a minute for 90 000."""
 
 STRAIGHT_BESIDE = {"tip_jacobian": 6000, "shape": 6000}
 """Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a

@@ -1,17 +1,24 @@
-"""Kernels that compute several rows at once: the same C with vectors of the processor in place of its numbers."""
+"""Kernels that compute several rows at once: the same C with vectors of the processor in place of its numbers.
+
+``NAME_solve_batch`` of a library with lanes solves its cases side by side, and so do the rows of large sweeps.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources
-from cosserat_casadi.codegen.library import LANES
-from cosserat_casadi.codegen.memory import largest_room
+from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.model.build import Model
 
@@ -46,77 +53,84 @@ OWN = re.compile(r"casadi_(?:f\d+|sq|fmax|fabs|copy|clear|fill|dot|densify|mtime
 """Routines of CasADi's that are the same for lanes."""
 
 
+ROWS_TOGETHER = 16
+"""Rows under way at a time: enough of them wait for the same."""
+
+FILES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
+"""Files of the folder ``c`` that a library with lanes has, as they are."""
+
+
 @dataclass(frozen=True)
-class Shown:
-    """Results of a kernel in a row of results.
+class InLanes:
+    """What a library with lanes has beside the others.
 
     Attributes:
-        kernel: its name.
-        first: column of its first result.
-        second: column of its second.
-        others: what stands for the results that a row does not show.
+        files: sources and headers by name.
+        words: of the batch in the library's own source and header.
     """
 
-    kernel: str
-    first: int
-    second: int
-    others: str = ""
+    files: Mapping[str, str]
+    words: Mapping[str, Any]
 
 
-def in_lanes(model: Model, names: Names, shown: Sequence[Shown], results: int) -> dict[str, str] | None:
-    """Sources by file name that solve rows side by side; None for a model whose rows are solved one after the other.
+def lanes_files(name: str) -> tuple[str, str]:
+    """Names of the source and header of a library's equations in lanes."""
+    return f"{name}_lanes.c", f"{name}_lanes.h"
 
-    The first, ``{name}_side_by_side.c``, is a part of the library's own source.
+
+def in_lanes(model: Model, names: Names) -> InLanes | None:
+    """What solves cases side by side; None for a model whose cases are solved one after the other.
 
     Args:
         model: what is solved.
         names: of the library.
-        shown: where in a row of results there are results of kernels.
-        results: numbers in a row of results.
     """
     # An assembly is eliminated rod after rod, which has no form for lanes.
     if assembled(model, names) is not None:
         return None
-    wanted = {*map(names.kernel, EQUATIONS), *(place.kernel for place in shown)}
+    wanted = {*map(names.kernel, EQUATIONS)}
     entries = [entry for entry in functions_in_c(model, names) if entry.kernel in wanted]
     functions = [kernel(model, entry.function, entry.kernel, STRAIGHT_IN_LANES) for entry in entries]
     if not all(function.is_a("SXFunction") for function in functions):
         return None
     stem = f"{names.name}_lanes"
     generated = kernel_sources(functions, names, stem)
-    source = generated[f"{stem}.c"]
-    bodies = re.findall(r"^(?:static int|CASADI_SYMBOL_EXPORT int) .*?^\}$", source, re.M | re.S)
+    source_file, header_file = lanes_files(names.name)
+    bodies = re.findall(r"^(?:static int|CASADI_SYMBOL_EXPORT int) .*?^\}$", generated[source_file], re.M | re.S)
     if not all(map(_alike, bodies)):
         return None
     words = {
         "name": names.name,
-        "kernels": _with_lanes(source),
+        "kernels": _with_lanes(generated[source_file]),
         "functions": "".join(f"KERNEL({entry.kernel})\n" for entry in entries),
         "prototypes": "".join(f"KERNEL_IN_LANES({entry.kernel});\n" for entry in entries),
-        **_parameter_words(model, names, shown),
-        "sizes": _sizes(generated[f"{stem}.h"]),
-        "kernel_reals": largest_room(generated, "W") + 1,
-        "kernel_integers": largest_room(generated, "IW") + 1,
-        "results": results,
+        "sizes": _sizes(generated[header_file]),
     }
-    return {
-        f"{names.name}_side_by_side.c": render("side_by_side.c.in", words),
-        f"{stem}.c": render("lanes.c.in", words),
-        **{file: resource("c", file) for file in LANES},
+    files = {
+        source_file: render("lanes.c.in", words),
+        header_file: render("lanes.h.in", words),
+        **{file: resource("c", file) for file in FILES},
     }
+    return InLanes(files, _batch_words(model, names, generated))
 
 
-def _parameter_words(model: Model, names: Names, shown: Sequence[Shown]) -> dict[str, str]:
-    """What depends on whether the scene names parameters, which stand behind the inputs and change the start."""
+def _batch_words(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
+    """Words of the batch: its memory, and what depends on whether the scene names parameters."""
     has_parameters = model.parameters.size > 0
     tangent = "solved_tangent_in_lanes.c.in" if has_parameters else "tangent_in_lanes.c.in"
-    parameters = f", room->inputs + {names.macro}_INPUTS * LANES" if has_parameters else ""
-    calls = [render("results_in_lanes.c.in", {**vars(place), "parameters": parameters}) for place in shown]
+    row = "batch->inputs + (size_t)i * INPUTS"
+    if has_parameters:
+        own_inputs = "batch->inputs + (size_t)i * OWN_INPUTS"
+        row = f"stack({own_inputs}, batch->parameters + (size_t)i * PARAMETERS, work->stacked)"
     return {
+        "given_size": given_size(model),
+        "rows_together": ROWS_TOGETHER,
+        "lanes_reals": largest_room(generated, "W") + 1,
+        "lanes_integers": largest_room(generated, "IW") + 1,
+        "lanes_stack_kb": f"{np.ceil(LANES * stack_bytes(generated) / 500) / 2:g}",
         "tangent": render(tangent, {"name": names.name}),
-        "calls": "".join(calls),
-        "parameters_in_source": ", const real *parameters" if has_parameters else "",
-        "parameters_of_row": f", inputs + {names.macro}_INPUTS" if has_parameters else "",
+        "given_in_lanes": row,
+        "parameters_or_none": "parameters" if has_parameters else "0",
     }
 
 

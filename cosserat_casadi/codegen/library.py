@@ -10,9 +10,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
+from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.motion_parts import MotionInC
@@ -54,8 +56,7 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-LANES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
-VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *LANES, *FOURS})
+VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {
@@ -80,6 +81,12 @@ ROLES = {
     "{name}_kernels.h": "their prototypes",
     "{name}_kernels_in_fours.h": "those of them that compute four columns or intervals at once; included",
     "fours.h": "four numbers in a vector of the processor, or one after the other",
+    "{name}_lanes.c": "the equations for four load cases at once: compile this too",
+    "{name}_lanes.h": "their prototypes",
+    "lanes.c": "the solver of many load cases side by side; included",
+    "lanes.h": "what it calls",
+    "lanes_arithmetic.h": "vectors of the processor; included",
+    "linear_lanes.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
@@ -102,6 +109,7 @@ def library_sources(
     derivatives: bool = False,
     stability: bool = False,
     motion: MotionInC | None = None,
+    rows: InLanes | None = None,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -114,13 +122,23 @@ def library_sources(
         derivatives: whether the folder holds the derivatives too.
         stability: whether it holds the stability of equilibria.
         motion: the equations of motion, where the folder has them.
+        rows: what solves batches side by side, where the folder has it.
     """
-    words = _words(model, names, parts, generated, error_estimate, motion)
-    held = {"derivatives": derivatives, "stability": stability, "dynamics": motion is not None}
+    words = _words(model, names, parts, generated, error_estimate, motion, rows)
+    held = {
+        "derivatives": derivatives,
+        "stability": stability,
+        "dynamics": motion is not None,
+        "rows": rows is not None,
+    }
     fours = f"{names.name}_kernels_in_fours.h" in generated
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
+    words["more_compiled"] = ""
+    if rows is not None:
+        words["more_sources"] += f" {name}_lanes.c"
+        words["more_compiled"] = f" {name}_lanes.c"
     words["more_headers"] = f" {name}_stability.h" if stability else ""
     verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS), *(() if motion is None else MOTION_FILES))
     demos = {f"{name}_demo.c": render("demo.c.in", words)}
@@ -134,6 +152,25 @@ def library_sources(
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in verbatim},
+        **({} if rows is None else rows.files),
+    }
+
+
+def _batch_words(sizes: dict[str, Any], rows: InLanes | None) -> dict[str, Any]:
+    """Words of the function for many load cases, which are solved side by side or one after the other."""
+    if rows is None:
+        return {
+            "batch": render("batch.c.in", {**sizes, "solve": "solver_solve"}),
+            "batch_types": "",
+            "batch_workspace": f"{sizes['name']}_workspace",
+            "batch_config": "",
+        }
+    words = {**sizes, **rows.words}
+    return {
+        "batch": render("batch_in_lanes.c.in", words),
+        "batch_types": render("batch_workspace.h.in", words),
+        "batch_workspace": f"{sizes['name']}_batch_workspace",
+        "batch_config": render("batch_config.h.in", words),
     }
 
 
@@ -144,11 +181,13 @@ def _words(
     generated: Mapping[str, str],
     error_estimate: float | None,
     motion: MotionInC | None,
+    rows: InLanes | None,
 ) -> dict[str, Any]:
     sizes = _sizes(model, names, generated)
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
+    sizes |= _batch_words(sizes, rows)
     functions = public_functions(model, names)
     weights = model.discrete.unknowns.step_weights
     return {
@@ -315,11 +354,20 @@ def _function_rows(functions: Sequence[FunctionInC]) -> str:
 
 
 def _file_rows(
-    names: Names, parts: Assembled | None, *, fours: bool, derivatives: bool, stability: bool, dynamics: bool
+    names: Names,
+    parts: Assembled | None,
+    *,
+    fours: bool,
+    derivatives: bool,
+    stability: bool,
+    dynamics: bool,
+    rows: bool,
 ) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
     if not fours:
         absent |= {*FOURS, "{name}_kernels_in_fours.h"}
+    if not rows:
+        absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
     if not dynamics:
         absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:

@@ -18,11 +18,14 @@ DERIVATIVES = {
 }
 """Arguments of the header for derivatives with parameters, each behind that for the derivative with inputs."""
 
+ROWS_OF_INPUTS: Words = {"parameters_in_source": "", "given_of_row": "inputs + (size_t)i * INPUTS"}
+"""Words of a batch without parameters."""
+
 WITHOUT: Words = {
+    **ROWS_OF_INPUTS,
     **dict.fromkeys(DERIVATIVES, ""),
     "parameters": "",
     "from_parameters": "",
-    "parameters_in_source": "",
     "parameters_in_readme": "",
     "passed": "",
     "inner": "",
@@ -104,6 +107,7 @@ def _arguments(names: Names) -> Words:
         "parameters": f",\n    const {real} *parameters",
         "from_parameters": f",\n    const {real} *from_parameters",
         "parameters_in_source": ", const real *parameters",
+        "given_of_row": "stack(inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS, work->stacked)",
         "parameters_in_readme": f", const {real} *parameters",
     }
 

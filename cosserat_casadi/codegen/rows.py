@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
-from cosserat_casadi.codegen.lanes import Shown, in_lanes
+from cosserat_casadi.codegen.lanes import in_lanes
 from cosserat_casadi.codegen.library import VERBATIM, library_sources
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
@@ -45,20 +45,24 @@ POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 
 STABILITY_IN_ROWS = {
     "stability_header": '#include "@{name}_stability.h"\n',
-    "stability_room": """  @{name}_stability_workspace *room = (@{name}_stability_workspace *)malloc(sizeof *room);
-  if (!room) {
-    free(workspace);
-    return 1;
-  }
-""",
+    "stability_member": "  @{name}_stability_workspace stability;\n",
     "stability_call": """
-    @{name}_stability_info found;
-    if (@{name}_stability(given@{passed}, x, workspace, room, &found) != @{MACRO}_CONVERGED) continue;
-    row[@{column}] = found.smallest_eigenvalue;
-    row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
-    "stability_end": "  free(room);\n",
+  @{name}_stability_info found;
+  if (@{name}_stability(given@{passed}, x, &room->workspace, &room->stability, &found) != @{MACRO}_CONVERGED) return;
+  row[@{column}] = found.smallest_eigenvalue;
+  row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
 }
 """What is added to the function for rows where it judges stability."""
+
+PARAMETERS_IN_ROWS = {
+    "parameters": ", const @{name}_real *parameters",
+    "all_parameters": ", const @{name}_real *all_parameters",
+    "parameter_rows": ", all_parameters (PARAMETERS x count)",
+    "chunk_of_parameters": "    const @{name}_real *own = all_parameters + (size_t)first * @{MACRO}_PARAMETERS;\n",
+    "passed_chunk": ", own",
+    "passed_row": ", own + (size_t)i * @{MACRO}_PARAMETERS",
+}
+"""What is added to the function for rows where the scene names parameters."""
 
 _LOCK = threading.Lock()
 
@@ -104,12 +108,8 @@ class RowLibrary:
             if p.shape != wanted:
                 raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
             tables.append(p)
-        if self.in_lanes:
-            # Rows side by side take inputs and parameters in one table.
-            tables = [np.hstack(tables)]
         results = np.empty((len(given), self.results))
-        function = f"{NAME}_rows_in_lanes" if self.in_lanes else f"{NAME}_rows"
-        if loaded(NAME, self.files)[function](len(given), *map(pointer, tables), pointer(results)):
+        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), *map(pointer, tables), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
@@ -122,7 +122,6 @@ def row_library(model: Model, *, stability: bool = False, lanes: bool = False) -
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
         lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
             about twice as long. The results are the same.
-            Rows that are judged are solved one by one.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
@@ -131,19 +130,15 @@ def row_library(model: Model, *, stability: bool = False, lanes: bool = False) -
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
     columns = row_results(model.scene, stability=stability)
+    side_by_side = in_lanes(model, names) if lanes else None
     files = {
-        **library_sources(model, names, parts, generated, None),
+        **library_sources(model, names, parts, generated, None, rows=side_by_side),
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability, lanes=side_by_side is not None),
     }
-    sources_in_lanes = in_lanes(model, names, _shown(names), len(columns)) if lanes and not stability else None
-    if sources_in_lanes is not None:
-        files |= sources_in_lanes
-        files[f"{NAME}.c"] += files.pop(f"{NAME}_side_by_side.c")
-    return RowLibrary(
-        to_compile(files), model.inputs.size, model.parameters.size, len(columns), sources_in_lanes is not None
-    )
+    in_rows = to_compile(files)
+    return RowLibrary(in_rows, model.inputs.size, model.parameters.size, len(columns), side_by_side is not None)
 
 
 def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -174,42 +169,25 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _shown(names: Names) -> list[Shown]:
-    """Where the results of kernels are in a row."""
-    posed = [("tip", rod) for rod in names.rods] + [("body", body) for body in names.bodies]
-    shown = list[Shown]()
-    column = len(JUDGED)
-    for word, owner in posed:
-        shown.append(Shown(names.kernel(word, owner), column, column + 3))
-        column += len(POSE)
-    for actuator in names.actuators:
-        shown.append(Shown(names.kernel("actuator", actuator), column, column + 1, ", 0"))
-        column += 2
-    return shown
-
-
-def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -> str:
+def _rows_source(model: Model, names: Names, results: int, *, stability: bool, lanes: bool) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
     passed = ", parameters" if model.parameters.size else ""
     lines = list[str]()
     column = len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 3});")
+        lines.append(f"  {function}(x, given{passed}, row + {column}, row + {column + 3});")
         column += len(POSE)
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
+        lines.append(f"  {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
         column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
-    words |= {"passed": passed, "parameters": "", "parameter_rows": "", "own_parameters": ""}
+    words |= {"passed": passed, **dict.fromkeys(PARAMETERS_IN_ROWS, "")}
+    words["batch_workspace"] = f"{names.name}_batch_workspace" if lanes else f"{names.name}_workspace"
     if passed:
-        real = f"{names.name}_real"
-        words["parameters"] = f", const {real} *all_parameters"
-        words["parameter_rows"] = ", all_parameters (PARAMETERS x count)"
-        own = f"all_parameters + (size_t)i * {names.macro}_PARAMETERS"
-        words["own_parameters"] = f"    const {real} *parameters = {own};\n"
-    in_rows = {"stability_header": "", "stability_room": "", "stability_call": "", "stability_end": ""}
+        words |= {key: fill(text, words) for key, text in PARAMETERS_IN_ROWS.items()}
+    in_rows = dict.fromkeys(STABILITY_IN_ROWS, "")
     if stability:
         in_rows = {
             key: fill(text, {**words, "column": column, "next": column + 1}) for key, text in STABILITY_IN_ROWS.items()

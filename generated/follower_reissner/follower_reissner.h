@@ -173,8 +173,8 @@ follower_reissner_status follower_reissner_follow(const follower_reissner_real *
                               follower_reissner_workspace *workspace, follower_reissner_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int follower_reissner_solve_batch(int count, const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_workspace *workspaces,
                         int workspace_count, follower_reissner_info *info);
 

@@ -12,7 +12,6 @@
 #define solver_memory follower_reissner_memory
 #define solver_solve follower_reissner_solve
 #define solver_follow follower_reissner_follow
-#define solver_solve_batch follower_reissner_solve_batch
 #define solver_solve_sensitivity follower_reissner_solve_sensitivity
 #define solver_track follower_reissner_track
 #define solver_residual follower_reissner_residual

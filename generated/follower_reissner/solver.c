@@ -73,44 +73,6 @@ solver_status solver_follow(const real *from, const real *inputs, real *x, solve
   return finish(x, inputs, &found, info, work);
 }
 
-/* Cases first to last, one after the other. */
-static int solve_run(int first, int last, const real *inputs, real *x, workspace *work, solver_info *info) {
-  int converged = 0;
-  for (int i = first; i < last; i++) {
-    real *own = x + (size_t)i * N;
-    const int continues = i > first && info[i - 1].status == SOLVER_CONVERGED;
-    if (continues) {
-      memcpy(own, own - N, N * sizeof *own);
-    } else {
-      memset(own, 0, N * sizeof *own);
-    }
-    converged += solver_solve(inputs + (size_t)i * INPUTS, own, work, info + i) == SOLVER_CONVERGED;
-  }
-  return converged;
-}
-
-#ifdef _OPENMP
-#include <omp.h>
-
-int solver_solve_batch(int count, const real *inputs, real *x, solver_workspace *workspaces, int workspace_count,
-                       solver_info *info) {
-  enum { RUN = 64 };
-  int converged = 0;
-#pragma omp parallel for schedule(dynamic) reduction(+ : converged) num_threads(workspace_count)
-  for (int first = 0; first < count; first += RUN) {
-    const int last = count - first < RUN ? count : first + RUN;
-    converged += solve_run(first, last, inputs, x, workspaces + omp_get_thread_num(), info);
-  }
-  return converged;
-}
-#else
-int solver_solve_batch(int count, const real *inputs, real *x, solver_workspace *workspaces, int workspace_count,
-                       solver_info *info) {
-  (void)workspace_count;
-  return solve_run(0, count, inputs, x, workspaces, info);
-}
-#endif
-
 void solver_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {
   const loads at = full_load(inputs);
   residual_at(x, &at, residual, work);

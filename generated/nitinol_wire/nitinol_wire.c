@@ -77,6 +77,33 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+/* ---- Many load cases ---- */
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+int nitinol_wire_solve_batch(int count, const real *inputs, real *x, workspace *workspaces,
+                        int workspace_count, solver_info *info) {
+  int converged = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : converged) num_threads(workspace_count)
+#else
+  (void)workspace_count;
+#endif
+  for (int i = 0; i < count; i++) {
+#ifdef _OPENMP
+    workspace *work = workspaces + omp_get_thread_num();
+#else
+    workspace *work = workspaces;
+#endif
+    real *own = x + (size_t)i * N;
+    memset(own, 0, N * sizeof *own);
+    converged += solver_solve(inputs + (size_t)i * INPUTS, own, work, info + i) == SOLVER_CONVERGED;
+  }
+  return converged;
+}
+
 
 void nitinol_wire_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
     real *generalised_force, real *base_force, real *base_moment) {

@@ -170,8 +170,8 @@ nitinol_wire_status nitinol_wire_follow(const nitinol_wire_real *from, const nit
                               nitinol_wire_workspace *workspace, nitinol_wire_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int nitinol_wire_solve_batch(int count, const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_workspace *workspaces,
                         int workspace_count, nitinol_wire_info *info);
 

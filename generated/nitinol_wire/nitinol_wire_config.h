@@ -12,7 +12,6 @@
 #define solver_memory nitinol_wire_memory
 #define solver_solve nitinol_wire_solve
 #define solver_follow nitinol_wire_follow
-#define solver_solve_batch nitinol_wire_solve_batch
 #define solver_solve_sensitivity nitinol_wire_solve_sensitivity
 #define solver_track nitinol_wire_track
 #define solver_residual nitinol_wire_residual

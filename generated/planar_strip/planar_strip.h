@@ -168,8 +168,8 @@ planar_strip_status planar_strip_follow(const planar_strip_real *from, const pla
                               planar_strip_workspace *workspace, planar_strip_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int planar_strip_solve_batch(int count, const planar_strip_real *inputs, planar_strip_real *x, planar_strip_workspace *workspaces,
                         int workspace_count, planar_strip_info *info);
 

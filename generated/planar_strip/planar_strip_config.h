@@ -12,7 +12,6 @@
 #define solver_memory planar_strip_memory
 #define solver_solve planar_strip_solve
 #define solver_follow planar_strip_follow
-#define solver_solve_batch planar_strip_solve_batch
 #define solver_solve_sensitivity planar_strip_solve_sensitivity
 #define solver_track planar_strip_track
 #define solver_residual planar_strip_residual

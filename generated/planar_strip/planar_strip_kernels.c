@@ -89,7 +89,7 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   a2=(a2*a3);
   a0=(a0+a2);
   if (res[0]!=0) res[0][0]=a0;
-  a0=2.4999999999999987e+00;
+  a0=2.4999999999999991e+00;
   a0=(a0*a1);
   if (res[0]!=0) res[0][1]=a0;
   a0=0.;

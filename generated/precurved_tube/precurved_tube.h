@@ -170,8 +170,8 @@ precurved_tube_status precurved_tube_follow(const precurved_tube_real *from, con
                               precurved_tube_workspace *workspace, precurved_tube_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int precurved_tube_solve_batch(int count, const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_workspace *workspaces,
                         int workspace_count, precurved_tube_info *info);
 

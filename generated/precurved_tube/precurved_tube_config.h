@@ -12,7 +12,6 @@
 #define solver_memory precurved_tube_memory
 #define solver_solve precurved_tube_solve
 #define solver_follow precurved_tube_follow
-#define solver_solve_batch precurved_tube_solve_batch
 #define solver_solve_sensitivity precurved_tube_solve_sensitivity
 #define solver_track precurved_tube_track
 #define solver_residual precurved_tube_residual

@@ -246,8 +246,8 @@ six_rod_platform_status six_rod_platform_follow(const six_rod_platform_real *fro
                               six_rod_platform_workspace *workspace, six_rod_platform_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int six_rod_platform_solve_batch(int count, const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_workspace *workspaces,
                         int workspace_count, six_rod_platform_info *info);
 

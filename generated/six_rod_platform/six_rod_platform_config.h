@@ -12,7 +12,6 @@
 #define solver_memory six_rod_platform_memory
 #define solver_solve six_rod_platform_solve
 #define solver_follow six_rod_platform_follow
-#define solver_solve_batch six_rod_platform_solve_batch
 #define solver_solve_sensitivity six_rod_platform_solve_sensitivity
 #define solver_track six_rod_platform_track
 #define solver_residual six_rod_platform_residual

@@ -190,8 +190,8 @@ tendon_robot_status tendon_robot_follow(const tendon_robot_real *from, const ten
                               tendon_robot_workspace *workspace, tendon_robot_info *info);
 
 /* Many load cases: inputs (INPUTS x count), x (UNKNOWNS x count, out), info (count). Returns the number of cases that
-   converged. Each case starts from the solution before it, the first of a run from the unloaded scene. Compiled with
-   OpenMP, as many threads as there are workspaces take one run each; without it the first workspace serves. */
+   converged. Each case is solved by itself from the unloaded scene, whatever x was. Compiled with OpenMP, as many threads
+   as there are workspaces share the cases; without it the first workspace serves. */
 int tendon_robot_solve_batch(int count, const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_workspace *workspaces,
                         int workspace_count, tendon_robot_info *info);
 

@@ -12,7 +12,6 @@
 #define solver_memory tendon_robot_memory
 #define solver_solve tendon_robot_solve
 #define solver_follow tendon_robot_follow
-#define solver_solve_batch tendon_robot_solve_batch
 #define solver_solve_sensitivity tendon_robot_solve_sensitivity
 #define solver_track tendon_robot_track
 #define solver_residual tendon_robot_residual

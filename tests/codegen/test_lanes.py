@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import Model, Scene, build
+from cosserat_casadi import Compiled, ExportError, Model, Scene, build, export, load
 from cosserat_casadi.codegen import compiler, lanes, rows
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.maths.typing import FloatArray
-from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
+from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
 from tests.scenes import push, rod, scene
 
 CONVERGED, NOT_FINITE = 0, 2
@@ -35,21 +37,31 @@ def _quick_compiler() -> Any:
         yield
 
 
+@dataclass(frozen=True)
+class Libraries:
+    """Rows of a scene side by side, and one after the other."""
+
+    together: RowLibrary
+    apart: RowLibrary
+
+
 @pytest.fixture(scope="module")
-def planar() -> RowLibrary:
-    return side_by_side(scene(push(), strain="planar", accuracy=SMALL))
+def planar() -> Libraries:
+    return libraries(scene(push(), strain="planar", accuracy=SMALL))
 
 
-def side_by_side(asked: Scene) -> RowLibrary:
-    library = row_library(build(asked), lanes=True)
-    assert library.in_lanes
-    return library
+def libraries(asked: Scene) -> Libraries:
+    model = build(asked)
+    found = Libraries(row_library(model, lanes=True), row_library(model))
+    assert found.together.in_lanes
+    assert not found.apart.in_lanes
+    return found
 
 
-def assert_same(library: RowLibrary, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
-    """Compare with the rows one after the other, by the same compiled object."""
-    found = library.solve(inputs, parameters)
-    expected = replace(library, in_lanes=False).solve(inputs, parameters)
+def assert_same(library: Libraries, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
+    """Compare with the rows one after the other."""
+    found = library.together.solve(inputs, parameters)
+    expected = library.apart.solve(inputs, parameters)
     # The order of sums is the same too, but for a residual that is nothing but rounding.
     assert_array_equal(found[:, :2], expected[:, :2])
     assert_allclose(found[:, 2:], expected[:, 2:], rtol=1e-12, atol=1e-12)
@@ -61,18 +73,18 @@ def pushes(count: int, size: float) -> FloatArray:
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 17, 100])
-def test_rows_of_any_number_are_the_same(planar: RowLibrary, count: int) -> None:
+def test_rows_of_any_number_are_the_same(planar: Libraries, count: int) -> None:
     found = assert_same(planar, pushes(count, 2.0))
     assert_array_equal(found[:, 0], CONVERGED)
 
 
-def test_rows_whose_load_grows_in_steps_are_the_same(planar: RowLibrary) -> None:
+def test_rows_whose_load_grows_in_steps_are_the_same(planar: Libraries) -> None:
     found = assert_same(planar, pushes(60, 3000.0))
     assert found[:, 1].max() > 20
     assert len(set(found[:, 0])) > 1
 
 
-def test_rows_that_fail_leave_their_neighbours_alone(planar: RowLibrary) -> None:
+def test_rows_that_fail_leave_their_neighbours_alone(planar: Libraries) -> None:
     inputs = pushes(23, 1.0)
     inputs[4] = np.nan
     inputs[9, 1] = np.inf
@@ -82,15 +94,28 @@ def test_rows_that_fail_leave_their_neighbours_alone(planar: RowLibrary) -> None
     assert found[10, 0] != CONVERGED
     assert np.isnan(found[[4, 9, 10], 3:]).all()
     sound = np.delete(np.arange(23), [4, 9, 10])
-    assert_array_equal(found[sound], planar.solve(inputs[sound]))
+    assert_array_equal(found[sound], planar.together.solve(inputs[sound]))
 
 
 def test_tendons_are_the_same() -> None:
-    library = side_by_side(scene(push(), accuracy=SMALL, actuators=[TENDON]))
+    library = libraries(scene(push(), accuracy=SMALL, actuators=[TENDON]))
     inputs = np.column_stack([pushes(14, 0.5), np.linspace(0.0, 4.0, 14)])
     found = assert_same(library, inputs)
     assert_array_equal(found[:, 0], CONVERGED)
     assert np.ptp(found[:, -1]) > 1e-3
+
+
+def test_judged_rows_are_the_same() -> None:
+    model = build(scene(push(), strain="planar", accuracy=SMALL))
+    inputs = pushes(30, 20.0)
+    inputs[4] = np.nan
+    together = row_library(model, stability=True, lanes=True)
+    assert together.in_lanes
+    found = together.solve(inputs)
+    expected = row_library(model, stability=True).solve(inputs)
+    assert_array_equal(found[:, [0, 1, -1]], expected[:, [0, 1, -1]])
+    assert_allclose(found[:, -2], expected[:, -2], rtol=1e-12, atol=1e-12)
+    assert np.ptp(found[np.isfinite(found[:, -2]), -2]) > 1e-3
 
 
 def with_parameters() -> Scene:
@@ -107,8 +132,7 @@ def drawn_parameters(model: Model, count: int) -> FloatArray:
 
 def test_rows_of_parameters_are_the_same() -> None:
     model = build(with_parameters())
-    library = row_library(model, lanes=True)
-    assert library.in_lanes
+    library = libraries(with_parameters())
     inputs = pushes(30, 2.0)
     parameters = drawn_parameters(model, 30)
     found = assert_same(library, inputs, parameters)
@@ -132,18 +156,92 @@ def test_kernels_too_long_for_lanes_are_known(monkeypatch: pytest.MonkeyPatch) -
     assert not row_library(build(scene(push(), accuracy=SMALL, actuators=[TENDON])), lanes=True).in_lanes
 
 
-def test_a_compiler_without_vectors_solves_row_after_row(planar: RowLibrary, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_compiler_without_vectors_solves_row_after_row(planar: Libraries, monkeypatch: pytest.MonkeyPatch) -> None:
     inputs = pushes(7, 1.0)
-    expected = planar.solve(inputs)
+    expected = planar.together.solve(inputs)
     monkeypatch.setattr(compiler, "FLAGS", (*compiler.FLAGS, "-DLANES=0"))
     rows._library.cache_clear()
-    assert_array_equal(planar.solve(inputs), expected)
+    assert_array_equal(planar.together.solve(inputs), expected)
     rows._library.cache_clear()
 
 
 def test_assemblies_have_no_form_for_lanes() -> None:
     model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
-    assert lanes.in_lanes(model, model_names("sweep", model), [], 3) is None
+    assert lanes.in_lanes(model, model_names("sweep", model)) is None
+
+
+def test_an_assembly_with_batches_is_refused(tmp_path: Path) -> None:
+    model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
+    with pytest.raises(ExportError, match="have no form for several load cases at once"):
+        export(model, tmp_path / "hand", batches=True)
+    assert not (tmp_path / "hand").exists()
+
+
+def exported(asked: Scene, folder: Path) -> Compiled:
+    return load(export(build(asked), folder, folder.name, batches=True))
+
+
+def assert_batch_is_single_solves(library: Compiled, inputs: FloatArray, parameters: FloatArray | None = None) -> None:
+    found = library.solve_batch(inputs, parameters=parameters)
+    assert len(found) == len(inputs)
+    for row, (one, own) in enumerate(zip(found, inputs, strict=True)):
+        single = library.solve(own, parameters=None if parameters is None else parameters[row])
+        assert one.outcome is single.outcome
+        assert (one.iterations, one.jacobians) == (single.iterations, single.jacobians)
+        assert one.load_factor == single.load_factor
+        assert_allclose(one.x, single.x, rtol=1e-12, atol=1e-12)
+
+
+def test_exported_batches_are_single_solves(tmp_path: Path) -> None:
+    """Loads that grow in steps, and cases that fail, among them."""
+    library = exported(scene(push(), strain="planar", accuracy=SMALL), tmp_path / "strip")
+    inputs = np.vstack([pushes(40, 2.0), pushes(40, 3000.0)])
+    inputs[4] = np.nan
+    inputs[10] = 1e200
+    assert_batch_is_single_solves(library, inputs)
+    assert library.solve_batch(np.zeros((0, 3))) == []
+    # What is the library's own is seen by no linker.
+    assert hasattr(library._handle, "strip_batch_workspace_size")
+    assert not any(hasattr(library._handle, f"{prefix}gather_lanes") for prefix in ("", "strip_"))
+
+
+def test_exported_batches_take_parameters(tmp_path: Path) -> None:
+    asked = with_parameters()
+    # A name that stands in the solver's own words.
+    library = exported(asked, tmp_path / "batch")
+    assert_batch_is_single_solves(library, pushes(30, 2.0), drawn_parameters(build(asked), 30))
+
+
+@pytest.mark.parametrize(
+    "flags", [("-fopenmp",), ("-DLANES=0",), ("-DSTRIP_SINGLE",)], ids=["threads", "none", "float"]
+)
+def test_batches_of_other_builds_are_those(flags: tuple[str, ...], tmp_path: Path) -> None:
+    """On four threads, without vectors, and in float, without a word from the compiler."""
+    asked = scene(push(), strain="planar", accuracy=SMALL)
+    library = exported(asked, tmp_path / "strip")
+    harness = (HARNESS / "batch.c").read_text().replace("@{name}_workspace", "@{name}_batch_workspace")
+    (tmp_path / "batch.c").write_text(harness.replace("@{name}", "strip").replace("@{MACRO}", "STRIP"))
+    folder = tmp_path / "strip"
+    sources = [tmp_path / "batch.c", *(folder / f"strip{part}.c" for part in ("", "_kernels", "_lanes"))]
+    program = tmp_path / "batch"
+    options = ["-O0", "-std=c99", "-Wall", "-Wextra", "-Wno-unused", "-Wno-unused-parameter", *flags]
+    command = [compiler.find_compiler(), *options, f"-I{folder}", *map(str, sources), "-o", str(program), "-lm"]
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    inputs = pushes(600, 2.0)
+    text = f"{len(inputs)}\n" + "\n".join(" ".join(map(repr, row)) for row in inputs.tolist())
+    told = subprocess.run([str(program)], input=text, capture_output=True, text=True, check=True, timeout=100)
+    found = np.array([line.split() for line in told.stdout.splitlines()], dtype=float)
+    assert int(told.stderr) == len(inputs)
+    tolerance = 1e-4 if "-DSTRIP_SINGLE" in flags else 1e-12
+    for row, own in zip(found[::37], inputs[::37], strict=True):
+        assert_allclose(row[1:], library.solve(own).x, rtol=tolerance, atol=tolerance)
+
+
+def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
+    folder = export(build(scene(push(), strain="planar", accuracy=SMALL)), tmp_path / "strip")
+    assert not [file for file in folder.iterdir() if "lanes" in file.name]
+    assert "lanes" not in "".join(file.read_text() for file in folder.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -252,7 +252,7 @@ def test_rows_have_parameters_of_their_own(export_recipe: Callable[[str, Recipe]
     assert len(found) == len(rows)
     for row, own in zip(rows[::23], found[::23], strict=True):
         assert own.converged
-        assert_allclose(own.x, compiled.solve(inputs, parameters=row).x, rtol=0, atol=1e-9)
+        assert_allclose(own.x, compiled.solve(inputs, parameters=row).x, rtol=0, atol=0)
     with pytest.raises(ValueError, match="3 rows of parameters for 2 rows of inputs"):
         compiled.solve_batch(np.vstack([inputs, inputs]), parameters=rows[:3])
 

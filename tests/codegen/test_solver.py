@@ -152,14 +152,16 @@ def test_following_from_a_huge_load_ends_exactly_at_the_small_one(library: Libra
 
 @pytest.mark.parametrize("name", ["planar", "spatial", "pair", "fixed"])
 def test_batch_vs_single_solves(library: Library, name: str) -> None:
+    """To the last digit: no case knows of those before it."""
     made = library(name)
-    cases = np.repeat(made.loads(20, 7), 2, axis=0)[: 40 if made.model.inputs.size else 3]
-    single = [made.compiled.solve(inputs) for inputs in cases]
+    cases = made.loads(20, 7) if made.model.inputs.size else np.zeros((3, 0))
     batch = made.compiled.solve_batch(cases)
     assert len(batch) == len(cases)
-    for inputs, one, other in zip(cases, batch, single, strict=True):
+    for inputs, one in zip(cases, batch, strict=True):
+        other = made.compiled.solve(inputs)
         assert one.outcome is other.outcome
-        assert_allclose(made.tips(one.x, inputs), made.tips(other.x, inputs), rtol=0, atol=1e-9 * made.length)
+        assert one.iterations == other.iterations
+        assert_allclose(one.x, other.x, rtol=0, atol=0)
 
 
 def test_batch_goes_on_after_a_case_that_fails(library: Library) -> None:

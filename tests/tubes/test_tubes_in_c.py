@@ -25,8 +25,10 @@ from cosserat_casadi import (
     solve_tubes,
 )
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution
+from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.codegen.tubes.status import STATUSES
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
@@ -99,6 +101,24 @@ def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
     # Without loads both come from straight tubes in the same way.
     expected = solve_tubes(robot.scene, found.inputs)
     assert_allclose(found.tips["inner"][:3], expected.tip("inner").position, rtol=0, atol=1e-6)
+
+
+def test_batch_vs_single_solves(robot: Robot) -> None:
+    """To the last digit, and a set of inputs out of its range is refused by itself."""
+    compiled = robot.compiled
+    rows = np.array([robot.inputs(seed) for seed in range(6)])
+    rows[2, 1] = 10.0
+    singles = [compiled.solve(inputs) for inputs in rows]
+    x = np.ones((len(rows), len(singles[0].x)))
+    infos = (TubeInfo * len(rows))()
+    arguments = pointer(rows), pointer(x), compiled._workspace(), 1, infos
+    converged = compiled._function("solve_batch")(len(rows), *arguments)
+    assert converged == sum(one.converged for one in singles) == 5
+    for own, info, single in zip(x, infos, singles, strict=True):
+        assert info.status == STATUSES.index(single.status)
+        assert info.determinant == single.determinant
+        if single.converged:
+            assert_allclose(own, single.x, rtol=0, atol=0)
 
 
 @pytest.mark.parametrize("reach", [(0.15, 0.15), (0.22, 0.0), (0.0, 0.3), (0.12, 0.26), (0.22, 0.32), (0.1, 0.14)])

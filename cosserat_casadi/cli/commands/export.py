@@ -58,6 +58,9 @@ def export(
     stability: Annotated[
         bool, typer.Option("--stability", help="With a function that says whether an equilibrium is stable.")
     ] = False,
+    batches: Annotated[
+        bool, typer.Option("--batches", help="With many load cases solved four at a time, in vectors of the processor.")
+    ] = False,
     over: Annotated[
         Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
     ] = None,
@@ -85,6 +88,7 @@ def export(
             "--derivatives": derivatives,
             "--dynamics": dynamics,
             "--stability": stability,
+            "--batches": batches,
             "--over": over is not None,
             "--range": bool(ranges),
         }
@@ -102,6 +106,7 @@ def export(
             "--derivatives": derivatives,
             "--dynamics": dynamics,
             "--stability": stability,
+            "--batches": batches,
             "--over": over is not None,
             "--range": bool(ranges),
             "--page": page is not None,
@@ -113,7 +118,13 @@ def export(
         return
     cases = None
     if output is not None:
-        check_contact(exported_scene, {"derivatives": derivatives, "dynamics": dynamics, "stability": stability})
+        asked_of_contact = {
+            "derivatives": derivatives,
+            "dynamics": dynamics,
+            "stability": stability,
+            "batches": batches,
+        }
+        check_contact(exported_scene, asked_of_contact)
     if over is not None or ranges:
         cases = load_cases(over, ranges or [], samples, case_layout(exported_scene))
         check_load_cases(exported_scene, cases)
@@ -147,6 +158,7 @@ def export(
             derivatives=derivatives,
             dynamics=dynamics,
             stability=stability,
+            batches=batches,
             load_cases=cases,
         )
         print_export(console, solution, output)

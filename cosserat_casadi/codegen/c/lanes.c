@@ -1,14 +1,19 @@
-/* Many rows of inputs, with parameters behind them, at once, each solved from the unloaded scene as solver.c does it: rows wait for evaluations of the
-   equations, and those that wait for the same are evaluated side by side. What a row does with what it has waited for
-   are the functions of solver.c. A row that leaves the common way (inputs that are not finite, a path that breaks off) is
-   solved by itself.
+/* Many load cases at once, rows of a batch, each solved from the unloaded scene as solver.c does it: rows wait for
+   evaluations of the equations, and those that wait for the same are evaluated side by side. What a row does with what it
+   has waited for are the functions of solver.c. A row that leaves the common way (inputs that are not finite, a path that
+   breaks off) is solved by itself.
 
-   Uses of the scene: the equations in lanes, which are declared below, and solve_row. */
+   Uses of the scene: the equations in lanes, which are declared below, and given_of_row. */
 
-enum {
-  ROWS = 4 * LANES, /* under way: enough of them wait for the same */
-  WIDEST = N * N > RESULTS ? N * N : RESULTS
-};
+enum { ROWS = SOLVER_ROWS_TOGETHER /* under way: enough of them wait for the same */ };
+
+/* Inputs, and parameters where there are any, of all rows; unknowns and how each row ended. */
+typedef struct {
+  const real *inputs;
+  const real *parameters;
+  real *x;
+  solver_info *info;
+} batch_of_rows;
 
 /* What a row waits for. */
 typedef enum {
@@ -20,14 +25,14 @@ typedef enum {
   WAITS_FOR_TRIAL_RESIDUAL,
   WAITS_FOR_RATE,
   WAITS_FOR_TANGENT_MATRIX,
-  WAITS_FOR_RESOLUTION,
-  WAITS_FOR_RESULTS
+  WAITS_FOR_RESOLUTION
 } waiting;
 
 typedef struct {
   waiting state;
   const real *inputs;
-  real *results;
+  real *x;            /* where the unknowns are wanted */
+  solver_info *ended; /* where it is wanted how the row ended */
   load_path path;
   progress now;
   real step; /* of the load */
@@ -36,31 +41,13 @@ typedef struct {
   newton_state newton;
   solver_info info;
   real resolution; /* the index of its nodes */
-  int without_memory; /* some row that was solved by itself */
-  workspace work;
+  workspace *work;
 } row;
 
-/* Arrays of lanes. */
-typedef struct {
-  real x[N * LANES];
-  real inputs[(INPUTS + 1) * LANES];
-  real load_factor[LANES];
-  real inputs_rate[(INPUTS + 1) * LANES];
-  real load_factor_rate[LANES];
-  real factors[N * N * LANES];
-  real results[WIDEST * LANES];
-  real tangents[N * LANES];
-  int pivots[N * LANES];
-  int regular[LANES];
-  int finite[LANES];
-  real reals[KERNEL_REALS * LANES];
-  int integers[KERNEL_INTEGERS];
-} lanes_room;
+typedef solver_lanes_room lanes_room;
 
-typedef struct {
-  row rows[ROWS];
-  lanes_room room;
-} side_by_side;
+/* What the solver is given of a row; it may lie in the workspace. */
+static const real *given_of_row(const batch_of_rows *batch, int i, workspace *work);
 
 /* The equations in the lanes of a room: results for x, inputs and load_factor. */
 static void residual_in_lanes(lanes_room *room);
@@ -68,28 +55,29 @@ static void factors_in_lanes(lanes_room *room);
 static void rate_in_lanes(lanes_room *room);
 static void tangent_in_lanes(lanes_room *room);
 static void resolution_in_lanes(lanes_room *room);
-static void results_in_lanes(lanes_room *room);
 
 /* ---- One row ---- */
 
 static void solve_by_itself(row *own) {
-  own->without_memory |= solve_row(own->inputs, own->results);
+  memset(own->x, 0, N * sizeof *own->x);
+  (void)solver_solve(own->inputs, own->x, own->work, own->ended);
   own->state = WAITS_FOR_NOTHING;
 }
 
-static void begin_row(row *own, const real *inputs, real *results) {
-  own->inputs = inputs;
-  own->results = results;
+static void begin_row(row *own, const batch_of_rows *batch, int i) {
+  own->inputs = given_of_row(batch, i, own->work);
+  own->x = batch->x + (size_t)i * N;
+  own->ended = batch->info + i;
   own->info = no_result();
-  if (!all_finite(inputs, INPUTS)) {
+  if (!all_finite(own->inputs, INPUTS)) {
     solve_by_itself(own);
     return;
   }
-  memset(own->work.points, 0, sizeof own->work.points[0]);
+  memset(own->work->points, 0, sizeof own->work->points[0]);
   own->path.grows_load = 1;
-  own->path.from = inputs;
-  own->path.to = inputs;
-  own->now = begin_path(0, &own->work);
+  own->path.from = own->inputs;
+  own->path.to = own->inputs;
+  own->now = begin_path(0, own->work);
   own->step = FIRST_STEP;
   own->steps = 0;
   own->state = WAITS_FOR_FIRST_TANGENT;
@@ -100,7 +88,7 @@ static void take_step(row *own) {
     own->steps++;
     own->step = admissible_step(&own->now, own->step);
     if (own->step != 0) {
-      predict_next(&own->now, own->step, &own->work);
+      predict_next(&own->now, own->step, own->work);
       own->state = WAITS_FOR_PREDICTED_RESIDUAL;
       return;
     }
@@ -112,7 +100,7 @@ static void take_step(row *own) {
 static void end_correction(row *own) {
   const newton_result *result = &own->newton.result;
   count_work(&own->info, result);
-  if (!is_trusted(result, &own->now, &own->work)) {
+  if (!is_trusted(result, &own->now, own->work)) {
     own->step /= 2;
     take_step(own);
   } else if (own->now.next->t < 1) {
@@ -130,7 +118,7 @@ static void end_correction(row *own) {
 static void continue_newton(row *own);
 
 static void weigh_newton_step(row *own, real length, real norm) {
-  if (weigh_step(&own->newton, &own->limits, own->work.step, length, norm, own->now.spare)) {
+  if (weigh_step(&own->newton, &own->limits, own->work->step, length, norm, own->now.spare)) {
     continue_newton(own);
   } else {
     end_correction(own);
@@ -138,7 +126,7 @@ static void weigh_newton_step(row *own, real length, real norm) {
 }
 
 static void begin_newton_step(row *own) {
-  real *step = own->work.step;
+  real *step = own->work->step;
   own->newton.result.iterations++;
   for (int i = 0; i < N; i++) step[i] = -own->now.next->residual[i];
   permute(own->now.spare->factors.pivots, step);
@@ -146,7 +134,7 @@ static void begin_newton_step(row *own) {
 }
 
 static void after_step(row *own) {
-  workspace *work = &own->work;
+  workspace *work = own->work;
   apply_updates(own->now.spare, work->step);
   if (!complete_step(own->now.spare, work->step)) {
     weigh_newton_step(own, 0, own->newton.norm);
@@ -176,7 +164,7 @@ static void after_first_tangent(row *own) {
 }
 
 static void after_prediction(row *own) {
-  if (!is_promising(&own->now, &own->work)) {
+  if (!is_promising(&own->now, own->work)) {
     own->info.iterations++;
     own->step /= 2;
     take_step(own);
@@ -189,13 +177,13 @@ static void after_prediction(row *own) {
 
 static void after_trial(row *own) {
   path_point *next = own->now.next;
-  const real norm = norm_of(own->work.trial_residual);
+  const real norm = norm_of(own->work->trial_residual);
   if (!serves(1, norm, own->newton.norm)) {
     weigh_newton_step(own, 0, own->newton.norm);
     return;
   }
-  memcpy(next->x, own->work.trial, sizeof next->x);
-  memcpy(next->residual, own->work.trial_residual, sizeof next->residual);
+  memcpy(next->x, own->work->trial, sizeof next->x);
+  memcpy(next->residual, own->work->trial_residual, sizeof next->residual);
   weigh_newton_step(own, 1, norm);
 }
 
@@ -209,13 +197,13 @@ static void after_newton_matrix(row *own, int finite) {
 }
 
 static void go_on_from_next_point(row *own, int sound) {
-  set_tangent(own->now.next, sound, own->now.spare, &own->work);
+  set_tangent(own->now.next, sound, own->now.spare, own->work);
   accept_next(&own->now);
   take_step(own);
 }
 
 static void after_rate(row *own) {
-  const int sound = all_finite(own->work.rate, N);
+  const int sound = all_finite(own->work->rate, N);
   if (!sound || own->newton.result.jacobians > 0) {
     go_on_from_next_point(own, sound);
     return;
@@ -225,29 +213,19 @@ static void after_rate(row *own) {
   own->state = WAITS_FOR_TANGENT_MATRIX;
 }
 
-static void write_judgement(row *own) {
-  own->results[0] = own->info.status;
-  own->results[1] = own->info.iterations;
-  own->results[2] = own->info.residual_norm;
-  own->state = WAITS_FOR_NOTHING;
-}
-
 static void after_resolution(row *own) {
-  if (own->resolution <= 1) {
-    own->state = WAITS_FOR_RESULTS;
-    return;
-  }
-  own->info.status = SOLVER_UNRESOLVED;
-  for (int i = 0; i < RESULTS; i++) own->results[i] = NAN;
-  write_judgement(own);
+  if (!(own->resolution <= 1)) own->info.status = SOLVER_UNRESOLVED;
+  memcpy(own->x, own->now.point->x, N * sizeof *own->x);
+  *own->ended = own->info;
+  own->state = WAITS_FOR_NOTHING;
 }
 
 /* ---- Rows together ---- */
 
 /* The unknowns at which a row waits to be evaluated. */
 static const real *unknowns_of(const row *own) {
-  if (own->state == WAITS_FOR_TRIAL_RESIDUAL) return own->work.trial;
-  if (own->state == WAITS_FOR_RESOLUTION || own->state == WAITS_FOR_RESULTS) return own->now.point->x;
+  if (own->state == WAITS_FOR_TRIAL_RESIDUAL) return own->work->trial;
+  if (own->state == WAITS_FOR_RESOLUTION) return own->now.point->x;
   return own->now.next->x;
 }
 
@@ -265,9 +243,6 @@ static void evaluate_in_lanes(waiting state, lanes_room *room) {
       break;
     case WAITS_FOR_RESOLUTION:
       resolution_in_lanes(room);
-      break;
-    case WAITS_FOR_RESULTS:
-      results_in_lanes(room);
       break;
     default:
       residual_in_lanes(room);
@@ -287,17 +262,14 @@ static real *wanted_by(row *own, int *count) {
       *count = N * N;
       return own->now.spare->factors.factors;
     case WAITS_FOR_STEP:
-      return own->work.step;
+      return own->work->step;
     case WAITS_FOR_RATE:
-      return own->work.rate;
+      return own->work->rate;
     case WAITS_FOR_RESOLUTION:
       *count = 1;
       return &own->resolution;
-    case WAITS_FOR_RESULTS:
-      *count = RESULTS;
-      return own->results;
     default:
-      return own->work.trial_residual;
+      return own->work->trial_residual;
   }
 }
 
@@ -335,9 +307,6 @@ static void resume(row *own, const lanes_room *room, int lane) {
     case WAITS_FOR_RESOLUTION:
       after_resolution(own);
       break;
-    case WAITS_FOR_RESULTS:
-      write_judgement(own);
-      break;
     case WAITS_FOR_NOTHING:
       break;
   }
@@ -345,7 +314,7 @@ static void resume(row *own, const lanes_room *room, int lane) {
 
 /* What most rows wait for; nothing where none is under way. */
 static waiting most_awaited(const row *rows) {
-  int counts[WAITS_FOR_RESULTS + 1] = {0};
+  int counts[WAITS_FOR_RESOLUTION + 1] = {0};
   waiting most = WAITS_FOR_NOTHING;
   for (int k = 0; k < ROWS; k++) {
     const waiting state = rows[k].state;
@@ -375,7 +344,7 @@ static void substitute_rows(row *const *rows, lanes_room *room) {
   const real *steps[LANES];
   for (int lane = 0; lane < LANES; lane++) {
     factors[lane] = rows[lane]->now.spare->factors.factors;
-    steps[lane] = rows[lane]->work.step;
+    steps[lane] = rows[lane]->work->step;
   }
   gather_lanes(factors, N * N, room->factors);
   gather_lanes(steps, N, room->results);
@@ -383,14 +352,13 @@ static void substitute_rows(row *const *rows, lanes_room *room) {
 }
 
 /* Gives rows that wait for the same what they wait for. */
-static void serve(side_by_side *all, waiting state) {
+static void serve(row *rows, waiting state, lanes_room *room) {
   row *served[LANES];
   real *wanted[LANES];
-  lanes_room *room = &all->room;
   int count = 0;
   int numbers = 0;
   for (int k = 0; k < ROWS && count < LANES; k++) {
-    if (all->rows[k].state == state) served[count++] = all->rows + k;
+    if (rows[k].state == state) served[count++] = rows + k;
   }
   for (int lane = count; lane < LANES; lane++) served[lane] = served[0];
   if (state == WAITS_FOR_STEP) {
@@ -403,27 +371,23 @@ static void serve(side_by_side *all, waiting state) {
   for (int lane = 0; lane < count; lane++) resume(served[lane], room, lane);
 }
 
-/* Returns 1 where there was no memory. */
-static int solve_side_by_side(int count, const real *inputs, real *results, side_by_side *all) {
-  int begun = 0;
+/* Rows first to last of a batch. */
+static void solve_side_by_side(const batch_of_rows *batch, int first, int last, solver_batch_workspace *work) {
+  row rows[ROWS];
+  lanes_room *room = &work->room;
+  int begun = first;
   for (int k = 0; k < ROWS; k++) {
-    all->rows[k].state = WAITS_FOR_NOTHING;
-    all->rows[k].without_memory = 0;
+    rows[k].state = WAITS_FOR_NOTHING;
+    rows[k].work = work->of_rows + k;
   }
-  for (int i = 0; i < (INPUTS + 1) * LANES; i++) all->room.inputs_rate[i] = 0;
-  for (int lane = 0; lane < LANES; lane++) all->room.load_factor_rate[lane] = 1;
+  for (int i = 0; i < (INPUTS + 1) * LANES; i++) room->inputs_rate[i] = 0;
+  for (int lane = 0; lane < LANES; lane++) room->load_factor_rate[lane] = 1;
   for (;;) {
     for (int k = 0; k < ROWS; k++) {
-      while (begun < count && all->rows[k].state == WAITS_FOR_NOTHING) {
-        begin_row(all->rows + k, inputs + (size_t)begun * INPUTS, results + (size_t)begun * RESULTS);
-        begun++;
-      }
+      while (begun < last && rows[k].state == WAITS_FOR_NOTHING) begin_row(rows + k, batch, begun++);
     }
-    const waiting state = most_awaited(all->rows);
+    const waiting state = most_awaited(rows);
     if (state == WAITS_FOR_NOTHING) break;
-    serve(all, state);
+    serve(rows, state, room);
   }
-  int without_memory = 0;
-  for (int k = 0; k < ROWS; k++) without_memory |= all->rows[k].without_memory;
-  return without_memory;
 }

@@ -12,24 +12,31 @@
 #endif
 #endif
 
+/* Seen by the library alone. */
+#if defined(__GNUC__) && !defined(_WIN32)
+#define IN_LIBRARY __attribute__((visibility("hidden")))
+#else
+#define IN_LIBRARY
+#endif
+
 /* A kernel in lanes: arguments and results are arrays of lanes, and so is the room that it works in. */
 #define IN_LANES(kernel) kernel##_in_lanes
 #define KERNEL_IN_LANES(kernel) \
-  int IN_LANES(kernel)(const double **arguments, double **results, int *integers, double *reals)
+  IN_LIBRARY int IN_LANES(kernel)(const double **arguments, double **results, int *integers, double *reals)
 
 /* Whether the processor that runs this has the vectors that the code in lanes is compiled for. */
-int processor_has_lanes(void);
+IN_LIBRARY int processor_has_lanes(void);
 
 /* Factorises LANES matrices in place. Gives pivots (size arrays of lanes), whether each matrix is regular, and whether
    its entries were finite. */
-void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite);
+IN_LIBRARY void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite);
 
 /* Brings right sides into the order of the pivots. */
-void permute_in_lanes(int size, const int *pivots, double *right_sides);
+IN_LIBRARY void permute_in_lanes(int size, const int *pivots, double *right_sides);
 
 /* Solves with such factors, in place; the right sides are in the order of the pivots. */
-void substitute_in_lanes(int size, const double *factors, double *right_sides);
+IN_LIBRARY void substitute_in_lanes(int size, const double *factors, double *right_sides);
 
 /* Arrays of each row into an array of lanes, and of the lanes in use out of it. */
-void gather_lanes(const double *const *sources, int count, double *in_lanes);
-void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets);
+IN_LIBRARY void gather_lanes(const double *const *sources, int count, double *in_lanes);
+IN_LIBRARY void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets);

@@ -82,20 +82,6 @@ solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, s
   return end;
 }
 
-int tubes_solve_batch(int count, const real *inputs, real *x, solver_workspace *workspaces, int workspace_count,
-                      solver_info *info) {
-  const int converged = solver_solve_batch(count, inputs, x, workspaces, workspace_count, info);
-  for (int i = 0; i < count; i++) {
-    const real *own = inputs + (size_t)i * INPUTS;
-    /* None of these has converged: their steps are never called enough. */
-    if (!in_range(own)) (void)out_of_range(info + i);
-    else if (info[i].status == SOLVER_CONVERGED) {
-      info[i].determinant = tubes_determinant(x + (size_t)i * N, own, workspaces);
-    }
-  }
-  return converged;
-}
-
 solver_status tubes_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
   if (!in_range(from) || !in_range(inputs)) return out_of_range(info);

@@ -17,6 +17,7 @@ SENTENCES = {
     "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
     "dynamics": "motions in C know no exact contact",
     "stability": "the stability of rods in exact contact is not written in C",
+    "batches": "rods in exact contact have no function for many load cases",
 }
 """What a folder may hold of other scenes, and why not of these."""
 
@@ -28,7 +29,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
     Args:
         scene: the scene.
-        asked: whether ``derivatives``, ``dynamics`` and ``stability`` are asked for.
+        asked: whether ``derivatives``, ``dynamics``, ``stability`` and ``batches`` are asked for.
 
     Raises:
         ExportError: with every fault.

@@ -29,6 +29,7 @@ from cosserat_casadi.codegen.library import (
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
 from cosserat_casadi.codegen.status import tube_status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
@@ -153,6 +154,8 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "default_continuation_steps": TRACK_STEPS,
         "further_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
+        "batch_config": "",
+        "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
         "first_tube": int(np.argmax(robot.translations(robot.inputs))),
