@@ -29,7 +29,7 @@ from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
 from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, is_sound, read_manifest
-from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
+from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
