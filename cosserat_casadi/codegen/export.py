@@ -163,6 +163,18 @@ def folder_files(
     return files
 
 
+def check_batches(model: Model) -> None:
+    """Refuse batches side by side of a scene whose equations have no form for that, whatever its discretisation.
+
+    Args:
+        model: the scene on any discretisation, a small one for a quick answer.
+
+    Raises:
+        ExportError: it is an assembly, or a load has no such form.
+    """
+    _side_by_side(model, model_names("any", model))
+
+
 def _side_by_side(model: Model, names: Names) -> InLanes:
     """What solves load cases side by side.
 

@@ -17,6 +17,8 @@ from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
+from tests.commands import cosserat
+from tests.conftest import ROOT
 from tests.scenes import push, rod, scene
 
 CONVERGED, NOT_FINITE = 0, 2
@@ -175,6 +177,14 @@ def test_an_assembly_with_batches_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="have no form for several load cases at once"):
         export(model, tmp_path / "hand", batches=True)
     assert not (tmp_path / "hand").exists()
+
+
+def test_the_command_refuses_batches_of_an_assembly(tmp_path: Path) -> None:
+    example = ROOT / "examples" / "branching_rod.toml"
+    done = cosserat("export", str(example), "--batches", "--output", "rod", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "have no form for several load cases" in " ".join(done.stderr.split())
+    assert not (tmp_path / "rod").exists()
 
 
 def exported(asked: Scene, folder: Path) -> Compiled:

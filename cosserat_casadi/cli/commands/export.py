@@ -19,7 +19,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
-from cosserat_casadi.codegen.export import check_export
+from cosserat_casadi.codegen.export import check_batches, check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
@@ -134,6 +134,8 @@ def export(
     scene_names(name, exported_scene)
     if stability:
         check_stability(build(exported_scene, discretise(exported_scene, 1, 2)))
+    if batches:
+        check_batches(build(exported_scene, discretise(exported_scene, 1, 2)))
     if page is not None:
         # Last: a scene that has no page has none with a compiler either.
         find_wasm_compiler()
