@@ -16,6 +16,10 @@ WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$")
 """Names of kernels that are called with a workspace alone, however large it is."""
 
 
+MADE = re.compile(r"\bMADE\((?!function\))(\w+)\)")
+"""Names of functions in fours where they are written, but not in the definition of the macro."""
+
+
 def largest_room(generated: Mapping[str, str], kind: str) -> int:
     """The most that any kernel asks its caller for: of numbers ("W"), of integers ("IW").
 
@@ -45,11 +49,10 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     rooms = _rooms(generated, "W")
     on_stack = {name: 0 if WITH_WORKSPACE.search(name) else room for name, room in rooms.items()}
-    in_fours = dict[str, int]()
-    for file, text in generated.items():
-        if file.endswith("_in_fours.h"):
-            in_fours |= _locals_in_fours(text)
-    largest = max(map(_locals, functions))
+    included = [text for file, text in generated.items() if file.endswith("_in_fours.h")]
+    in_fours = _locals_in_fours("".join([*included, source]))
+    of_casadi = [function for function in functions if not MADE.search(function)]
+    largest = max(map(_locals, of_casadi))
     largest += max((room for name, room in on_stack.items() if name not in in_fours), default=0)
     for name, room in on_stack.items():
         largest = max(largest, in_fours.get(name, 0) + room)
@@ -66,8 +69,9 @@ def _locals_in_fours(text: str) -> dict[str, int]:
     needed: dict[str, int] = {}
     # Functions come before those that call them.
     for function in re.split(r"^(?=static )", text, flags=re.M)[1:]:
-        name, *called = re.findall(r"\bMADE\((\w+)\)", function)
-        needed[name] = _of_fours(function) + max((needed[other] for other in called), default=0)
+        name, *called = MADE.findall(function) or [""]
+        if name and name not in needed:
+            needed[name] = _of_fours(function) + max((needed[other] for other in called), default=0)
     return needed
 
 
