@@ -12,8 +12,10 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
-WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$")
-"""Names of kernels that are called with a workspace alone, however large it is."""
+WITH_WORKSPACE = re.compile(
+    r"_k_motion_|_k_(?:\d+_)?(?:residual|jacobian)$|_k_(?:residual|jacobian|input_jacobian)_\d+$"
+)
+"""Names of kernels that are called with a workspace alone, however large it is; those of parts have numbers."""
 
 
 MADE = re.compile(r"\bMADE\((?!function\))(\w+)\)")

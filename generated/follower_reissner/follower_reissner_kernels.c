@@ -421,11 +421,11 @@ static void MADE(follower_reissner_kernels_increments)(const casadi_real *given,
 static void MADE(follower_reissner_kernels_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(follower_reissner_kernels_pulls, (given, made, turns));
 }
-static void MADE(follower_reissner_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
-  IN_FOURS(follower_reissner_kernels_variations, (given, made, turns));
-}
 static void MADE(follower_reissner_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(follower_reissner_kernels_fwd1_pulls, (given, made, turns));
+}
+static void MADE(follower_reissner_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
+  IN_FOURS(follower_reissner_kernels_variations, (given, made, turns));
 }
 
 #if defined(__GNUC__) && !defined(__clang__)

@@ -245,11 +245,11 @@ static void MADE(planar_strip_kernels_increments)(const casadi_real *given, casa
 static void MADE(planar_strip_kernels_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(planar_strip_kernels_pulls, (given, made, turns));
 }
-static void MADE(planar_strip_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
-  IN_FOURS(planar_strip_kernels_variations, (given, made, turns));
-}
 static void MADE(planar_strip_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(planar_strip_kernels_fwd1_pulls, (given, made, turns));
+}
+static void MADE(planar_strip_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
+  IN_FOURS(planar_strip_kernels_variations, (given, made, turns));
 }
 
 #if defined(__GNUC__) && !defined(__clang__)

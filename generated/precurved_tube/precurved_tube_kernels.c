@@ -870,11 +870,11 @@ static void MADE(precurved_tube_kernels_increments)(const casadi_real *given, ca
 static void MADE(precurved_tube_kernels_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(precurved_tube_kernels_pulls, (given, made, turns));
 }
-static void MADE(precurved_tube_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
-  IN_FOURS(precurved_tube_kernels_variations, (given, made, turns));
-}
 static void MADE(precurved_tube_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
   IN_FOURS(precurved_tube_kernels_fwd1_pulls, (given, made, turns));
+}
+static void MADE(precurved_tube_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
+  IN_FOURS(precurved_tube_kernels_variations, (given, made, turns));
 }
 
 #if defined(__GNUC__) && !defined(__clang__)

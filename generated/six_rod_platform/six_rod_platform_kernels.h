@@ -42,26 +42,11 @@ int six_rod_platform_k_input_jacobian_2(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_input_jacobian_2_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_2_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_2_SZ_W 92
-int six_rod_platform_k_input_jacobian_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_input_jacobian_3_SZ_ARG 15
-#define six_rod_platform_k_input_jacobian_3_SZ_RES 4
-#define six_rod_platform_k_input_jacobian_3_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_3_SZ_W 92
-int six_rod_platform_k_input_jacobian_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_input_jacobian_4_SZ_ARG 15
-#define six_rod_platform_k_input_jacobian_4_SZ_RES 4
-#define six_rod_platform_k_input_jacobian_4_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_4_SZ_W 92
-int six_rod_platform_k_input_jacobian_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_input_jacobian_5_SZ_ARG 15
-#define six_rod_platform_k_input_jacobian_5_SZ_RES 4
-#define six_rod_platform_k_input_jacobian_5_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_5_SZ_W 92
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_rate_SZ_ARG 27
 #define six_rod_platform_k_rate_SZ_RES 6
 #define six_rod_platform_k_rate_SZ_IW 0
-#define six_rod_platform_k_rate_SZ_W 957
+#define six_rod_platform_k_rate_SZ_W 1054
 int six_rod_platform_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tangent_SZ_ARG 1
 #define six_rod_platform_k_tangent_SZ_RES 1
@@ -166,32 +151,32 @@ int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, c
 #define six_rod_platform_k_shape_leg_1_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_1_SZ_RES 6
 #define six_rod_platform_k_shape_leg_1_SZ_IW 0
-#define six_rod_platform_k_shape_leg_1_SZ_W 219
+#define six_rod_platform_k_shape_leg_1_SZ_W 224
 int six_rod_platform_k_shape_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_2_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_2_SZ_RES 6
 #define six_rod_platform_k_shape_leg_2_SZ_IW 0
-#define six_rod_platform_k_shape_leg_2_SZ_W 219
+#define six_rod_platform_k_shape_leg_2_SZ_W 224
 int six_rod_platform_k_shape_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_3_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_3_SZ_RES 6
 #define six_rod_platform_k_shape_leg_3_SZ_IW 0
-#define six_rod_platform_k_shape_leg_3_SZ_W 219
+#define six_rod_platform_k_shape_leg_3_SZ_W 224
 int six_rod_platform_k_shape_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_4_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_4_SZ_RES 6
 #define six_rod_platform_k_shape_leg_4_SZ_IW 0
-#define six_rod_platform_k_shape_leg_4_SZ_W 219
+#define six_rod_platform_k_shape_leg_4_SZ_W 224
 int six_rod_platform_k_shape_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_5_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_5_SZ_RES 6
 #define six_rod_platform_k_shape_leg_5_SZ_IW 0
-#define six_rod_platform_k_shape_leg_5_SZ_W 219
+#define six_rod_platform_k_shape_leg_5_SZ_W 224
 int six_rod_platform_k_shape_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_6_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_6_SZ_RES 6
 #define six_rod_platform_k_shape_leg_6_SZ_IW 0
-#define six_rod_platform_k_shape_leg_6_SZ_W 219
+#define six_rod_platform_k_shape_leg_6_SZ_W 224
 int six_rod_platform_k_body_platform(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_body_platform_SZ_ARG 2
 #define six_rod_platform_k_body_platform_SZ_RES 2
@@ -206,27 +191,12 @@ int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_1_SZ_ARG 4
 #define six_rod_platform_k_residual_1_SZ_RES 1
 #define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 236
-int six_rod_platform_k_residual_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_residual_2_SZ_ARG 4
-#define six_rod_platform_k_residual_2_SZ_RES 1
-#define six_rod_platform_k_residual_2_SZ_IW 0
-#define six_rod_platform_k_residual_2_SZ_W 236
-int six_rod_platform_k_residual_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_residual_3_SZ_ARG 4
-#define six_rod_platform_k_residual_3_SZ_RES 1
-#define six_rod_platform_k_residual_3_SZ_IW 0
-#define six_rod_platform_k_residual_3_SZ_W 236
-int six_rod_platform_k_residual_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_residual_4_SZ_ARG 4
-#define six_rod_platform_k_residual_4_SZ_RES 1
-#define six_rod_platform_k_residual_4_SZ_IW 0
-#define six_rod_platform_k_residual_4_SZ_W 236
+#define six_rod_platform_k_residual_1_SZ_W 535
 int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 1931
+#define six_rod_platform_k_jacobian_1_SZ_W 2194
 #ifdef __cplusplus
 } /* extern "C" */
 #endif
