@@ -15,7 +15,7 @@ from functools import partial
 import casadi as ca
 
 from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel
+from cosserat_casadi.codegen.fours_sources import CALL_OF_COLUMNS, COLUMNS, PART_OF_COLUMNS, Callee, InFours, Kernel
 from cosserat_casadi.codegen.listing import (
     Called,
     Computed,
@@ -29,7 +29,6 @@ from cosserat_casadi.codegen.statements import (
     LONGEST_OF_NUMBERS,
     Block,
     Statement,
-    called,
     in_parts,
     number_in_c,
     on_fours,
@@ -84,14 +83,29 @@ class _Batch:
     Attributes:
         calls: their numbers.
         width: for how many calls the code is: LANES, or one.
-        given: where their operands are in the numbers that the kernel works in.
-        made: where their results are.
+        operands: of one call, how many.
+        results: of one call, how many.
+        made: where their results are in the numbers that the kernel works in.
     """
 
     calls: tuple[int, ...]
     width: int
-    given: int
+    operands: int
+    results: int
     made: int
+
+    @property
+    def turns(self) -> int:
+        """How often the code is gone through."""
+        return -(-len(self.calls) // self.width)
+
+    def operand_place(self, turn: int, lane: int, operand: int) -> int:
+        """Where an operand is behind the first."""
+        return self.width * (turn * self.operands + operand) + lane
+
+    def result_place(self, turn: int, lane: int, result: int) -> int:
+        """Where a result is behind the first."""
+        return self.width * (turn * self.results + result) + lane
 
 
 class _Writing:
@@ -111,6 +125,9 @@ class _Writing:
         self.callee_names = listing.names_of_callees("")
         self.in_column = self._in_column()
         self.batch_of = self._batches()
+        # What is given to calls is read before the next ones are given anything.
+        most_given = (batch.width * batch.turns * batch.operands for batch in self.batch_of.values())
+        self.given = self._room(max(most_given, default=0))
         self.given_to_columns = self._given_to_columns()
         for value in self.given_to_columns:
             self.place.setdefault(value, self._room(1))
@@ -118,7 +135,7 @@ class _Writing:
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
-        self.callees: dict[str, str] = {}
+        self.callees: dict[str, Callee] = {}
         self.statements = 0
 
     def result(self) -> InFours:
@@ -134,7 +151,8 @@ class _Writing:
         self._write_results()
         self._write_main()
         body = "\n".join(self.functions)
-        return InFours(self.signature, tables, body, self.callees, self.reals, self.statements)
+        by_columns = self.form is not None
+        return InFours(self.signature, tables, body, by_columns, self.callees, self.reals, self.statements)
 
     def _write_main(self) -> None:
         """Write the function itself, which is a row of others where it is long."""
@@ -151,7 +169,7 @@ class _Writing:
             lines = block.lines(partial(self._text_in_part, elsewhere))
             self.statements += len(statements)
             if len(parts) > 1:
-                self.functions.append(f"static void MADE({self.name}_part_{k}){_body(given, lines)}")
+                self.functions.append(f"static void MADE({self.name}_part_{k})({given}){_body(lines)}")
         if len(parts) > 1:
             lines = [f"  MADE({self.name}_part_{k})(arg, res, w);" for k in range(len(parts))]
         head = f"static int MADE({self.name})({given}) {{"
@@ -191,18 +209,13 @@ class _Writing:
         for number, call in enumerate(self.listing.calls):
             groups[hash(call.function), depth[call.results[0]]].append(number)
         batches: dict[int, _Batch] = {}
-        given: dict[int, int] = {}
         for calls in groups.values():
             width = LANES if len(calls) >= FEWEST else 1
-            for first in range(0, len(calls), width):
-                together = tuple(calls[first : first + width])
-                call = self.listing.calls[together[0]]
-                size = width * len(call.operands)
-                if size not in given:
-                    given[size] = self._room(size)
-                batch = _Batch(together, width, given[size], self._room(width * len(call.results)))
-                batches |= dict.fromkeys(together, batch)
-                self._place_results(batch)
+            call = self.listing.calls[calls[0]]
+            batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
+            self._room(width * batch.turns * batch.results)
+            batches |= dict.fromkeys(calls, batch)
+            self._place_results(batch)
         return batches
 
     def _depths(self) -> list[int]:
@@ -214,9 +227,10 @@ class _Writing:
         return depths
 
     def _place_results(self, batch: _Batch) -> None:
-        for lane, number in enumerate(batch.calls):
+        for k, number in enumerate(batch.calls):
+            turn, lane = divmod(k, batch.width)
             for i, result in enumerate(self.listing.calls[number].results):
-                self.place[result] = batch.made + i * batch.width + lane
+                self.place[result] = batch.made + batch.result_place(turn, lane, i)
 
     def _is_constant(self, number: int) -> bool:
         return isinstance(self.listing.values[number], Constant)
@@ -270,16 +284,16 @@ class _Writing:
             self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
 
     def _append_calls(self, batch: _Batch) -> None:
-        for lane in range(batch.width):
+        for k in range(batch.width * batch.turns):
+            turn, lane = divmod(k, batch.width)
             # Lanes that are left over compute what the last call does.
-            call = self.listing.calls[batch.calls[min(lane, len(batch.calls) - 1)]]
+            call = self.listing.calls[batch.calls[min(k, len(batch.calls) - 1)]]
             for i, operand in enumerate(call.operands):
-                place = batch.given + i * batch.width + lane
+                place = self.given + batch.operand_place(turn, lane, i)
                 self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
-        lane = " + lane" if batch.width == LANES else ""
-        places = f"w + {batch.given}{lane}, w + {batch.made}{lane}"
-        self.main.statements.append(called(f"MADE({self.name}_{name})({places})", batch.width))
+        call = f"MADE({self.name}_{name})(w + {self.given}, w + {batch.made}, {batch.turns});"
+        self.main.statements.append(Statement(call, []))
 
     def _write_results(self) -> None:
         """Append the entries of all results; one of several may be asked for by no pointer."""
@@ -350,7 +364,7 @@ class _Writing:
                 return f"LOAD(given + {place})" if wide else f"given[{place}]"
             return None
 
-        self.callees[name] = _body("const casadi_real *given, casadi_real *made", block.lines(text))
+        self.callees[name] = Callee(_body(block.lines(text)), width, function.nnz_in(), function.nnz_out())
         self.statements += len(block.statements)
 
     # Columns
@@ -360,27 +374,25 @@ class _Writing:
         statements = self._statements_of_columns(form)
         parts, passed = in_parts(statements, LONGEST, lambda place: f"STORE(passed + {LANES * place}, {{0}});")
         room = self._room(LANES * len(passed))
-        names = []
+        name = f"{self.name}_columns"
+        calls = []
         for k, statements in enumerate(parts):
             own = {statement.made for statement in statements}
             elsewhere = {value: place for value, place in passed.items() if value not in own}
             block = Block("FOUR", "b", statements)
-            names.append(f"{self.name}_columns_{k}")
-            given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
-            body = _body(given, block.lines(partial(self._text_in_columns, elsewhere)))
-            self.functions.append(f"static void MADE({names[-1]}){body}")
+            body = _body(block.lines(partial(self._text_in_columns, elsewhere)))
+            self.functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
+            calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
             self.statements += len(block.statements)
-        size = len(form.turns)
+        listed = "\n".join(calls)
+        self.functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
         turns = f"{self.name}_turns"
         start = 0
         if form.turns_behind is not None:
             turns = f"arg[{form.columns_argument - 1}]"
             start = form.turns_behind
-        for first in range(0, form.stride, LANES):
-            for name in names:
-                given_turns = f"{turns} + {start + size * first} + lane"
-                given = f"w, {given_turns}, w + {self.columns + first} + lane, w + {room} + lane"
-                self.main.statements.append(called(f"MADE({name})({given})", LANES))
+        given = f"w, {turns} + {start}, w + {self.columns}, w + {room}, {form.stride // LANES}"
+        self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
         statements = []
@@ -414,9 +426,9 @@ class _Writing:
         return None
 
 
-def _body(parameters: str, lines: Iterable[str]) -> str:
-    """Parameters and body of a function."""
-    return "\n".join([f"({parameters}) {{", *lines, "}\n"])
+def _body(lines: Iterable[str]) -> str:
+    """Body of a function."""
+    return "\n".join([" {", *lines, "}\n"])
 
 
 def _starts(sizes: Iterable[int]) -> list[int]:

@@ -18,6 +18,64 @@ PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int
 """
 
 
+CALLEE = """static void MADE({name}_turn)(const casadi_real *given, casadi_real *made){body}
+static void MADE({name})(const casadi_real *given, casadi_real *made, int turns) {{
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += {given}, made += {made})
+    {call}
+}}
+"""
+"""A function that kernels call, and the loop over its calls."""
+
+CALL_OF_FOUR = "EVERY_LANE(MADE({name}_turn)(given + lane, made + lane))"
+CALL_OF_ONE = "MADE({name}_turn)(given, made);"
+
+CHOICE = """static void MADE({name})(const casadi_real *given, casadi_real *made, int turns) {{
+  IN_FOURS({name}, (given, made, turns));
+}}
+"""
+"""The same for the width of vectors that the processor has."""
+
+PART_OF_COLUMNS = """static void MADE({name}_{part})(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed){body}"""
+"""A part of what computes four columns."""
+
+COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *turns, casadi_real *columns,
+    casadi_real *passed, int groups) {{
+  int group;
+  for (group = 0; group < groups; group++, turns += {turns}, columns += 4) {{
+{calls}
+  }}
+}}
+"""
+"""All columns, four after four."""
+
+CALL_OF_COLUMNS = "    EVERY_LANE(MADE({name}_{part})(w, turns + lane, columns + lane, passed + lane))"
+
+
+@dataclass(frozen=True)
+class Callee:
+    """A function that kernels call for intervals.
+
+    Attributes:
+        body: in C.
+        width: how many intervals it computes at once.
+        operands: numbers that it is given for one interval.
+        results: numbers that it makes for one interval.
+    """
+
+    body: str
+    width: int
+    operands: int
+    results: int
+
+    def text(self, name: str) -> str:
+        """The function in C, under a name, with a loop over what it is called for."""
+        call = CALL_OF_ONE if self.width == 1 else CALL_OF_FOUR
+        given, made = self.width * self.operands, self.width * self.results
+        return CALLEE.format(name=name, body=self.body, given=given, made=made, call=call.format(name=name))
+
+
 @dataclass(frozen=True)
 class InFours:
     """A kernel that is written here.
@@ -25,8 +83,9 @@ class InFours:
     Attributes:
         signature: a function with its name, arguments and results.
         tables: constant arrays in C.
-        body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
-        callees: parameters and bodies of functions that these call by the name of the kernel and a word, by the word.
+        body: functions in C, the kernel itself last; their names stand in ``MADE()``.
+        by_columns: whether some of them compute columns: those are compiled for each width of vectors.
+        callees: functions that these call by the name of the kernel and a word, by the word.
         reals: numbers that it works in.
         statements: how many there are.
     """
@@ -34,7 +93,8 @@ class InFours:
     signature: ca.Function
     tables: str
     body: str
-    callees: Mapping[str, str]
+    by_columns: bool
+    callees: Mapping[str, Callee]
     reals: int
     statements: int
 
@@ -80,30 +140,41 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         kernels: the kernels.
         stem: of the file names.
     """
+    callees = _callees(kernels, stem)
+    bodies = {kernel.name(): _with_names_of_callees(kernel, callees) for kernel in kernels}
+    for_each_width = [kernel for kernel in kernels if kernel.by_columns]
+    once = [kernel for kernel in kernels if not kernel.by_columns]
+    called_once = [callees[callee] for kernel in once for callee in kernel.callees.values()]
     words = {
         "stem": stem,
         "tables": "".join(kernel.tables for kernel in kernels),
-        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
+        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once)),
+        "once": "\n".join(bodies[kernel.name()] for kernel in once),
+        "kernels_once": "".join(f"KERNEL({kernel.name()}, KERNEL_ONCE)\n" for kernel in once),
+        "kernels_for_each_width": "".join(f"KERNEL({kernel.name()}, IN_FOURS)\n" for kernel in for_each_width),
     }
-    bodies = "\n".join(_sharing_callees(kernels, stem))
     prototypes = "".join(kernel.prototype() for kernel in kernels)
-    text = f"/* Included once for each width of vectors. */\n{bodies}"
+    functions = [callee.text(name) for callee, name in callees.items()]
+    functions += [bodies[kernel.name()] for kernel in for_each_width]
+    text = "\n".join(["/* Included once for each width of vectors. */", *functions])
     included = {f"{stem}_in_fours.h": text, "fours.h": resource("c", "fours.h")}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
 
 
-def _sharing_callees(kernels: Sequence[InFours], stem: str) -> list[str]:
-    """Functions that kernels call, once for all that call the same, and the kernels."""
-    functions = []
-    bodies = []
-    name_of: dict[str, str] = {}
+def _callees(kernels: Sequence[InFours], stem: str) -> dict[Callee, str]:
+    """Names of the functions that kernels call: one for all that call the same."""
+    name_of: dict[Callee, str] = {}
     for kernel in kernels:
-        body = kernel.body
         for word, callee in kernel.callees.items():
             if callee not in name_of:
                 name = f"{stem}_{word}"
                 name_of[callee] = f"{name}_{len(name_of)}" if name in name_of.values() else name
-                functions.append(f"static void MADE({name_of[callee]}){callee}")
-            body = body.replace(f"MADE({kernel.name()}_{word})", f"MADE({name_of[callee]})")
-        bodies.append(body)
-    return functions + bodies
+    return name_of
+
+
+def _with_names_of_callees(kernel: InFours, callees: Mapping[Callee, str]) -> str:
+    """The body of a kernel, which calls functions by the names that they have for all kernels."""
+    body = kernel.body
+    for word, callee in kernel.callees.items():
+        body = body.replace(f"MADE({kernel.name()}_{word})", f"MADE({callees[callee]})")
+    return body

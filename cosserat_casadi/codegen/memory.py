@@ -12,6 +12,10 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
+DEFINED = re.compile(r"MADE\((\w+)\)|(\w+)\(")
+"""The name of a function where it begins; those that compute four numbers at a time are made under several names."""
+
+
 def largest_room(generated: Mapping[str, str], kind: str) -> int:
     """The most that any kernel asks its caller for: of numbers ("W"), of integers ("IW").
 
@@ -49,51 +53,34 @@ def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str]
 
 
 def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
-    """Numbers in local variables of each function of the kernels, with those of the deepest of its calls."""
+    """Numbers on the stack of each function of the kernels, with those of the deepest of its calls."""
+    included = [text for file, text in generated.items() if file.endswith("_in_fours.h")]
+    sources = [text for file, text in generated.items() if file.endswith(".c")]
+    text = "".join([*included, *sources])
     deepest: dict[str, int] = {}
-    for file, text in generated.items():
-        if file.endswith("_in_fours.h"):
-            deepest |= _locals_in_fours(text)
-    for file, text in generated.items():
-        if file.endswith(".c"):
-            deepest |= _locals_of_calls(text)
+    # Functions come before those that call them.
+    for function in re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", text, flags=re.M)[1:]:
+        head, _, body = function.partition("{")
+        found = DEFINED.search(head)
+        if found is None:
+            # A table of numbers.
+            continue
+        name = found[1] or found[2]
+        # What is written once calls what it is named after, once for one number or once for four.
+        called = [word for word in re.findall(r"\w+", body) if word in deepest]
+        deepest[name] = _locals(function) + max((deepest[word] for word in called), default=0)
     return deepest
 
 
-def _locals_of_calls(source: str) -> dict[str, int]:
-    """Numbers on the stack of each function in straight-line code, with the largest function that it calls."""
-    needed: dict[str, int] = {}
-    # Functions come before those that call them.
-    for function in re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)[1:]:
-        head, _, body = function.partition("{")
-        defined = re.search(r"(\w+)\(", head)
-        if defined is None:
-            # A table of numbers.
-            continue
-        called = [name for name in re.findall(r"(\w+)\(", body) if name in needed]
-        needed[defined[1]] = _locals(function) + max((needed[name] for name in called), default=0)
-    return needed
-
-
 def _locals(function: str) -> int:
-    declared = re.findall(r"^  casadi_real (a\d.*);$", function, flags=re.M)
+    """Numbers in the local variables of a function; a variable that is four numbers counts as such."""
+    single = re.findall(r"^  casadi_real (a\d.*);$", function, flags=re.M)
+    fours = re.findall(r"^  FOUR (b\d.*);$", function, flags=re.M)
+    return _variables(single) + 4 * _variables(fours)
+
+
+def _variables(declared: list[str]) -> int:
     return sum(line.count(",") + 1 for line in declared)
-
-
-def _locals_in_fours(text: str) -> dict[str, int]:
-    """Numbers on the stack of each function in fours, with the largest function that it calls."""
-    needed: dict[str, int] = {}
-    # Functions come before those that call them.
-    for function in re.split(r"^(?=static )", text, flags=re.M)[1:]:
-        name, *called = re.findall(r"\bMADE\((\w+)\)", function)
-        needed[name] = _of_fours(function) + max((needed[other] for other in called), default=0)
-    return needed
-
-
-def _of_fours(function: str) -> int:
-    declared = re.findall(r"^  FOUR (b\d.*);$", function, flags=re.M)
-    variables: int = sum(line.count(",") + 1 for line in declared)
-    return _locals(function) + 4 * variables
 
 
 def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tuple[int, int], extra: int) -> int:

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
+from cosserat_casadi.codegen.fours import with_calls_in_fours
+from cosserat_casadi.codegen.fours_sources import Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted
@@ -41,9 +43,10 @@ class MotionInC:
     input_matrices: Parted
 
     @property
-    def kernels(self) -> list[ca.Function]:
-        """All functions."""
-        return [*self.residual.kernels, *self.matrices.kernels, *self.input_matrices.kernels]
+    def kernels(self) -> list[Kernel]:
+        """All functions, those without loops with the calls of their intervals in fours."""
+        functions = [*self.residual.kernels, *self.matrices.kernels, *self.input_matrices.kernels]
+        return [with_calls_in_fours(function) for function in functions]
 
 
 def motion_in_c(model: Model, names: Names) -> MotionInC:

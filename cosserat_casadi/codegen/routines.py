@@ -8,7 +8,8 @@ CasADi asks before every entry that it reads or writes whether there is such an 
 written together are called with all of them, and compilers spend most of their time on these questions.
 
 Long functions without loops are compiled with less optimisation by gcc: it takes half as long for them, and the code
-is about as fast.
+is about as fast. Above all it does not look for stores that are overwritten unread: there are none, and the search
+takes a sixth of its time.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ PLAINLY = "PLAINLY"
 """Macro of functions that gcc optimises less; not where it is told to optimise nothing."""
 
 MACRO = f"""#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#define {PLAINLY} __attribute__((optimize("O1")))
+#define {PLAINLY} __attribute__((optimize("O1", "no-tree-dse", "no-dse")))
 #else
 #define {PLAINLY}
 #endif

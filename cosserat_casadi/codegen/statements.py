@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, UnknownOperationError
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
 
-LONGEST_OF_NUMBERS = 4000
+LONGEST_OF_NUMBERS = 400
 """Statements on numbers in one function: what compilers take grows faster than its length."""
 
 
@@ -96,11 +95,6 @@ def on_fours(operation: int, operands: Sequence[int], made: int) -> Statement:
     if operation not in BINARY:
         raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
     return on_numbers(operation, operands, made)
-
-
-def called(call: str, width: int) -> Statement:
-    """A call, for every lane of a four where it is of that width."""
-    return Statement(f"EVERY_LANE({call})" if width == LANES else f"{call};", [])
 
 
 def in_parts(

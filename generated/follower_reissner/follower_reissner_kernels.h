@@ -31,37 +31,37 @@ int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_residual_SZ_ARG 3
 #define follower_reissner_k_residual_SZ_RES 1
 #define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 236
+#define follower_reissner_k_residual_SZ_W 432
 int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
 #define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 1391
+#define follower_reissner_k_jacobian_SZ_W 1678
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
-#define follower_reissner_k_rate_SZ_W 328
+#define follower_reissner_k_rate_SZ_W 644
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3
 #define follower_reissner_k_igm_SZ_IW 0
-#define follower_reissner_k_igm_SZ_W 236
+#define follower_reissner_k_igm_SZ_W 436
 int follower_reissner_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_SZ_ARG 2
 #define follower_reissner_k_tip_SZ_RES 2
 #define follower_reissner_k_tip_SZ_IW 0
-#define follower_reissner_k_tip_SZ_W 96
+#define follower_reissner_k_tip_SZ_W 162
 int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_jacobian_SZ_ARG 2
 #define follower_reissner_k_tip_jacobian_SZ_RES 2
 #define follower_reissner_k_tip_jacobian_SZ_IW 0
-#define follower_reissner_k_tip_jacobian_SZ_W 500
+#define follower_reissner_k_tip_jacobian_SZ_W 749
 int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_shape_SZ_ARG 3
 #define follower_reissner_k_shape_SZ_RES 2
 #define follower_reissner_k_shape_SZ_IW 0
-#define follower_reissner_k_shape_SZ_W 96
+#define follower_reissner_k_shape_SZ_W 204
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -99,7 +99,7 @@ static const casadi_int casadi_s8[3] = {1, 1, 1};
 static const casadi_int casadi_s9[4] = {1, 1, 0, 0};
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#define PLAINLY __attribute__((optimize("O1")))
+#define PLAINLY __attribute__((optimize("O1", "no-tree-dse", "no-dse")))
 #else
 #define PLAINLY
 #endif

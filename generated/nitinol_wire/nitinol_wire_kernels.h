@@ -31,37 +31,37 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 236
+#define nitinol_wire_k_residual_SZ_W 431
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
 #define nitinol_wire_k_jacobian_SZ_IW 0
-#define nitinol_wire_k_jacobian_SZ_W 1123
+#define nitinol_wire_k_jacobian_SZ_W 1335
 int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 328
+#define nitinol_wire_k_rate_SZ_W 655
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3
 #define nitinol_wire_k_igm_SZ_IW 0
-#define nitinol_wire_k_igm_SZ_W 236
+#define nitinol_wire_k_igm_SZ_W 453
 int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_SZ_ARG 2
 #define nitinol_wire_k_tip_SZ_RES 2
 #define nitinol_wire_k_tip_SZ_IW 0
-#define nitinol_wire_k_tip_SZ_W 96
+#define nitinol_wire_k_tip_SZ_W 120
 int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 500
+#define nitinol_wire_k_tip_jacobian_SZ_W 752
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2
 #define nitinol_wire_k_shape_SZ_IW 0
-#define nitinol_wire_k_shape_SZ_W 96
+#define nitinol_wire_k_shape_SZ_W 173
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -31,37 +31,37 @@ int planar_strip_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define planar_strip_k_residual_SZ_ARG 3
 #define planar_strip_k_residual_SZ_RES 1
 #define planar_strip_k_residual_SZ_IW 0
-#define planar_strip_k_residual_SZ_W 100
+#define planar_strip_k_residual_SZ_W 144
 int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_jacobian_SZ_ARG 3
 #define planar_strip_k_jacobian_SZ_RES 1
 #define planar_strip_k_jacobian_SZ_IW 0
-#define planar_strip_k_jacobian_SZ_W 192
+#define planar_strip_k_jacobian_SZ_W 236
 int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_rate_SZ_ARG 5
 #define planar_strip_k_rate_SZ_RES 1
 #define planar_strip_k_rate_SZ_IW 0
-#define planar_strip_k_rate_SZ_W 148
+#define planar_strip_k_rate_SZ_W 306
 int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_igm_SZ_ARG 4
 #define planar_strip_k_igm_SZ_RES 3
 #define planar_strip_k_igm_SZ_IW 0
-#define planar_strip_k_igm_SZ_W 100
+#define planar_strip_k_igm_SZ_W 207
 int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tip_SZ_ARG 2
 #define planar_strip_k_tip_SZ_RES 2
 #define planar_strip_k_tip_SZ_IW 0
-#define planar_strip_k_tip_SZ_W 44
+#define planar_strip_k_tip_SZ_W 48
 int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tip_jacobian_SZ_ARG 2
 #define planar_strip_k_tip_jacobian_SZ_RES 2
 #define planar_strip_k_tip_jacobian_SZ_IW 0
-#define planar_strip_k_tip_jacobian_SZ_W 164
+#define planar_strip_k_tip_jacobian_SZ_W 225
 int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_shape_SZ_ARG 3
 #define planar_strip_k_shape_SZ_RES 2
 #define planar_strip_k_shape_SZ_IW 0
-#define planar_strip_k_shape_SZ_W 44
+#define planar_strip_k_shape_SZ_W 48
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -51,37 +51,37 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 236
+#define tendon_robot_k_residual_SZ_W 572
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 1725
+#define tendon_robot_k_jacobian_SZ_W 2239
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 328
+#define tendon_robot_k_rate_SZ_W 852
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
 #define tendon_robot_k_igm_SZ_IW 0
-#define tendon_robot_k_igm_SZ_W 236
+#define tendon_robot_k_igm_SZ_W 625
 int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2
 #define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 96
+#define tendon_robot_k_tip_SZ_W 138
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 500
+#define tendon_robot_k_tip_jacobian_SZ_W 815
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 96
+#define tendon_robot_k_shape_SZ_W 198
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

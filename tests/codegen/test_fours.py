@@ -16,6 +16,7 @@ from cosserat_casadi import Discretisation, Model, build, export, load, scene_fr
 from cosserat_casadi.codegen import fours, kernels
 from cosserat_casadi.codegen.columns import LANES, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
+from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
 from cosserat_casadi.codegen.names import library_names
@@ -124,21 +125,28 @@ def test_choices_and_parts_compute_what_casadi_does(
     function = ca.Function("choice", [x], [ca.vertcat(share, chosen, ca.gradient(share**2 + chosen, x))])
     made = in_fours(function, function)
     assert ("choice_part_1" in made.body) == (longest == 3)
-    for file, text in kernels.kernel_sources([made], library_names("choice"), "choice").items():
-        (tmp_path / file).write_text(text)
-    wrapper = tmp_path / "wrapper.c"
-    wrapper.write_text(
-        '#include "choice.c"\nvoid computed(const double *x, double *made) {\n'
-        f"  const double *given[] = {{x}};\n  double *results[] = {{made}};\n  double w[{made.reals + 1}];\n"
-        "  choice(given, results, 0, w, 0);\n}\n"
-    )
-    target = tmp_path / "choice.so"
-    gcc("-std=c99", "-O1", "-Wall", "-Werror", "-fPIC", "-shared", wrapper, "-lm", "-o", target)
-    computed = ctypes.CDLL(str(target)).computed
     for given in ([0.5, 2.0, 1.0], [0.1, 2.0, -1.0], [3.0, 2.0, 0.0], [0.25, 0.2, 2.0]):
-        numbers = np.zeros(5)
-        computed(pointer(np.array(given)), pointer(numbers))
+        numbers = computed_in_c(made, np.array(given), 5, tmp_path)
         assert_allclose(numbers, function(given).full()[:, 0], rtol=1e-15, atol=0)
+
+
+def computed_in_c(kernel: InFours, given: FloatArray, size: int, folder: Path) -> FloatArray:
+    """The result of a kernel with one argument, compiled."""
+    name = kernel.name()
+    target = folder / f"{name}.so"
+    if not target.exists():
+        for file, text in kernels.kernel_sources([kernel], library_names(name), name).items():
+            (folder / file).write_text(text)
+        wrapper = folder / "wrapper.c"
+        wrapper.write_text(
+            f'#include "{name}.c"\nvoid computed(const double *x, double *made) {{\n'
+            f"  const double *given[] = {{x}};\n  double *results[] = {{made}};\n  double w[{kernel.reals + 1}];\n"
+            f"  {name}(given, results, 0, w, 0);\n}}\n"
+        )
+        gcc("-std=c99", "-O1", "-Wall", "-Werror", "-fPIC", "-shared", wrapper, "-lm", "-o", target)
+    numbers = np.zeros(size)
+    ctypes.CDLL(str(target)).computed(pointer(given), pointer(numbers))
+    return numbers
 
 
 @pytest.fixture(scope="module")
@@ -178,10 +186,40 @@ def test_kernels_share_what_they_call(wire: Path) -> None:
     bodies = re.findall(r"^static void MADE\((\w+)\)(.*?^\})", written, flags=re.M | re.S)
     assert len({body for _, body in bodies}) == len(bodies)
     assert written.count("static void MADE(wire_kernels_pulls)") == 1
+    once = (wire / "wire_kernels.c").read_text()
     for kernel in ("residual", "igm"):
-        text = re.search(rf"^static int MADE\(wire_k_{kernel}\).*?^\}}", written, flags=re.M | re.S)
-        assert text is not None
-        assert "MADE(wire_kernels_pulls)(w" in text[0]
+        own = re.findall(rf"^static (?:int|void) MADE\(wire_k_{kernel}(?:_part_\d+)?\).*?^\}}", once, flags=re.M | re.S)
+        assert any("MADE(wire_kernels_pulls)(w" in text for text in own)
+
+
+def test_only_jacobians_are_compiled_for_each_width(wire: Path) -> None:
+    """Other kernels compute single numbers, apart from what they call: once is enough for them."""
+    for_each_width = (wire / "wire_kernels_in_fours.h").read_text()
+    once = (wire / "wire_kernels.c").read_text()
+    assert re.findall(r"^static int MADE\((\w+)\)", for_each_width, flags=re.M) == ["wire_k_jacobian"]
+    assert "wire_k_residual" in re.findall(r"^static int MADE\((\w+)\)", once, flags=re.M)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 9])
+def test_calls_of_one_depth_are_made_together(count: int, tmp_path: Path) -> None:
+    """Whole fours, and lanes that are left over; one by one below three calls. Calls of calls come behind them."""
+    x = ca.SX.sym("x", 2)
+    callee = ca.Function("callee", [x], [ca.vertcat(x[0] * x[1], x[0] - 3 * x[1])], {"never_inline": True})
+    y = ca.SX.sym("y", count, 2)
+    first = [callee(y[k, :].T) for k in range(count)]
+    results = [callee(2 * made) for made in first]
+    function = ca.Function("many", [y], [ca.vertcat(*results)])
+    made = in_fours(function, function)
+    turns = count if count < 3 else -(-count // LANES)
+    name = "callee" if count < 3 else "callees"
+    assert re.findall(rf"MADE\(many_{name}\)\(.*, (\d+)\);", made.body) == [str(turns)] * 2
+    given = np.random.default_rng(count).normal(size=(count, 2))
+    assert_allclose(
+        computed_in_c(made, given.ravel(order="F"), 2 * count, tmp_path),
+        function(given).full()[:, 0],
+        rtol=1e-15,
+        atol=1e-15,
+    )
 
 
 ONE_OF_THREE = """
