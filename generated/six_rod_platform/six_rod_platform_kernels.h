@@ -191,12 +191,12 @@ int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_1_SZ_ARG 4
 #define six_rod_platform_k_residual_1_SZ_RES 1
 #define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 236
+#define six_rod_platform_k_residual_1_SZ_W 535
 int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 1931
+#define six_rod_platform_k_jacobian_1_SZ_W 2194
 #ifdef __cplusplus
 } /* extern "C" */
 #endif
