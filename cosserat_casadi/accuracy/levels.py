@@ -14,7 +14,7 @@ REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
 
 USUAL_MODES = 64
-"""Modes of the finest level of a scene whose signals do not ask for more."""
+"""Modes of the finest level of a scene whose signals do not ask for more, and that may not converge on it."""
 
 SIGNAL_FACTOR = 2
 """Factor on the modes that the signals of a scene ask for, up to which levels are tried."""
@@ -89,7 +89,7 @@ class Level:
         index: into REFERENCE_MODES.
         grid_factor: factor on the intervals.
         min_nodes: intervals below which a grid was too coarse for so bent a rod.
-        finest: index of the last level that is tried.
+        finest: index of the last level that is tried whether or not the rods converge; those above, where they do.
     """
 
     index: int
@@ -133,12 +133,24 @@ class Level:
         return replace(self, index=index)
 
     def with_extrapolated_modes(self, modes: int) -> Level | None:
-        """A level above on the way to a number of modes that may be too large; None only above the finest level."""
+        """A level above on the way to a number of modes that may be too large; None where none is worth a try.
+
+        Up to the finest level any number is. Above, only one that some level has: rods are sharply bent, but converge.
+        """
+        if self.index >= self.finest:
+            return self._beyond_finest(modes)
         tried = min(modes, REFERENCE_MODES[self.finest])
         above = self.with_modes(tried)
         if above is None:
             return None
         return replace(above, index=min(above.index, self.index + MOST_LEVELS))
+
+    def _beyond_finest(self, modes: int) -> Level | None:
+        """The next level, on the way to a number of modes; None where no level has so many."""
+        if modes > REFERENCE_MODES[-1] or self.index + 1 == len(REFERENCE_MODES):
+            return None
+        # One up at a time: these cost most, and rounding grows with their modes.
+        return replace(self, index=self.index + 1)
 
     def with_min_nodes(self, nodes: int) -> Level:
         """The same modes on at least so many intervals."""

@@ -76,6 +76,13 @@ def cable_distance(first: Solution, second: Solution) -> float:
     return float(changes.max(initial=0.0))
 
 
+def has_more_modes(first: Solution, second: Solution) -> bool:
+    """Whether a solution has more strain coordinates than another of the same scene."""
+    count = first.model.discrete.unknowns.count(BlockKind.STRAIN)
+    count_of_second = second.model.discrete.unknowns.count(BlockKind.STRAIN)
+    return count > count_of_second
+
+
 def largest_turn(solution: Solution) -> float:
     """Largest angle through which an element of a rod turns from end to end, summed along it, rad."""
     rods = solution.model.discrete.rods.values()

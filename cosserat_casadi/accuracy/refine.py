@@ -33,7 +33,7 @@ from cosserat_casadi.accuracy.assess import (
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
-from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, with_estimate
+from cosserat_casadi.accuracy.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
@@ -126,11 +126,13 @@ class _Reference:
         solution: on a uniform discretisation.
         level: of this discretisation.
         resolution: its errors.
+        fewer_modes: the finest solution with fewer modes on the way to it; None where it is the first.
     """
 
     solution: Solution
     level: Level
     resolution: Resolution
+    fewer_modes: Solution | None
 
 
 def _with_tolerance(solver: SceneSolver) -> Solution:
@@ -160,7 +162,7 @@ def _of_held_rod(solver: SceneSolver) -> _Reference | Solution:
     if isinstance(found, _Reference):
         if solver.tolerance >= DECIDING_TOLERANCE:
             return found
-        return _refined(solver, found.level, solver.tolerance, found.solution)
+        return _refined(solver, found.level, solver.tolerance, found)
     if found.outcome is Outcome.UNRESOLVED and solver.tolerance > DECIDING_TOLERANCE:
         # No level resolves it so well, but one may do for less.
         return _for_tolerance(solver, solver.tolerance)
@@ -168,21 +170,24 @@ def _of_held_rod(solver: SceneSolver) -> _Reference | Solution:
 
 
 def _refined(
-    solver: SceneSolver, first: Level, tolerance: float, on_first: Solution | None = None
+    solver: SceneSolver, first: Level, tolerance: float, on_first: _Reference | None = None
 ) -> _Reference | Solution:
     """A solution that can serve as a reference; without one the last failure, or the finest solution as UNRESOLVED.
+
+    The estimate of an UNRESOLVED one is its distance to the finest that has fewer modes.
 
     Args:
         solver: what is solved.
         first: the level to begin with.
         tolerance: wanted error.
-        on_first: the solution of that level, where it is known.
+        on_first: what is known of that level, as the reference for a larger tolerance.
     """
     level: Level | None = first
     coarser: Solution | None = None
+    fewer_modes = None if on_first is None else on_first.fewer_modes
     failures: list[Solution] = []
     while level is not None:
-        solution = on_first or _at_level(solver, level, coarser)
+        solution = _at_level(solver, level, coarser) if on_first is None else on_first.solution
         on_first = None
         verdict = assess(solution, tolerance, solver.wave_modes > 0)
         if isinstance(verdict, NoEquilibrium):
@@ -191,16 +196,21 @@ def _refined(
             if len(failures) > MOST_FAILURES:
                 return solution
         else:
+            if coarser is not None and has_more_modes(solution, coarser):
+                fewer_modes = coarser
             coarser = solution
         if isinstance(verdict, Enough):
             # Only now: with few modes a rod may seem unstable that is not.
             relaxed = solver.relax(solution)
             if relaxed is solution or not relaxed.stable:
-                return _Reference(solution, level, verdict.resolution)
+                return _Reference(solution, level, verdict.resolution, fewer_modes)
             coarser = relaxed
         level = _next_level(level, verdict)
     if coarser is None:
         return failures[-1]
+    if fewer_modes is not None:
+        # The level below is farther off than this one, by about as much as the two are apart.
+        coarser = with_estimate(coarser, fewer_modes, factor=1.0)
     return _unresolved(coarser)
 
 

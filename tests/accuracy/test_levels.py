@@ -66,7 +66,18 @@ def test_the_finest_level_is_tried_before_extrapolated_modes_are_given_up() -> N
     more = REFERENCE_MODES[finest] + 2
     assert below.with_modes(more) is None
     assert below.with_extrapolated_modes(more) == Level(finest)
-    assert Level(finest).with_extrapolated_modes(more) is None
+
+
+def test_modes_beyond_the_finest_level_are_tried_where_a_level_has_what_is_extrapolated() -> None:
+    finest = Level(1).finest
+    last = len(REFERENCE_MODES) - 1
+    most = REFERENCE_MODES[last]
+    assert last > finest + 1
+    # Step by step, however many are missing.
+    assert Level(finest).with_extrapolated_modes(most) == Level(finest + 1)
+    assert Level(finest + 1).with_extrapolated_modes(most) == Level(finest + 2)
+    assert Level(finest).with_extrapolated_modes(most + 1) is None
+    assert Level(last).with_extrapolated_modes(most) is None
 
 
 def test_what_is_known_of_the_grid_is_kept_with_more_modes() -> None:

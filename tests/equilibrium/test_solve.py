@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 import cosserat_casadi
 from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi.accuracy.metrics import pose_distance
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
@@ -311,6 +312,26 @@ def test_tolerance_that_cannot_be_met_is_unresolved(monkeypatch: pytest.MonkeyPa
     solution = solve_scene(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
     assert not solution.converged
     assert solution.outcome is Outcome.UNRESOLVED
+
+
+def test_what_does_not_meet_a_tolerance_says_how_far_the_level_below_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    load = push(force=[8.0, 2.0, 0.0])
+    monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4, 6))
+    solution = solve_scene(scene(load, accuracy={"tolerance": 1e-10}))
+    assert solution.outcome is Outcome.UNRESOLVED
+    four, six, many = (solve(build(scene(load), discretise(scene(load), m, 44, "magnus8"))) for m in (4, 6, 20))
+    assert solution.error_estimate is not None
+    assert_allclose(solution.error_estimate, pose_distance(four, six), rtol=1e-3, atol=0)
+    assert 1e-10 < pose_distance(solution, many) <= solution.error_estimate
+    assert solution.shape_error_estimate is not None
+    assert solution.shape_error_estimate >= solution.error_estimate
+
+
+def test_nothing_is_known_of_the_error_on_a_single_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4))
+    solution = solve_scene(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
+    assert solution.outcome is Outcome.UNRESOLVED
+    assert solution.error_estimate is None
 
 
 def test_fixed_discretisation_is_used_and_its_error_estimated() -> None:

@@ -29,20 +29,24 @@ def solved(seed: int, accuracy: Accuracy) -> Solution:
 
 
 def says_unresolved(solution: Solution) -> bool:
-    """Whether a solution is an equilibrium on modes and nodes of a user, and says that these do not resolve it."""
-    return solution.outcome is Outcome.UNRESOLVED and solution.shape_error_estimate is not None
+    """Whether a solution is an equilibrium, and says that its modes and nodes do not resolve it, and what it is off."""
+    return solution.outcome is Outcome.UNRESOLVED and solution.error_estimate is not None
+
+
+def is_equilibrium(solution: Solution) -> bool:
+    """Whether a solution claims to be an equilibrium, resolved or not."""
+    return solution.converged or says_unresolved(solution)
 
 
 def alike(first: Solution, second: Solution) -> bool:
     """Whether two solutions of a scene end alike: both or none at an equilibrium, and at the same one.
 
-    What says that its modes do not resolve it is held to its shape, within what it says of its error.
+    What says that its modes do not resolve it is held to its shape, within what it says of the error of that.
     """
-    if not says_unresolved(first) and not says_unresolved(second):
-        if first.outcome is not second.outcome or first.stable is not second.stable:
-            return False
-        if not first.converged:
-            return True
+    if not is_equilibrium(first) or not is_equilibrium(second):
+        return first.outcome is second.outcome
+    if first.converged and second.converged and first.stable is not second.stable:
+        return False
     estimates = (first.shape_error_estimate or 0.0) + (second.shape_error_estimate or 0.0)
     return pose_distance(first, second, SECTIONS) <= ALIKE + estimates
 
@@ -51,7 +55,7 @@ class Verdict(Enum):
     """How a scene ends at several accuracies; the value is the sentence shown."""
 
     ALIKE = "the same at all of them"
-    SAYS_UNRESOLVED = "the same, and not resolved by modes that a user fixes, which says so"
+    SAYS_UNRESOLVED = "the same equilibrium at all, and not resolved at some of them, which says so"
     NO_EQUILIBRIUM = "no equilibrium found at any, which says so"
     DIFFERENT = "not the same equilibrium"
 
@@ -62,7 +66,7 @@ def verdict(seed: int, accuracies: Sequence[Accuracy]) -> Verdict:
     finest = solutions[-1]
     if not all(alike(solution, finest) for solution in solutions):
         return Verdict.DIFFERENT
-    if not finest.converged:
+    if not is_equilibrium(finest):
         return Verdict.NO_EQUILIBRIUM
     if any(says_unresolved(solution) for solution in solutions):
         return Verdict.SAYS_UNRESOLVED

@@ -7,15 +7,27 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from cosserat_casadi import Outcome
+from cosserat_casadi.accuracy.metrics import pose_distance
+from cosserat_casadi.accuracy.preview import watched
+from cosserat_casadi.bench.reference import distance, states
+from cosserat_casadi.bench.shooting import shoot
 from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
 
 BUCKLED = 20
 """Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
 
-LOST = (28, 36, 239, 240)
+LOST = (28, 36, 239, 240, 304, 403)
 """Seeds of rods that are drawn tight, pressed together and sharply bent: `load_stalled`, or `unresolved` at 1e-9."""
+
+SHARPEST = 269
+"""Seed of a rod that more than 64 modes resolve to 1e-9."""
+
+PLAIN = 2
+"""Seed of a rod that 19 modes resolve to 1e-9, and 15 to 1e-6."""
 
 SHARPLY_BENT = 68
 """Seed of a rod that nine modes do not resolve."""
@@ -29,6 +41,38 @@ def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
     assert alike(coarse, fine)
     # The check can fail: the mirror image is another equilibrium.
     assert not alike(replace(coarse, x=-coarse.x), fine)
+
+
+def test_a_rod_that_no_level_resolves_says_so_and_is_held_to_its_shape(monkeypatch: pytest.MonkeyPatch) -> None:
+    truth = solved(PLAIN, {"tolerance": 1e-9})
+    # The equilibrium is decided on 15 modes, which then do not do: what is known of fewer is kept.
+    monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (3, 5, 7, 9, 12, 15))
+    coarse = solved(PLAIN, {"tolerance": 1e-3})
+    fine = solved(PLAIN, {"tolerance": 1e-9})
+    assert coarse.converged
+    assert says_unresolved(fine)
+    assert alike(coarse, fine)
+    assert not alike(coarse, replace(fine, x=-fine.x))
+    # A solve that has failed is not alike to it, nor is one that says nothing of its error.
+    assert not alike(replace(coarse, outcome=Outcome.LOAD_STALLED), fine)
+    assert not alike(coarse, replace(fine, error_estimate=None))
+    assert fine.error_estimate is not None
+    assert pose_distance(fine, truth) <= fine.error_estimate <= 1e-3
+    assert verdict(PLAIN, [{"tolerance": 1e-3}, {"tolerance": 1e-9}]) is Verdict.SAYS_UNRESOLVED
+
+
+@pytest.mark.slow
+def test_a_sharply_bent_rod_vs_shooting() -> None:
+    solution = solved(SHARPEST, {"tolerance": 1e-9})
+    assert solution.converged
+    (rod,) = solution.model.discrete.rods.values()
+    clamp = solution.base_wrench()
+    start = np.concatenate([clamp.force, clamp.moment])
+    sections = watched(solution.model, "rod")
+    truth = shoot(solution.model.scene, rod.properties, {}, sections, start)
+    errors = distance({"rod": truth}, states(solution))
+    assert solution.error_estimate is not None
+    assert errors.pose <= solution.error_estimate <= 1e-9
 
 
 @pytest.mark.slow
