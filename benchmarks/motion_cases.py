@@ -303,7 +303,7 @@ def kicked_rows() -> Iterator[str]:
 
 def main(
     cost: Annotated[bool, typer.Option("--cost", help="reference cases at COMMON alone; nothing is written")] = False,
-    modes: Annotated[bool, typer.Option("--modes", help="the kicked rod on more and more modes; as well")] = False,
+    modes: Annotated[bool, typer.Option("--modes", help="the kicked rod on more and more modes alone")] = False,
 ) -> None:
     """Run all cases, write the tables."""
     if modes:

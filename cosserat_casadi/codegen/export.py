@@ -179,12 +179,12 @@ def _side_by_side(model: Model, names: Names) -> InLanes:
     """What solves load cases side by side.
 
     Raises:
-        ExportError: the equations have no form for that.
+        ExportError: the equations have no form for that, those of an assembly or of one rod with too many modes.
     """
     found = in_lanes(model, names)
     if found is None:
         problem = "the equations of this scene have no form for several load cases at once"
-        remedy = "leave it out: NAME_solve_batch solves them one after the other"
+        remedy = "leave it out: NAME_solve_batch solves them one after the other; one rod with fewer modes may have one"
         raise ExportError(Problem("--batches", problem, remedy))
     return found
 

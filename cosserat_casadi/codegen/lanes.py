@@ -56,7 +56,7 @@ OWN = re.compile(r"casadi_(?:f\d+|sq|fmax|fabs|copy|clear|fill|dot|densify|mtime
 ROWS_TOGETHER = 16
 """Rows under way at a time: enough of them wait for the same."""
 
-FILES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
+FILES = ("lanes.h", "lanes_arithmetic.h", "lanes_linear.c", "lanes.c")
 """Files of the folder ``c`` that a library with lanes has, as they are."""
 
 

@@ -86,7 +86,7 @@ ROLES = {
     "lanes.c": "the solver of many load cases side by side; included",
     "lanes.h": "what it calls",
     "lanes_arithmetic.h": "vectors of the processor; included",
-    "linear_lanes.c": "linear algebra of four load cases at once; included",
+    "lanes_linear.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
@@ -164,6 +164,7 @@ def _batch_words(sizes: dict[str, Any], rows: InLanes | None) -> dict[str, Any]:
             "batch_types": "",
             "batch_workspace": f"{sizes['name']}_workspace",
             "batch_config": "",
+            "batch_stack": "",
         }
     words = {**sizes, **rows.words}
     return {
@@ -171,6 +172,7 @@ def _batch_words(sizes: dict[str, Any], rows: InLanes | None) -> dict[str, Any]:
         "batch_types": render("batch_workspace.h.in", words),
         "batch_workspace": f"{sizes['name']}_batch_workspace",
         "batch_config": render("batch_config.h.in", words),
+        "batch_stack": f", {sizes['name']}_solve_batch {rows.words['lanes_stack_kb']} kB",
     }
 
 

@@ -389,7 +389,7 @@ def _judged(search: _Search, level: Level, error: float) -> Motion:
 def _interrupted(search: _Search) -> Motion:
     """The finest motion that was computed to its end when the search was stopped."""
     level = search.last
-    error = search.space_error + search.time_error
+    error = search.space_error + max(search.time_error, TIME_SHARE * search.tolerance)
     message = (
         f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: its estimated error is "
         f"{error:.2g} of the length."

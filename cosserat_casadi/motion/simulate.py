@@ -26,6 +26,7 @@ from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.paths import path_distance, paths, watched_times
 from cosserat_casadi.motion.start import Start, equilibrium_start, given_start, unloaded_start
+from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.trajectory import (
     Energies,
     Motion,
@@ -51,7 +52,7 @@ LEFT_BY_TIGHTER = 0.5
 """Error of the more exact of the two over their distance: a tenth of the tolerance leaves a third of the error."""
 
 SLOPE = 0.8
-"""Power of a step's tolerance that the error of the paths goes with, at least."""
+"""Power of a step's tolerance that the error of the paths is taken to go with."""
 
 CLEAR = 0.3
 """Share of the error allowed to steps that they may use where two sets of modes of a free rod are told apart.
@@ -83,15 +84,6 @@ MOST_HALVINGS = 10
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
-
-OUT_OF_BALANCE = 1e-6
-"""Residual of statics, without unit, at which a start is no equilibrium."""
-
-AT_ONCE = (
-    "The motion starts out of balance: loads act at once from t = 0 on. Waves of all lengths run along the rods, which "
-    "modes resolve slowly."
-)
-"""What is said of such a start."""
 
 NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
@@ -203,7 +195,7 @@ class Simulator:
             coarse: the motion to begin with.
             first: tolerance of a step, over the length, that it was computed with.
             tolerance: of the paths, over the length.
-            enough: error over the tolerance at which no more exact steps are tried.
+            enough: error over the wanted one at which no more exact steps are tried.
         """
         wanted = CLEAR * tolerance if flies_free(self.model) else tolerance
         coarse_paths = self.paths(coarse)
@@ -218,7 +210,7 @@ class Simulator:
             error = LEFT_BY_TIGHTER * distance
             timed = TimedHistory(fine, error, tighter, _sufficient(timed.tolerance, distance, wanted))
             coarse_paths = fine_paths
-            if error <= enough * tolerance:
+            if error <= max(tolerance, enough * wanted):
                 break
         return timed
 
@@ -402,7 +394,7 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         statistics=history.statistics,
         start=simulator.start.sentence,
         interpolant=history.at,
-        warnings=tuple(warnings(simulator)),
+        warnings=tuple(warnings(model, simulator.start, simulator.moving, simulator.simulation.duration)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=history.events,
     )
@@ -411,27 +403,6 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
 def _stacked(rows: list[FloatArray], size: int) -> FloatArray:
     """Vectors one below the other, shape (T, size); T is zero where a motion ends before the first time asked for."""
     return np.array(rows, dtype=float).reshape(len(rows), size)
-
-
-def warnings(simulator: Simulator) -> list[str]:
-    """Sentences on what limits the accuracy of a motion: loads that come suddenly."""
-    jumps = simulator.moving.jumps(simulator.simulation.duration)
-    at_start = [AT_ONCE] if _loaded_at_once(simulator) else []
-    return at_start + [
-        f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, which modes resolve slowly."
-        for jump in jumps
-    ]
-
-
-def _loaded_at_once(simulator: Simulator) -> bool:
-    """Whether the start is out of balance: loads that were not there act from t = 0 on."""
-    model = simulator.model
-    if simulator.start.phases is not None and simulator.start.phases.touches:
-        # Obstacles hold the rods.
-        return False
-    inputs = simulator.moving.at(0.0).value
-    residual = model.residual(simulator.start.x, inputs).full()[:, 0]
-    return bool(np.abs(residual).max(initial=0.0) > OUT_OF_BALANCE)
 
 
 def not_started(model: Model, start: Start) -> Motion:

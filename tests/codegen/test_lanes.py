@@ -270,3 +270,9 @@ def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
 )
 def test_what_lanes_cannot_do_together_is_known(line: str, alike: bool) -> None:
     assert lanes._alike(f"static int casadi_f1(const casadi_real** arg) {{\n  {line}\n}}") is alike
+
+
+def test_batches_of_a_library_may_have_any_name(tmp_path: Path) -> None:
+    """Its own files are named after it, and no file that all libraries have is."""
+    library = exported(scene(push(), strain="planar", accuracy=SMALL), tmp_path / "linear")
+    assert_batch_is_single_solves(library, pushes(5, 1.0))

@@ -282,7 +282,7 @@ def test_a_start_on_too_few_modes_says_so() -> None:
     assert on_few.converged
     refused = given_start(build(heavy, discretise(heavy, 4), moving=True), on_few)
     assert not refused.found
-    assert "on 4 modes of each strain" in refused.sentence
+    assert "on at most 4 modes of a strain" in refused.sentence
     assert "Give another number of accuracy.modes" in refused.sentence
     begun = given_start(build(heavy, discretise(heavy, 8), moving=True), on_few)
     assert begun.found, begun.sentence
