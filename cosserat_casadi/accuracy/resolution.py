@@ -3,6 +3,10 @@
 Its modes: drop the last two and the last four of every component and see the tips move. Two at a time, since
 symmetry may empty every other one. Geometric extrapolation of the two changes is the error that the modes it has
 leave, a careful one because spectral errors fall faster than that. Its grid: one look at a finer one.
+
+Two kinds of scene are not so regular, and a look is taken at modes that they lack too. Waves along a rod do not show in
+its last coefficients. The error of a rod with supports falls in uneven steps: where the last two modes happen to do
+little, both the change that they make and its ratio to the one before are small, and their product says far too little.
 """
 
 from __future__ import annotations
@@ -31,6 +35,9 @@ SLOWEST = 0.7
 
 WAVES_FACTOR = 2
 """Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""
+
+HELD_MODES = 4
+"""Modes and intervals added for a look at rods with supports, more than one uneven step of its error."""
 
 HIDDEN_SAFETY = 1.5
 """Factor on what that look finds."""
@@ -69,17 +76,16 @@ class Resolution:
     @cached_property
     def modes_error(self) -> float:
         """Error that the number of modes leaves."""
-        if self.waves:
+        if self.waves or self._has_supports:
             return max(self.extrapolated_error, self.hidden_error)
         return self.extrapolated_error
 
     @cached_property
     def hidden_error(self) -> float:
-        """Error found by a look at twice the modes: products of waves have twice their frequency."""
+        """Error found by a look at modes that the solution lacks."""
         finer = {}
         for name, discretisation in self._discretisation.items():
-            modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
-            finer[name] = replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
+            finer[name] = self._looked_at(discretisation)
         return HIDDEN_SAFETY * change_size(self.preview.finer_shift(finer))
 
     @cached_property
@@ -105,7 +111,7 @@ class Resolution:
         """Further modes per component after which the error of the modes should be below a bound."""
         error = self.extrapolated_error
         if error <= bound:
-            # Only now: twice the modes cost more to look at.
+            # Only now: modes that the solution lacks cost more to look at.
             error = self.modes_error
         if not np.isfinite(error):
             return UNKNOWN
@@ -118,6 +124,19 @@ class Resolution:
     @property
     def _discretisation(self) -> dict[str, Discretisation]:
         return self.preview.model.discretisation
+
+    @property
+    def _has_supports(self) -> bool:
+        return bool(self.preview.model.scene.supports)
+
+    def _looked_at(self, discretisation: Discretisation) -> Discretisation:
+        """The finer discretisation of a rod at which a look is taken."""
+        if self.waves:
+            # Products of waves have twice their frequency.
+            modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
+            return replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
+        modes = tuple(m + HELD_MODES for m in discretisation.modes)
+        return replace(discretisation, modes=modes, nodes=discretisation.nodes + HELD_MODES)
 
     def _shift_without(self, count: int) -> float:
         """Largest change of the watched poses with so many modes less of every component."""

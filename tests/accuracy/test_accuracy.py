@@ -274,7 +274,8 @@ class _Blind:
 
     discretisation = {"rod": Discretisation((5,), 12)}
     is_assembly = False
-    model = discrete = property(lambda self: self)
+    supports = ()
+    model = discrete = scene = property(lambda self: self)
 
     def mode_shift(self, modes: object) -> np.ndarray:
         return np.full(12, np.nan)

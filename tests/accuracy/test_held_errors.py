@@ -1,0 +1,91 @@
+"""The error of held rods, which falls in uneven steps: it is never taken for less than it is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi.accuracy.levels import nodes_for_turn
+from cosserat_casadi.accuracy.metrics import largest_turn, pose_distance, prolong
+from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.resolution import HELD_MODES, HIDDEN_SAFETY, Resolution
+from cosserat_casadi.accuracy.scene_solver import corrected_from
+from cosserat_casadi.numerics.broyden import SINGULAR
+from tests.families import mostly_slow
+from tests.reference.held_scenes import held_scene
+from tests.scenes import push, scene
+
+UNEVEN = [(2, 12), (4, 19)]
+"""Seeds, and modes of which the last two do little while as many more do much."""
+
+TRUE_MODES = 64
+"""Modes whose error is far below all tolerances here."""
+
+
+def drawn(seed: int, tolerance: float) -> Scene:
+    return scene_from_dict({**held_scene(seed), "accuracy": {"tolerance": tolerance}})
+
+
+def model_with(modes: int, solution: Solution) -> Model:
+    """A model of the scene of a solution with so many modes, on a grid that resolves them."""
+    nodes = nodes_for_turn(modes, largest_turn(solution))
+    wanted = solution.model.scene
+    return build(wanted, discretise(wanted, modes, nodes, "magnus8"))
+
+
+def solved_near(solution: Solution, model: Model) -> Solution:
+    """The same equilibrium on another model."""
+    corrected = corrected_from(model, prolong(solution, model), solution.inputs)
+    assert corrected is not None
+    assert corrected.converged
+    return corrected
+
+
+def turned_towards(solution: Solution, truth: Solution) -> Solution:
+    """The true equilibrium nearest to a solution: a rod that buckles on its axis may be turned about it anyhow."""
+    _, singular, right = np.linalg.svd(Preview(truth).jacobian)
+    if singular[-1] > SINGULAR * singular[0]:
+        return truth
+    neutral = right[-1]
+    away = prolong(solution, truth.model) - truth.x
+    return replace(truth, x=truth.x + (neutral @ away) * neutral)
+
+
+@pytest.mark.parametrize(("seed", "modes"), UNEVEN)
+def test_an_uneven_step_is_seen(seed: int, modes: int) -> None:
+    near = solve_scene(drawn(seed, 1e-6))
+    truth = solved_near(near, model_with(TRUE_MODES, near))
+    solution = solved_near(truth, model_with(modes, near))
+    more = solved_near(truth, model_with(modes + HELD_MODES, near))
+    true = pose_distance(solution, truth)
+    resolution = Resolution(Preview(solution))
+    assert resolution.grid_error < 0.01 * true
+    # The series of the modes that it has promises what those that follow do not keep.
+    assert resolution.extrapolated_error < 0.2 * true
+    assert_allclose(resolution.hidden_error, HIDDEN_SAFETY * pose_distance(solution, more), rtol=0.05, atol=0)
+    assert true < resolution.modes_error < 2 * true
+    # So many modes do not do for what they are off by, and the next level is asked for.
+    assert resolution.missing_modes(true) > 0
+
+
+def test_a_free_rod_does_not_pay_for_a_look() -> None:
+    wanted = scene(push(force=[4.0, 2.0, -1.0]))
+    resolution = Resolution(Preview(solve(build(wanted, discretise(wanted, 7, 30, "magnus8")))))
+    assert_allclose(resolution.modes_error, resolution.extrapolated_error, rtol=0, atol=0)
+    assert "hidden_error" not in vars(resolution)
+
+
+@pytest.mark.parametrize("seed", mostly_slow(range(21), quick=[4]))
+def test_tolerance_is_met_by_held_rods(seed: int) -> None:
+    tolerances = (4e-8, 1e-7, 1e-6, 1e-4)
+    solutions = [solve_scene(drawn(seed, tolerance)) for tolerance in tolerances]
+    true_model = model_with(TRUE_MODES, solutions[0])
+    for solution, tolerance in zip(solutions, tolerances, strict=True):
+        assert solution.converged
+        assert solution.error_estimate is not None
+        truth = turned_towards(solution, solved_near(solution, true_model))
+        assert pose_distance(solution, truth) <= min(tolerance, 1.01 * solution.error_estimate)
