@@ -93,6 +93,8 @@ def test_an_interrupt_that_is_lost_stops_the_command(
         return solve_scene(*given, **more)
 
     lost: list[bool] = []
+    # What this process has received is no signal to the commands of other tests.
+    monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
     monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
     monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", lose)
     words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
