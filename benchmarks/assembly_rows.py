@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from doc_tables import put, table
+from row_cost import microseconds
 
-from benchmarks.markdown import put, table
-from benchmarks.row_cost import microseconds
 from cosserat_casadi import Model, build, read_scene
 from cosserat_casadi.codegen import lanes, rows
 from cosserat_casadi.codegen.rows import RowLibrary, row_library

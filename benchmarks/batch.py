@@ -13,9 +13,9 @@ from typing import Annotated
 
 import numpy as np
 import typer
+from doc_tables import put, table
+from row_cost import drawn_inputs, robot, wire
 
-from benchmarks.markdown import put, table
-from benchmarks.row_cost import drawn_inputs, robot, wire
 from cosserat_casadi import Model, export
 from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.compiled import load
@@ -55,7 +55,7 @@ def main(
 ) -> None:
     """Print what a case takes."""
     flags = compiler.FLAGS
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name, model_of in SCENES:
         model = model_of()
         apart = microseconds(model, batches=False)

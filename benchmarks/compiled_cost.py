@@ -14,7 +14,7 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from random_rods import ROD, scene_at
 from rich.progress import Progress
 from rows import append, read
@@ -256,7 +256,7 @@ def held_out(terms: np.ndarray, measured: np.ndarray) -> np.ndarray:
 
 def report(rows: list[Row]) -> list[tuple[str, ...]]:
     """Print the fitted factors; a line of the table for each law."""
-    lines = []
+    lines: list[tuple[str, ...]] = []
     for law in LAWS:
         chosen = [row for row in rows if law.holds(row)]
         measured = np.array([law.measured(row) for row in chosen])

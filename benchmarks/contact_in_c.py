@@ -17,7 +17,7 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from markdown import put, table
+from doc_tables import put, table
 
 from cosserat_casadi import Model, build, discretise, export, read_scene, solve
 from cosserat_casadi.codegen.compiler import find_compiler

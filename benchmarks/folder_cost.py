@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from rows import append, read
 
 from cosserat_casadi import CosseratError, Solution, export, read_scene, solve_scene

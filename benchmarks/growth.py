@@ -6,6 +6,7 @@ docs/accuracy.md.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -77,7 +78,7 @@ def ladder() -> str:
     return "\n".join(lines)
 
 
-def exponent(sizes: list[float], costs: list[float]) -> float:
+def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
     """Slope of the cost over the size, both in logarithms."""
     return float(np.polyfit(np.log(sizes), np.log(costs), 1)[0])
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -49,6 +50,12 @@ def model_of(transport: str) -> Model:
     return build(scene, discretise(scene, 4, 12, transport))
 
 
+def derived(transport: str) -> tuple[ca.Function, ca.Function]:
+    """Residual and Jacobian of a model that is built anew."""
+    model = model_of(transport)
+    return model.residual, model.jacobian
+
+
 def automatic(model: Model) -> ca.Function:
     """Residual and Jacobian by automatic differentiation of the expanded residual."""
     x, p = ca.SX.sym("x", model.size), ca.SX.sym("inputs", model.inputs.size)
@@ -62,7 +69,7 @@ def main() -> None:
     for heading in ("build, s", "IGM, ops", "residual + Jacobian, ops", "by AD, ops", "residual, µs", "Jacobian, µs"):
         table.add_column(heading, justify="right")
     for transport in ("magnus4", "magnus6", "magnus8"):
-        build_time = best(lambda transport=transport: (model_of(transport).residual, model_of(transport).jacobian), 3)
+        build_time = best(partial(derived, transport), 3)
         model = model_of(transport)
         x, p = 0.1 * np.ones(model.size), model.pack()
         residual, jacobian = model.residual, model.jacobian
@@ -72,8 +79,8 @@ def main() -> None:
             f"{model.operations(model.igm['rod']):,}",
             f"{model.operations(jacobian):,}",
             f"{model.operations(automatic(model)):,}",
-            f"{1e6 * best(lambda f=residual, x=x, p=p: f(x, p)):.0f}",
-            f"{1e6 * best(lambda f=jacobian, x=x, p=p: f(x, p)):.0f}",
+            f"{1e6 * best(partial(residual, x, p)):.0f}",
+            f"{1e6 * best(partial(jacobian, x, p)):.0f}",
         )
     literal = model_of("permuted")
     x, p = 0.1 * np.ones(literal.size), literal.pack()

@@ -28,7 +28,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 MATERIAL = {"youngs_modulus": 60e9, "poisson_ratio": 0.33, "density": 6450.0}
 
 
-def rod(strain: str, modes: int, nodes: int) -> Model:
+def rod(strain: str, modes: int | list[int], nodes: int) -> Model:
     """One rod with a tip force."""
     record = {"name": "rod", "length": 0.2, "strain": strain, "material": MATERIAL}
     record["section"] = {"shape": "circle", "radius": 0.5e-3}

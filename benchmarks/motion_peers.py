@@ -18,7 +18,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from motion_rivals import LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
 from rich.progress import Progress
 
@@ -70,7 +70,7 @@ def again(motion: Motion, tolerance: float) -> Run:
 
     def run() -> Paths:
         history = simulator.controlled(tolerance)
-        x, _, _, inputs = history.states(TIMES)
+        x, inputs = history.rough_positions(TIMES)
         return np.asarray(tip_poses(motion.model, "rod", x, inputs).position)
 
     return run

@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from rich.progress import Progress
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict

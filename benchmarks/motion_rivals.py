@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.maths.typing import FloatArray
+
 LENGTH, RADIUS = 0.5, 0.02
 """m."""
 
@@ -37,7 +39,7 @@ INTERVAL = 0.1
 DURATION = 1.0
 """s."""
 
-TIMES = INTERVAL * np.arange(round(DURATION / INTERVAL) + 1)
+TIMES: FloatArray = np.linspace(0.0, DURATION, round(DURATION / INTERVAL) + 1)
 
 REPEATS = 2
 """Runs of which the shortest counts, after a first one."""

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from markdown import put, table
+from doc_tables import put, table
 
 from cosserat_casadi import Compiled, Model, build, discretise, export, load, scene_from_dict
 from cosserat_casadi.codegen.plain import pointer
@@ -151,7 +151,7 @@ def times() -> str:
     for name, rod, actuators, parameters in CASES:
         if name not in TIMED:
             continue
-        model = model_of(rod, actuators, parameters)
+        model = model_of(rod, LOADS, actuators, parameters)
         with tempfile.TemporaryDirectory() as folder:
             bare = load(export(model.at(), Path(folder) / "bare"))
             named = load(export(model, Path(folder) / "named"))

@@ -82,10 +82,11 @@ def shortest(work: Callable[[], Any], repeats: int) -> tuple[Any, float]:
 
 def peers(case: Case) -> Iterator[Peer]:
     """One row for each package and setting."""
-    for package, module, settings, solver, repeats in (
+    solvers: tuple[tuple[str, str, tuple[float, ...], Callable[[Case, Any], Vector], int], ...] = (
         ("PyElastica", "elastica", (10, 20, 40), relaxed, 2),
         ("SciPy solve_bvp", "scipy", (1e-3, 1e-6, 1e-9), collocated, 5),
-    ):
+    )
+    for package, module, settings, solver, repeats in solvers:
         if importlib.util.find_spec(module) is None:
             yield Peer(package, "not installed")
             continue

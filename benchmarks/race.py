@@ -14,12 +14,13 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from peers import LIMITS, Peer, peers, shortest, stout
 from race_figure import race_figure
 from rich.progress import Progress
@@ -132,7 +133,7 @@ class Raced:
 def raced(name: str, case: Case, error: float) -> Raced:
     model = model_of(case, error)
     ours = measured(model, case)
-    shooting = {}
+    shooting: dict[str, tuple[float, float]] = {}
     for program in PROGRAMS:
         found = race(case, steps_for(case, error, program), repeat=2000, program=program)
         shooting[program] = (case.tip_error(found["tip"]), float(found["cold_us"]))
@@ -165,11 +166,11 @@ def in_python(case: Case) -> Iterator[Peer]:
     """Our own solver in Python: everything from the scene on, and once more with what is built."""
     for tolerance in ERRORS:
         scene = scene_from_dict(case.scene(tolerance))
-        solution, took = shortest(lambda scene=scene: solve_scene(scene), 1)
+        solution, took = shortest(partial(solve_scene, scene), 1)
         x, y, z = solution.tip().position[0]
         error = case.tip_error((x, y, z))
         yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, choosing and building included", error, took)
-        _, again = shortest(lambda model=solution.model: solve(model), 20)
+        _, again = shortest(partial(solve, solution.model), 20)
         yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, built", error, again)
 
 

@@ -14,8 +14,8 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
+from doc_tables import put, table
 
-from benchmarks.markdown import put, table
 from cosserat_casadi import Model, build, read_scene, scene_from_dict
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.maths.typing import FloatArray

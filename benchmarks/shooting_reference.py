@@ -74,7 +74,7 @@ class Case:
         if self.kind == "reissner":
             stiffness |= {"shear_x": self.shear, "shear_y": self.shear, "extension": self.extension}
         rod = {"name": "rod", "length": self.length, "strain": self.kind, "stiffness": stiffness}
-        tip = {"name": "tip", "kind": "tip_wrench", "rod": "rod", "frame": "world"}
+        tip: dict[str, Any] = {"name": "tip", "kind": "tip_wrench", "rod": "rod", "frame": "world"}
         tip |= {"force": list(self.force), "moment": list(self.moment)}
         return {"schema": 1, "accuracy": {"tolerance": tolerance}, "rods": [rod], "loads": [tip]}
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from markdown import put, table
+from doc_tables import put, table
 
 from cosserat_casadi import Solution, read_scene, solve_scene
 

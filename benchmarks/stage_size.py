@@ -6,7 +6,8 @@ import os
 import tempfile
 from pathlib import Path
 
-from benchmarks.markdown import table
+from doc_tables import table
+
 from cosserat_casadi import Model, read_scene, solve_scene
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources

@@ -17,8 +17,8 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
+from doc_tables import put, table
 
-from benchmarks.markdown import put, table
 from cosserat_casadi import Identification, Solution, identify_scene, modes_of_scene, read_scene, scene_from_dict, solve
 from cosserat_casadi.identification import Row
 from cosserat_casadi.maths.typing import FloatArray

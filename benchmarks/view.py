@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from doc_tables import put, table
 
-from benchmarks.markdown import put, table
 from cosserat_casadi import read_scene, solve_scene
 from cosserat_casadi.view.server import RobotServer
 from cosserat_casadi.view.session import opened

@@ -15,7 +15,7 @@ from cosserat_casadi.errors import ExportError, Problem
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
-FLAGS = ("-O2", "-std=c99", "-fPIC")
+FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
 Progress = Callable[[str, int, int], None]
 """Takes what is being done, how much of it is done, and how much there is."""
