@@ -62,8 +62,8 @@ def resting(
     """
     facings = contacts.facings
     allowed = variations(contacts.model)
-    lines = {(contact.rod, contact.obstacle) for contact in guess if contact.kind == "line"}
-    laid = frozenset(k for k, facing in enumerate(facings) if (facing.rod, facing.obstacle.name) in lines)
+    lines = {(contact.owner, contact.obstacle) for contact in guess if contact.kind == "line"}
+    laid = frozenset(k for k, facing in enumerate(facings) if (facing.owner, facing.obstacle.name) in lines)
     pressing: Touches = ()
     forces = np.zeros(0)
     before = np.inf
