@@ -91,7 +91,7 @@ def _most(modes: int | tuple[int, ...]) -> int:
 def _same_contacts(first: Solution, second: Solution) -> bool:
     """Whether the same rods touch the same obstacles in the same way."""
     names = [
-        [(touch.rod, touch.obstacle, touch.kind, touch.of_body) for touch in solution.contacts]
+        [(touch.owner, touch.obstacle, touch.kind, touch.of_body) for touch in solution.contacts]
         for solution in (first, second)
     ]
     return names[0] == names[1]
@@ -104,7 +104,7 @@ def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     """
     judged = with_estimate(coarse, fine)
     discrete = coarse.model.discrete
-    units = [discrete.contact_unit(contact.rod, of_body=contact.of_body) for contact in coarse.contacts]
+    units = [discrete.contact_unit(contact.owner, of_body=contact.of_body) for contact in coarse.contacts]
     largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
     distances = [0.0]
     for first, second in zip(coarse.contacts, fine.contacts, strict=True):

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.codegen.blocks import Blocks
 from cosserat_casadi.codegen.columns import (
@@ -26,7 +25,7 @@ from cosserat_casadi.codegen.fours import columns_in_fours
 from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
-from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, shared
+from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, same_but_for_rounding, shared
 from cosserat_casadi.model.build import Model
 
 COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2
@@ -96,11 +95,11 @@ def _piece(jacobian: ColumnedJacobian, entries: ca.SX, own: list[int]) -> _Piece
     if len(rods) > 1:
         return None
     if not rods:
-        return _Piece(Stream(ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3]))), None, own)
+        return _Piece(Stream.settled(ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3]))), None, own)
     part = jacobian.part(entries, rods[0])
     both = ca.vertcat(part.entries, part.column)
     words = names_of_part([*ARGUMENTS[:3], "columns", "turns"])
-    return _Piece(Stream(ca.Function("part", part.symbols, [both], *words)), part, own)
+    return _Piece(Stream.settled(ca.Function("part", part.symbols, [both], *words)), part, own)
 
 
 def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Parted, list[InFours]]:
@@ -115,12 +114,12 @@ def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Part
             kernels.append(kernel)
         else:
             turns = [column.turns for column in columns]
-            alike = all(np.array_equal(own, turns[0]) for own in turns)
-            form = _form(kernel, group[0].stream, columns[0], turns_are_constant=alike)
+            same = all(same_but_for_rounding(own, turns[0]) for own in turns)
+            form = _form(kernel, group[0].stream, columns[0], turns_are_constant=same)
             kernels.append(_by_columns(form, f"{name}_{number}"))
             in_fours.append(columns_in_fours(form, kernels[-1]))
-            if not alike:
-                # Rods of different length, be it by rounding, turn by different constants.
+            if not same:
+                # Rods of different length turn by different constants.
                 constants = [[*values, *in_groups(own).tolist()] for values, own in zip(constants, turns, strict=True)]
         for piece, values in zip(group, constants, strict=True):
             parts.append(Part(number, piece.stream.reads[:COLUMNS], values, piece.entries))

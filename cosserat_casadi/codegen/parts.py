@@ -104,7 +104,7 @@ def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> 
     named = names_of_part(ARGUMENTS[:3])
     groups: dict[Key, list[tuple[Stream, list[int]]]] = {}
     for own in places:
-        stream = Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *named))
+        stream = Stream.settled(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *named))
         groups.setdefault(stream.key, []).append((stream, own))
     kernels = list[ca.Function]()
     parts = list[Part]()
@@ -150,7 +150,7 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
         name: what the functions that they call are called, before their numbers.
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
-    streams = [Stream(stacked(function)) for function in functions]
+    streams = [Stream.settled(stacked(function)) for function in functions]
     groups: dict[Key, list[int]] = {}
     for i, stream in enumerate(streams):
         groups.setdefault(stream.key, []).append(i)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.numbered import Argument, Numbers, Origins, Program, Step, Value, column
 from cosserat_casadi.codegen.steps import entrywise
-from cosserat_casadi.codegen.streams import Stream, names_of_part, shared
+from cosserat_casadi.codegen.streams import Stream, names_of_part, same_but_for_rounding, shared
 
 CONSTANT = -1
 """Local number of every constant that is not zero."""
@@ -85,7 +85,7 @@ def _lines(function: ca.Function) -> Stream:
     """Lines of a function that a step calls, with all entries of its results in one column."""
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     entries = [entry for result in function.call(symbols) for entry in result.nonzeros()]
-    return Stream(ca.Function("stacked", symbols, [ca.vertcat(*entries)], *names_of_part(function.name_in())))
+    return Stream.settled(ca.Function("stacked", symbols, [ca.vertcat(*entries)], *names_of_part(function.name_in())))
 
 
 def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
@@ -256,7 +256,7 @@ class _Sharing:
         if not values[0]:
             return np.zeros(0, dtype=np.int64)
         constant = numbers == CONSTANT
-        if len(set(values)) == 1:
+        if all(same_but_for_rounding(own, values[0]) for own in values):
             return self._origins.add(ca.Sparsity.dense(len(values[0])), list(values[0])).numbers
         # Zeros among constants are handed over as well: the operand is read where it lies.
         with_zeros = bool(np.all(constant | (numbers == 0)))

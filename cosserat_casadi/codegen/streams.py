@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from itertools import pairwise
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.maths.typing import FloatArray
 
 FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
 """Operations that CasADi writes for a product with a constant; 1/x stands for such a quotient."""
@@ -20,6 +23,10 @@ Key = tuple[tuple[Line, ...], tuple[Hashable, ...]]
 
 CONSTANT = -1
 """Operand that is the next constant."""
+
+
+ROUNDING = 2.0**-48
+"""Difference of two constants, over the larger, up to which they are one number that was rounded on its way here."""
 
 
 def names_of_part(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -85,6 +92,23 @@ class Stream:
         for k, code in enumerate(codes):
             self._add(k, code)
 
+    @classmethod
+    def settled(cls, function: ca.Function) -> Stream:
+        """The instructions without products with a one that is off by rounding.
+
+        CasADi leaves out products with one. A one that a machine rounds otherwise, such as a stiffness over that which
+        scales the equations, would make other lines of one leg of a robot than of the next.
+        """
+        stream = cls(function)
+        ones = [c != 1.0 and abs(c - 1.0) <= ROUNDING for c in stream.constants]
+        if not any(ones):
+            return stream
+        constants = [ca.SX(1.0 if one else c) for one, c in zip(ones, stream.constants, strict=True)]
+        whole = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+        read = [symbol.nz[own] if own else ca.SX(0, 1) for symbol, own in zip(whole, stream.reads, strict=True)]
+        entries = _replay(stream, read, constants)
+        return cls(ca.Function(function.name(), whole, [entries], function.name_in(), function.name_out()))
+
     @property
     def x(self) -> list[int]:
         """Unknowns that are read, the first argument."""
@@ -144,18 +168,43 @@ class Stream:
 def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
     """One function for streams that compute alike, and the constants of each.
 
-    Constants that are the same in all streams stay in the code; uses that vary alike share one argument.
+    Constants that are the same in all streams stay in the code; uses that vary alike share one argument. Rounding makes
+    no difference: it is another on another machine, which shall write the same code.
     """
     first = streams[0]
     uses = list(zip(*(stream.constants for stream in streams), strict=True))
-    varied = list(dict.fromkeys(values for values in uses if len(set(values)) > 1))
+    number_of = _numbered([value for values in uses for value in values])
+    numbers = [tuple(number_of[value] for value in values) for values in uses]
+    varied: dict[tuple[int, ...], tuple[float, ...]] = {}
+    for own, values in zip(numbers, uses, strict=True):
+        if len(set(own)) > 1:
+            varied.setdefault(own, values)
     arguments = [*first.function.name_in(), "constants"]
     sizes = [*map(len, first.reads), len(varied)]
     symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
     symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
-    constants = [symbol_of[values] if values in symbol_of else ca.SX(values[0]) for values in uses]
+    constants = [
+        symbol_of[own] if own in symbol_of else ca.SX(values[0]) for own, values in zip(numbers, uses, strict=True)
+    ]
     kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), *names_of_part(arguments))
-    return kernel, [[values[i] for values in varied] for i in range(len(streams))]
+    return kernel, [[values[i] for values in varied.values()] for i in range(len(streams))]
+
+
+def same_but_for_rounding(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> bool:
+    """Whether constants are the same, one by one, but for rounding."""
+    apart = np.abs(np.subtract(one, other))
+    largest = np.maximum(np.abs(one), np.abs(other))
+    return bool(np.all(apart <= ROUNDING * largest))
+
+
+def _numbered(values: Sequence[float]) -> dict[float, int]:
+    """A number for each value, the same for those that are the same but for rounding."""
+    ordered = sorted(set(values))
+    numbers = dict.fromkeys(ordered[:1], 0)
+    for before, value in pairwise(ordered):
+        same = value - before <= ROUNDING * max(abs(before), abs(value))
+        numbers[value] = numbers[before] if same else numbers[before] + 1
+    return numbers
 
 
 def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:

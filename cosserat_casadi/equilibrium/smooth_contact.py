@@ -25,7 +25,7 @@ def with_smooth_contacts(solution: Solution) -> Solution:
         return solution
     contacts = [contact for layer in layers for contact in _contacts(solution, layer)]
     order = [*solution.model.discrete.rods, *solution.model.body]
-    contacts.sort(key=lambda contact: (contact.of_body, order.index(contact.rod), contact.start))
+    contacts.sort(key=lambda contact: (contact.of_body, order.index(contact.owner), contact.start))
     return replace(solution, contacts=tuple(contacts), message=solution.message + _too_deep(contacts))
 
 
@@ -41,8 +41,8 @@ def _too_deep(contacts: list[Contact]) -> str:
         return ""
     worst = contacts[int(np.argmax(depths))]
     return (
-        f" {worst.rod!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give the "
-        "obstacle more width or stiffness."
+        f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give "
+        "the obstacle more width or stiffness."
     )
 
 

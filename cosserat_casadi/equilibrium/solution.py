@@ -63,7 +63,7 @@ class Contact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 of a body.
         end: abscissa at which it ends; the same for a point.
         force: resultant on the rod, world axes, shape (3,), N.
@@ -76,7 +76,7 @@ class Contact:
     """
 
     obstacle: str
-    rod: str
+    owner: str
     start: float
     end: float
     force: FloatArray

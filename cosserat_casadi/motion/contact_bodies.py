@@ -29,7 +29,7 @@ class BodyFacing(Facing):
     @cached_property
     def length(self) -> float:
         """Length of the longest rod that holds it, m."""
-        return float(self.model.discrete.body_frame(self.rod).length)
+        return float(self.model.discrete.body_frame(self.owner).length)
 
     def at(self, nodes: FloatArray, X: float) -> Gap:
         """The gap, whatever the abscissa."""

@@ -98,8 +98,9 @@ def told_inside(history: History, duration: float, deepest: float) -> str:
     worst = found[number]
     if worst.depth <= deepest:
         return ""
-    what = f"the body {worst.rod!r}" if worst.of_body else f"the section X = {worst.place:.4g} of {worst.rod!r}"
+    what = f"the body {worst.owner!r}" if worst.of_body else f"the section X = {worst.place:.4g} of {worst.owner!r}"
     return (
         f"At t = {times[number]:.6g} s {what} is {worst.depth:.2g} of the "
-        f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there."
+        f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there. A rod that "
+        "lies is less deep between the sections that touch with more of accuracy.modes."
     )

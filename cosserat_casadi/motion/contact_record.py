@@ -25,7 +25,7 @@ class MotionContact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that touches.
         at: abscissa X of the section; 0 of a body.
         force: on the rod, world axes, shape (3,), N.
         lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
@@ -33,7 +33,7 @@ class MotionContact:
     """
 
     obstacle: str
-    rod: str
+    owner: str
     at: float
     force: FloatArray
     lies: bool = False
@@ -45,14 +45,14 @@ class Inside(NamedTuple):
 
     Attributes:
         depth: over the length of the rod; negative outside.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body.
         obstacle: name of the obstacle.
         place: abscissa X of the section; 0 of a body.
         of_body: whether it is a body.
     """
 
     depth: float
-    rod: str
+    owner: str
     obstacle: str
     place: float
     of_body: bool
@@ -106,7 +106,7 @@ class ContactRecord:
             total = force * facing.force_unit * gap.normal
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
-            found.append(MotionContact(facing.obstacle.name, facing.rod, at, total, lies, facing.of_body))
+            found.append(MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body))
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
@@ -136,7 +136,7 @@ class ContactRecord:
         found = []
         for facing in self._facings:
             minimum = facing.deepest(facing.nodes(x, inputs))
-            found.append(Inside(-minimum.gap, facing.rod, facing.obstacle.name, minimum.place, facing.of_body))
+            found.append(Inside(-minimum.gap, facing.owner, facing.obstacle.name, minimum.place, facing.of_body))
         return max(found)
 
     @cached_property

@@ -63,7 +63,7 @@ class RodFacing(Facing):
     @cached_property
     def length(self) -> float:
         """Length of the rod that gaps are counted in, m."""
-        return float(self.model.discrete.rods[self.rod].properties.length)
+        return float(self.model.discrete.rods[self.owner].properties.length)
 
     @cached_property
     def looked_at(self) -> FloatArray:
@@ -87,11 +87,11 @@ class RodFacing(Facing):
     @cached_property
     def laid_at(self) -> FloatArray:
         """Abscissae of these sections, base to tip, shape (k,)."""
-        return laid_sections(self.model, self.rod, self.watched_ends)
+        return laid_sections(self.model, self.owner, self.watched_ends)
 
     @cached_property
     def _laid(self) -> tuple[FloatArray, FloatArray]:
-        radii = section_radius(self.model.discrete.rods[self.rod].properties, self.laid_at)
+        radii = section_radius(self.model.discrete.rods[self.owner].properties, self.laid_at)
         return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
     def at(self, nodes: FloatArray, X: float) -> Gap:
@@ -229,7 +229,7 @@ class RodFacing(Facing):
 
     @cached_property
     def _grid(self) -> Grid:
-        return self.model.discrete.rods[self.rod].grid
+        return self.model.discrete.rods[self.owner].grid
 
     @cached_property
     def _looking(self) -> FloatArray:
@@ -237,12 +237,12 @@ class RodFacing(Facing):
 
     @cached_property
     def _looked_radii(self) -> FloatArray:
-        return section_radius(self.model.discrete.rods[self.rod].properties, self.looked_at)
+        return section_radius(self.model.discrete.rods[self.owner].properties, self.looked_at)
 
     @cached_property
     def _radii(self) -> tuple[float, float]:
         """Radius at base and tip, between which it is linear, m."""
-        base, tip = section_radius(self.model.discrete.rods[self.rod].properties, np.array([0.0, 1.0])).tolist()
+        base, tip = section_radius(self.model.discrete.rods[self.owner].properties, np.array([0.0, 1.0])).tolist()
         return base, tip
 
     def _rows(self, X: float) -> Rows:

@@ -101,8 +101,8 @@ def unsettled(history: History) -> str:
         return restart.stalled
     last = [event for leg in history.legs for event in leg.restart.events][-1]
     return (
-        f"At t = {history.end.time:.6g} s {last.rod!r} touches {last.obstacle!r} and lifts off over and over about X = "
-        f"{last.place:.4g}."
+        f"At t = {history.end.time:.6g} s {last.owner!r} touches {last.obstacle!r} and lifts off over and over about "
+        f"X = {last.place:.4g}."
     )
 
 

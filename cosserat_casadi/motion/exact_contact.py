@@ -325,7 +325,7 @@ class ExactContacts:
     def _event(self, kind: str, time: float, touch: Touch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
         facing = self.facings[touch.facing]
         name = facing.obstacle.name
-        return ContactEvent(kind, time, facing.rod, name, touch.place, energy, impulse, facing.of_body)
+        return ContactEvent(kind, time, facing.owner, name, touch.place, energy, impulse, facing.of_body)
 
 
 @dataclass(frozen=True)

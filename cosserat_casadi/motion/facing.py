@@ -77,14 +77,14 @@ class Facing(ABC):
 
     Attributes:
         model: the model, built for a motion.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body.
         obstacle: the obstacle.
         points: of the rod, or of the body.
         of_body: whether it is a body.
     """
 
     model: Model
-    rod: str
+    owner: str
     obstacle: scenes.ObstacleRecord
     points: MovingPoints
     of_body: bool
@@ -97,7 +97,7 @@ class Facing(ABC):
     @cached_property
     def force_unit(self) -> float:
         """What forces are counted in, N."""
-        return self.model.discrete.contact_unit(self.rod, of_body=self.of_body)
+        return self.model.discrete.contact_unit(self.owner, of_body=self.of_body)
 
     @cached_property
     def energy_unit(self) -> float:

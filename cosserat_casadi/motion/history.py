@@ -17,8 +17,7 @@ from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.contact_guards import Arrangement
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.mean_frames import MeanFrames
-from cosserat_casadi.motion.momentum import MomentumKeeper, flies_alone, flies_free
+from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.restart import ContactEvent, Phases, Restart, Switching
@@ -27,7 +26,6 @@ from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
-from cosserat_casadi.numerics.mean_frame import MeanFrame
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
 from cosserat_casadi.numerics.time_steps import integrate
@@ -48,16 +46,13 @@ AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
 
-def equations_of(
-    model: Model, piece: Piece, p: FloatArray | None = None, frames: MeanFrames | None = None
-) -> MotionEquations:
+def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> MotionEquations:
     """The equations of motion of a model while its inputs follow one piece of their paths.
 
     Args:
         model: the model.
         piece: of its inputs.
         p: stacked parameters; those of a model that has some.
-        frames: the mean frames of a rod that flies free, which save iterations; None for none.
     """
     inverse_dynamics = RepeatedCall(model.inverse_dynamics)
     parameters = [] if p is None else [p]
@@ -73,14 +68,7 @@ def equations_of(
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
         return stiffness.full(), damping.full(), mass.full()
 
-    if frames is None:
-        return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
-
-    def mean_frames(times: FloatArray, x: FloatArray) -> list[MeanFrame]:
-        middle = float(times[len(times) // 2])
-        return frames.along(x, inputs_at(middle).value)
-
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, mean_frames=mean_frames)
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
 
 
 @dataclass(frozen=True)
@@ -290,14 +278,13 @@ def _switched(
     coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
     to_model = None if coordinates is None else coordinates.to_model
     keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
-    frames = MeanFrames(model) if flies_alone(model) and coordinates is None else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     if coordinates is not None:
         at = coordinates.from_model(at)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
-        plain = equations_of(model, piece, p, frames)
+        plain = equations_of(model, piece, p)
         if coordinates is not None:
             plain = coordinates.equations(plain)
         while at.time < piece.end:

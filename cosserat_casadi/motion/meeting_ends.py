@@ -110,14 +110,14 @@ class MeetingEnds:
         points = meetings(facings[0].model.scene)
         for number, facing in enumerate(facings):
             for X in (BASE, TIP):
-                end = RodEnd(facing.rod, X)
+                end = RodEnd(facing.owner, X)
                 together = [] if facing.of_body else [one for point in points if end in point for one in point - {end}]
                 self._others[number, X] = [
                     (other, one.X)
                     for one in together
                     for other, candidate in enumerate(facings)
                     if not candidate.of_body
-                    and candidate.rod == one.rod
+                    and candidate.owner == one.rod
                     and candidate.obstacle.name == facing.obstacle.name
                 ]
 

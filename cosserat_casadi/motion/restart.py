@@ -25,7 +25,7 @@ class ContactEvent:
     Attributes:
         kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down".
         time: s.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that touches.
         obstacle: name of the obstacle.
         place: abscissa X of the section; 0 of a body.
         energy: kinetic energy that the impact took, J; zero of the others.
@@ -35,7 +35,7 @@ class ContactEvent:
 
     kind: str
     time: float
-    rod: str
+    owner: str
     obstacle: str
     place: float
     energy: float = 0.0

@@ -22,13 +22,13 @@ EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 GIVEN = "At rest in the equilibrium that was given."
 TOUCHES = (
-    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain no "
-    "such equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain the "
+    "search for such an equilibrium, with forces at sections, did not settle. Give "
     'another number of accuracy.modes, mostly a larger one, start = "unloaded", or other inputs at t = 0.'
 )
 GIVEN_TOUCHES = (
-    "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain no such "
-    "equilibrium was found: rods in motion touch at sections, whose forces few modes cannot follow. Give "
+    "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain the search "
+    "for such an equilibrium, with forces at sections, did not settle. Give "
     "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
 )
 FREE_TOUCHES = (

@@ -2,7 +2,10 @@
 
 Each turn linearises balance and gaps at once. Forces that only push and gaps that are not negative are then a linear
 complementarity problem: Newton's method, of which the last turns are quadratic (S.-P. Han, *Superlinearly convergent
-variable metric algorithms for general nonlinear programming problems*, Math. Programming 11, 1976).
+variable metric algorithms for general nonlinear programming problems*, Math. Programming 11, 1976). A heavy rod that
+nothing supports yet may be as unstable as an upright column that buckles, and its problem has then no solution or the
+wrong one: such a turn stiffens all variations alike until none releases energy (J. Nocedal, S. J. Wright, *Numerical
+Optimization*, 2nd ed., Springer 2006, sections 3.4 and 18.3). The equilibrium does not change by that.
 """
 
 from __future__ import annotations
@@ -11,7 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Contact
+from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, Arrangement
 from cosserat_casadi.motion.exact_contact import ExactContacts
@@ -31,6 +36,15 @@ LONGEST = 0.3
 SETTLED = 1e-11
 """Change of the unknowns that counts as none."""
 
+ROUNDED = 1e-8
+"""Change of the unknowns that counts as none where the turn before did not change them more: it is rounding.
+
+Sections close beside each other, as those at the tip of a rod on many modes, make as much of that of their gaps.
+"""
+
+LEAST_STIFFNESS = 1e-3
+"""Least eigenvalue, in EI/ℓ, of the energy of a turn: less is raised to it."""
+
 NO_GAP = 1e-13
 """Gap below zero, over the length, that counts as none."""
 
@@ -47,37 +61,73 @@ def resting(
         guess: contacts of the same scene at rest, which tell what lies.
     """
     facings = contacts.facings
-    lines = {(contact.rod, contact.obstacle) for contact in guess if contact.kind == "line"}
-    laid = frozenset(k for k, facing in enumerate(facings) if (facing.rod, facing.obstacle.name) in lines)
+    allowed = variations(contacts.model)
+    lines = {(contact.owner, contact.obstacle) for contact in guess if contact.kind == "line"}
+    laid = frozenset(k for k, facing in enumerate(facings) if (facing.owner, facing.obstacle.name) in lines)
     pressing: Touches = ()
     forces = np.zeros(0)
+    before = np.inf
     for _ in range(MOST_TURNS):
         candidates = _candidates(contacts, x, inputs, laid)
         follower = Follower(facings, candidates)
         state = follower.state(x, inputs)
         gradients = np.array(state.gradients).reshape(len(candidates), len(x))
         gaps = np.array([gap.value for gap in state.gaps])
-        stiffness, residual = (part.full() for part in contacts.model.jacobian(x, inputs))
-        stiffness = stiffness - _turning(facings, pressing, forces, x, inputs)
-        try:
-            answers = np.linalg.solve(stiffness, np.column_stack([-residual, gradients.T]))
-        except np.linalg.LinAlgError:
+        jacobian, residual = contacts.model.jacobian(x, inputs)
+        stiffness = jacobian.full() - _turning(facings, pressing, forces, x, inputs)
+        stiffness = _stiffened(stiffness, allowed)
+        pushes = _pushes(stiffness, column(residual), gradients, gaps)
+        if pushes is None:
             return None
-        straight_on = answers[:, 0]
-        by_force = answers[:, 1:]
-        pushes = least_pushes(gradients @ by_force, gaps + gradients @ straight_on, NO_GAP)
-        if pushes is None or not np.all(np.isfinite(answers)):
-            return None
-        change = straight_on + by_force @ pushes
+        active = pushes > 0.0
+        change, forces = _balanced(stiffness, column(residual), gradients[active], gaps[active])
         largest = float(np.abs(change).max())
         x = x + change * min(1.0, LONGEST / max(largest, LONGEST))
-        pressing = tuple(touch for touch, push in zip(candidates, pushes, strict=True) if push > 0.0)
-        forces = pushes[pushes > 0.0]
+        pressing = tuple(touch for touch, presses in zip(candidates, active, strict=True) if presses)
         flat = _flat(facings, pressing, x, inputs)
-        if largest <= SETTLED and not flat:
+        settled = largest <= SETTLED or before <= largest <= ROUNDED
+        if settled and not flat:
             return x, Arrangement(pressing, laid, Follower(facings, pressing))
         laid = laid | flat
+        before = largest
     return None
+
+
+def _stiffened(stiffness: FloatArray, allowed: Variations) -> FloatArray:
+    """The stiffness with as much added to all that varies as keeps every admissible variation from releasing energy."""
+    lowest = float(admissible_eigenvalues(stiffness, allowed).min(initial=np.inf))
+    stiffened = stiffness.copy()
+    stiffened[allowed.free, allowed.free] += max(0.0, LEAST_STIFFNESS - lowest)
+    return stiffened
+
+
+def _pushes(stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray) -> FloatArray | None:
+    """Forces of a turn, none of which pulls, and at which no gap closes, shape (m,); None where none are found."""
+    try:
+        answers = np.linalg.solve(stiffness, np.column_stack([-residual, gradients.T]))
+    except np.linalg.LinAlgError:
+        return None
+    if not np.all(np.isfinite(answers)):
+        return None
+    straight_on = answers[:, 0]
+    by_force = answers[:, 1:]
+    return least_pushes(gradients @ by_force, gaps + gradients @ straight_on, NO_GAP)
+
+
+def _balanced(
+    stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Change of the unknowns that closes gaps, shape (n,), and the forces that balance it, shape (m,).
+
+    The forces are known already where the gaps press: solved for with the unknowns they have less rounding.
+    """
+    size, count = len(stiffness), len(gaps)
+    bordered = np.zeros((size + count, size + count))
+    bordered[:size, :size] = stiffness
+    bordered[:size, size:] = -gradients.T
+    bordered[size:, :size] = gradients
+    answer = np.linalg.solve(bordered, -np.concatenate([residual, gaps]))
+    return answer[:size], answer[size:]
 
 
 def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid: frozenset[int]) -> Touches:

@@ -189,13 +189,11 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
         return follower.rates(x[:size], v[:size], piece.at(t))
 
     differential = np.concatenate([plain.differential, np.zeros(count, dtype=bool)])
-    # What keeps the steps of a free rod long is for rods that nothing touches.
     return replace(
         plain,
         differential=differential,
         residual=residual,
         jacobians=jacobians,
-        mean_frames=None,
         rates_of_last=rates_of_last,
     )
 

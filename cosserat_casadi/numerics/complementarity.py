@@ -9,7 +9,10 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 
 DEPENDENT = 1e-9
-"""What active constraints leave of the compliance of another, over its own, below which it depends on them."""
+"""What active constraints leave of the compliance of another, over its own, below which it depends on them.
+
+What the forces leave of a rate, over what they make of it, counts as rounding below the same share.
+"""
 
 MOST_TURNS = 10
 """Turns for each constraint before the search is given up."""
@@ -23,8 +26,9 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 
     A constraint that closes is made active, the fastest first, and leaves again where it would pull: the method of
     least squares with non-negative unknowns, which does not run in circles (C. L. Lawson, R. J. Hanson, *Solving Least
-    Squares Problems*, SIAM 1995, chapter 23). One that depends on those that are active stays without a force, which
-    could be anything.
+    Squares Problems*, SIAM 1995, chapter 23). One that depends on those that are active and closes all the same takes
+    the place of one of them: its force grows, at no change of what opens, until the first of theirs is zero. Where it
+    closes to rounding only, or where none of theirs falls so that no forces stop it, it stays without one.
 
     Args:
         compliance: W, symmetric and positive semidefinite, shape (m, m).
@@ -50,9 +54,14 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
         if not closing:
             return forces * scale
         fastest = min(closing, key=lambda k: float(opening[k]))
-        if _left_of(scaled, active, fastest) < DEPENDENT:
-            passed_over.add(fastest)
-            continue
+        answers = _answers(scaled, active, fastest)
+        left = float(scaled[fastest, fastest] + scaled[fastest, active] @ answers)
+        if left < DEPENDENT:
+            summed = abs(wanted[fastest]) + np.abs(scaled[fastest]) @ forces
+            if opening[fastest] >= -DEPENDENT * summed or not np.any(answers < 0.0):
+                passed_over.add(fastest)
+                continue
+            _make_room(forces, active, answers, fastest)
         active.append(fastest)
         _balance(scaled, wanted, forces, active)
     return None
@@ -75,10 +84,21 @@ def _balance(scaled: FloatArray, rates: FloatArray, forces: FloatArray, active: 
         del active[first]
 
 
-def _left_of(scaled: FloatArray, active: Sequence[int], number: int) -> float:
-    """Compliance of a constraint that those that are active leave it, over its own."""
+def _answers(scaled: FloatArray, active: Sequence[int], number: int) -> FloatArray:
+    """Changes of the forces of active constraints for a unit of another's that leave them as open as they are."""
     if not active:
-        return 1.0
-    column = scaled[active, number]
-    taken = column @ np.linalg.solve(scaled[np.ix_(active, active)], column)
-    return float(scaled[number, number] - taken)
+        return np.zeros(0)
+    return np.asarray(-np.linalg.solve(scaled[np.ix_(active, active)], scaled[active, number]))
+
+
+def _make_room(forces: FloatArray, active: list[int], answers: FloatArray, number: int) -> None:
+    """The force of a constraint grows, in place, until the first active one has none left, which leaves."""
+    present = forces[active]
+    falls = answers < 0.0
+    lasts = np.full(len(active), np.inf)
+    lasts[falls] = present[falls] / -answers[falls]
+    first = int(np.argmin(lasts))
+    forces[active] = present + lasts[first] * answers
+    forces[number] = lasts[first]
+    forces[active[first]] = 0.0
+    del active[first]

@@ -6,14 +6,13 @@ F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.mean_frame import MeanFrame
 
 
 @dataclass(frozen=True)
@@ -64,8 +63,6 @@ class MotionEquations:
         jacobians: (t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n).
         residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None where one at a time
             is as quick.
-        mean_frames: (t (k,), x (k, n)) ↦ the mean frames of what flies free at k instants of a step; None where nothing
-            does.
         rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
             rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
     """
@@ -74,7 +71,6 @@ class MotionEquations:
     residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
-    mean_frames: Callable[[FloatArray, FloatArray], Sequence[MeanFrame]] | None = None
     rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
 
     @property

@@ -12,15 +12,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.secant_updates import SecantUpdates
 from cosserat_casadi.numerics.step import stages_of
+from cosserat_casadi.numerics.step_matrices import StepMatrices
 
 ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
 """Change of position, relative to the largest, that is rounding and not a correction."""
@@ -30,21 +29,6 @@ LEAST_CONTRACTION = 0.1
 
 DIVERGING = 10.0
 """Growth of a correction over the one before that secant updates do not make up for."""
-
-
-class StepSystem(Protocol):
-    """A linear system for corrections of all stages."""
-
-    @property
-    def method(self) -> Collocation:
-        """The collocation method."""
-
-    @property
-    def step(self) -> float:
-        """Size h of the step, s."""
-
-    def corrections(self, residuals: FloatArray) -> FloatArray:
-        """Corrections of h² a of differential entries and of the values of algebraic ones, shape (s, n)."""
 
 
 class StageOutcome(Enum):
@@ -94,7 +78,7 @@ class NewtonBounds:
 
 
 def solve_stages(
-    equations: MotionEquations, matrices: StepSystem, start: Instant, guess: FloatArray, bounds: NewtonBounds
+    equations: MotionEquations, matrices: StepMatrices, start: Instant, guess: FloatArray, bounds: NewtonBounds
 ) -> StageSolution:
     """Solve for the stages of a step.
 

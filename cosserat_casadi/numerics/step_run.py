@@ -7,15 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.carried_matrices import CarriedMatrices
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
 from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
-from cosserat_casadi.numerics.mean_frame import MeanFrame
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
-from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, StepSystem, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted, stages_of
+from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
+from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -40,18 +38,6 @@ ON_GUARD = 1e-13
 FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
-FEW_CARRIED_ITERATIONS = 10
-"""The same of a Jacobian that is carried along with what flies free.
-
-Its stages are solved from first iterates that are far off, which costs iterations with a new Jacobian too.
-"""
-
-SMALL_ERROR = 0.1
-"""Error over tolerance of a step that was not as long as its error allows: Newton's method found no longer one.
-
-Accelerations of what moves next to no mass then jump from step to step, and their polynomial is no first iterate.
-"""
-
 ITERATIONS_OF_GIVEN_STEP = 30
 """Most Newton iterations, with one Jacobian, of a step whose size is given: no shorter one may stand for it."""
 
@@ -70,8 +56,6 @@ class StepRun:
         size: of the step to be tried next, s.
         bounds: weights of an error, and when Newton's method stops.
         linearisation: the Jacobian in use; None where the next step needs a new one.
-        frame: the mean frame where it was evaluated; None where nothing flies free.
-        straight_on: whether the first iterate of the next step has no accelerations.
         fresh: whether that Jacobian was evaluated after the last instant reached.
         matrices: the linear systems in use; None where there are none for the Jacobian.
         rejected: steps refused.
@@ -94,8 +78,6 @@ class StepRun:
     steps: list[Step] = field(default_factory=list)
     size: float = 0.0
     linearisation: Linearisation | None = None
-    frame: MeanFrame | None = None
-    straight_on: bool = False
     fresh: bool = False
     matrices: StepMatrices | None = None
     rejected: int = 0
@@ -163,11 +145,8 @@ class StepRun:
         guess = self.guess()
         linearisation = self.linearisation
         if linearisation is None:
-            middle = self._middle(guess)
-            linearisation = self.equations.linearised(middle)
+            linearisation = self.equations.linearised(self._middle(guess))
             self.linearisation = linearisation
-            if self.equations.mean_frames is not None:
-                (self.frame,) = self.equations.mean_frames(np.array([middle.time]), middle.x[None])
             self.jacobians += 1
             self.fresh = True
         if not linearisation.finite:
@@ -177,19 +156,11 @@ class StepRun:
             self.factorisations += 1
         if self.matrices is None:
             return StepOutcome.SINGULAR
-        system = self._at_stages(self.matrices, guess)
-        solution = solve_stages(self.equations, system, self.now, guess, self.bounds)
+        solution = solve_stages(self.equations, self.matrices, self.now, guess, self.bounds)
         self.iterations += solution.iterations
         if solution.outcome is StageOutcome.CONVERGED:
             return solution
         return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
-
-    def _at_stages(self, matrices: StepMatrices, guess: FloatArray) -> StepSystem:
-        """The linear systems of a step as its stages have them: carried along with what flies free."""
-        if self.frame is None or self.equations.mean_frames is None:
-            return matrices
-        stages = stages_of(self.method, self.equations.differential, self.now, self.size, guess)
-        return CarriedMatrices(matrices, self.frame, self.equations.mean_frames(stages.times, stages.x))
 
     def _finite_here(self) -> bool:
         """Whether F is finite at the start of the step and straight on from it: else no iterate is to blame."""
@@ -199,16 +170,9 @@ class StepRun:
 
     def guess(self) -> FloatArray:
         """First iterate of the stages: the polynomial of the step before, or the start."""
-        if self.steps and self.straight_on:
-            return self._without_accelerations()
         if self.steps:
             return extrapolated(self.steps[-1], self.size)
         unknowns = np.where(self.equations.differential, self.start.a, self.start.x)
-        return np.tile(unknowns, (self.method.stages, 1))
-
-    def _without_accelerations(self) -> FloatArray:
-        """Unknowns of the stages of a motion that goes straight on, shape (s, n)."""
-        unknowns = np.where(self.equations.differential, 0.0, self.now.x)
         return np.tile(unknowns, (self.method.stages, 1))
 
     def _middle(self, guess: FloatArray) -> Instant:
@@ -239,13 +203,11 @@ class StepRun:
             residual=solution.residual,
             contraction=solution.contraction,
         )
-        self.straight_on = self.equations.mean_frames is not None and error < SMALL_ERROR
         if self.settled is not None:
             step = replace(step, end=self.settled(step))
         self.steps.append(step)
         self.fresh = False
-        few = FEW_ITERATIONS if self.equations.mean_frames is None else FEW_CARRIED_ITERATIONS
-        if solution.iterations > few:
+        if solution.iterations > FEW_ITERATIONS:
             self.renew_jacobian()
 
     def stopped_by_guard(self) -> bool:

@@ -370,7 +370,7 @@ class Arrangement:
                 held.extend(own)
                 continue
             held.append(own[0])
-            _, _, bend = gaps[touch.rod, touch.obstacle].at(touch.start)
+            _, _, bend = gaps[touch.owner, touch.obstacle].at(touch.start)
             if bend <= FLAT:
                 held.append(own[1])
             else:

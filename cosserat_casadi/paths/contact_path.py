@@ -59,7 +59,7 @@ class ContactPath(EquilibriumPath):
         arrangement = self.arrangements[self.arrangement[index]]
         contacts = []
         for touch, ends, _ in arrangement.parts(self.x[index]):
-            unit = self.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
+            unit = self.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
             forces, inside = touch.sorted_forces(unit * ends)
             contacts.append(_path_contact(touch, forces, inside))
         return tuple(contacts)
@@ -110,11 +110,11 @@ class ContactPath(EquilibriumPath):
         arrangement = self.arrangements[int(self.arrangement[-1])]
         sections = load_sections(arrangement.scene)
         for touch in arrangement.state(self.x[-1]).touches:
-            for place, section in product(touch.moving, sections.get(touch.rod, ())):
+            for place, section in product(touch.moving, sections.get(touch.owner, ())):
                 if abs(place - section) < AT_SECTION:
                     return (
-                        f" The contact of {touch.rod!r} with {touch.obstacle!r} has come to X = {section:.6g}, where a "
-                        "load or another rod acts: a place is not followed past there. A solve beyond finds it anew."
+                        f" The contact of {touch.owner!r} with {touch.obstacle!r} has come to X = {section:.6g}, where "
+                        "a load or another rod acts: a place is not followed past there. A solve beyond finds it anew."
                     )
         return ""
 
@@ -291,7 +291,7 @@ class Travel:
 def _path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[SectionForce, ...] = ()) -> PathContact:
     """A contact at its place, with the forces at its ends and at sections inside it, N."""
     start, end = float(touch.start), float(touch.end)
-    return PathContact(touch.obstacle, touch.rod, start, end, touch.kind, forces, touch.of_body, inside)
+    return PathContact(touch.obstacle, touch.owner, start, end, touch.kind, forces, touch.of_body, inside)
 
 
 def follow_contact_path(

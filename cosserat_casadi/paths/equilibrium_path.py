@@ -23,7 +23,7 @@ class PathContact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that touches.
         start: abscissa X at which it begins; 0 of a body.
         end: abscissa at which it ends; the same for a point.
         kind: "point" or "line".
@@ -33,7 +33,7 @@ class PathContact:
     """
 
     obstacle: str
-    rod: str
+    owner: str
     start: float
     end: float
     kind: str

@@ -93,21 +93,21 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
     for _, ends, line in parts:
         largest = max(largest, float(np.abs(ends).max()), float(np.abs(line).max(initial=0.0)))
     for number, (touch, ends, line) in enumerate(parts):
-        pair = (touch.rod, touch.obstacle)
+        pair = (touch.owner, touch.obstacle)
         # What errors of the moment make of the forces of a short line is as large as it is short.
         lever = touch.end - touch.start if touch.is_line else 1.0
         for end, (force, X) in enumerate(zip(ends, touch.carriers, strict=True)):
             found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
         if touch.moving:
             last = float(touch.moving[-1])
-            passes = touch.rod in arrangement.following and not touch.is_line
+            passes = touch.owner in arrangement.following and not touch.is_line
             least = OVER_JOINT if passes else OPEN
             found[Key(Watch.TO_TIP, number, pair)] = Margin(TIP - last - least, last)
-            if touch.rod in arrangement.following.values() and not touch.is_line:
+            if touch.owner in arrangement.following.values() and not touch.is_line:
                 found[Key(Watch.TO_BASE, number, pair)] = Margin(last - OVER_JOINT, last)
         if touch.is_line:
             width = touch.end - touch.start
-            abscissae, pressure = pressure_along(touch, line, arrangement.equations.nominal.modes[touch.rod])
+            abscissae, pressure = pressure_along(touch, line, arrangement.equations.nominal.modes[touch.owner])
             weakest = int(pressure.argmin())
             pressing = float(pressure[weakest]) * width / largest
             found[Key(Watch.PRESSURE, number, pair)] = Margin(pressing, float(abscissae[weakest]))
@@ -125,13 +125,13 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
         taken = [
             (touch.start, touch.end)
             for touch, _, _ in parts
-            if (touch.rod, touch.obstacle) == pair and not touch.of_body
+            if (touch.owner, touch.obstacle) == pair and not touch.of_body
         ]
         X = nearest(gap, taken)
         if X is not None:
             distance, _, _ = gap.at(X)
             found[Key(Watch.GAP, -1, pair)] = Margin(distance, X)
-    touching = {(touch.rod, touch.obstacle) for touch, _, _ in parts if touch.of_body}
+    touching = {(touch.owner, touch.obstacle) for touch, _, _ in parts if touch.of_body}
     for pair, distance in arrangement.body_gaps(z, load_factor).items():
         if pair not in touching:
             found[Key(Watch.BODY_GAP, -1, pair)] = Margin(distance, 0.0)

@@ -100,22 +100,22 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         half = WIDER * OPEN / 2
         yield _opened("point_to_line", touch, others, replace(touch, start=X - half, end=X + half, is_line=True))
     elif key.watch is Watch.WIDTH:
-        yield _replaced("line_to_point", touch, others, Touch.point(touch.obstacle, touch.rod, X), Watch.CURVATURE)
+        yield _replaced("line_to_point", touch, others, Touch.point(touch.obstacle, touch.owner, X), Watch.CURVATURE)
     elif key.watch is Watch.TO_TIP and touch.is_line:
         yield _replaced("slide_to_tip", touch, others, replace(touch, end=TIP), Watch.FORCE)
-    elif key.watch is Watch.TO_TIP and touch.rod in arrangement.following:
-        beyond = Touch.point(touch.obstacle, arrangement.following[touch.rod], WIDER * OVER_JOINT)
+    elif key.watch is Watch.TO_TIP and touch.owner in arrangement.following:
+        beyond = Touch.point(touch.obstacle, arrangement.following[touch.owner], WIDER * OVER_JOINT)
         yield _passed_on(touch, others, beyond, Watch.TO_BASE)
     elif key.watch is Watch.TO_BASE:
-        before = next(first for first, second in arrangement.following.items() if second == touch.rod)
+        before = next(first for first, second in arrangement.following.items() if second == touch.owner)
         beyond = Touch.point(touch.obstacle, before, TIP - WIDER * OVER_JOINT)
         yield _passed_on(touch, others, beyond, Watch.TO_TIP)
     elif key.watch is Watch.TO_TIP:
-        yield _replaced("slide_to_tip", touch, others, Touch.point(touch.obstacle, touch.rod, TIP), Watch.SLOPE)
+        yield _replaced("slide_to_tip", touch, others, Touch.point(touch.obstacle, touch.owner, TIP), Watch.SLOPE)
     elif key.watch is Watch.SLOPE:
         inwards = TIP - WIDER * OPEN
-        yield _opened("slide_from_tip", touch, others, Touch.point(touch.obstacle, touch.rod, inwards))
-        yield _opened("point_to_line", touch, others, Touch.line(touch.obstacle, touch.rod, inwards, TIP))
+        yield _opened("slide_from_tip", touch, others, Touch.point(touch.obstacle, touch.owner, inwards))
+        yield _opened("point_to_line", touch, others, Touch.line(touch.obstacle, touch.owner, inwards, TIP))
     elif key.watch is Watch.FORCE and touch.reaches_tip and key.end == len(touch.carriers) - 1:
         yield _opened("slide_from_tip", touch, others, replace(touch, end=TIP - WIDER * OPEN))
     else:
@@ -132,7 +132,7 @@ def _number(state: ContactState, touch: Touch) -> int:
 def _added(state: ContactState, touch: Touch) -> Change:
     """A contact more, whose force grows from zero."""
     following = ContactState.of([*state.touches, touch])
-    grows = Key(Watch.FORCE, _number(following, touch), (touch.rod, touch.obstacle))
+    grows = Key(Watch.FORCE, _number(following, touch), (touch.owner, touch.obstacle))
     return Change("touch", touch, following, grows)
 
 
@@ -140,14 +140,14 @@ def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Wat
     """A contact of another kind, which begins where a margin of its own vanishes."""
     following = ContactState.of([*others, new])
     last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
-    grows = Key(watch, _number(following, new), (new.rod, new.obstacle), last)
+    grows = Key(watch, _number(following, new), (new.owner, new.obstacle), last)
     return Change(kind, old, following, grows, located=True)
 
 
 def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Change:
     """A point on the next rod of a chain, met a little beyond the joint."""
     following = ContactState.of([*others, new])
-    grows = Key(watch, _number(following, new), (new.rod, new.obstacle))
+    grows = Key(watch, _number(following, new), (new.owner, new.obstacle))
     return Change("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
 
 
@@ -155,7 +155,7 @@ def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Change:
     """A contact with one place more to be sought, met where it is a little away from the others, or from the tip."""
     following = ContactState.of([*others, new])
     number = _number(following, new)
-    pair = (new.rod, new.obstacle)
+    pair = (new.owner, new.obstacle)
     if new.is_line and not new.reaches_tip and old.kind == "point":
         opens = ((new, 0, -1.0), (new, 1, 1.0))
         return Change(kind, old, following, Key(Watch.WIDTH, number, pair), opens, WIDER * OPEN)
@@ -201,7 +201,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Change) -> Entry 
 
 def _split(change: Change, sections: Mapping[str, Sequence[float]]) -> Change:
     """The same change, with seams in lines where loads act."""
-    opens = tuple((touch.split(sections[touch.rod]), number, factor) for touch, number, factor in change.opens)
+    opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 
 

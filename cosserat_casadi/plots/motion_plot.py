@@ -178,9 +178,9 @@ def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
 def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
     """Centre of the section that touches, or where the ball of a body does, shape (1, 3), m."""
     if not contact.of_body:
-        section: FloatArray = motion.section(contact.rod, [contact.at]).position[row]
+        section: FloatArray = motion.section(contact.owner, [contact.at]).position[row]
         return section
-    (body,) = [body for body in motion.model.scene.bodies if body.name == contact.rod]
+    (body,) = [body for body in motion.model.scene.bodies if body.name == contact.owner]
     normal = contact.force / np.linalg.norm(contact.force)
     centre: FloatArray = motion.body(body.name).position[row : row + 1]
     return centre - ball_radius(body) * normal

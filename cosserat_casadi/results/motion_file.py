@@ -123,7 +123,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "kind": "exact",
         "row": np.array([row for row, _ in numbered], dtype=int),
         "obstacle": [contact.obstacle for contact in contacts],
-        "rod": [contact.rod for contact in contacts],
+        "rod": [contact.owner for contact in contacts],
         "at": np.array([contact.at for contact in contacts]),
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),

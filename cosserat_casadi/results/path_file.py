@@ -129,9 +129,9 @@ def _contact_entry(contact: PathContact) -> dict[str, Any]:
     """Where and how a rod touches an obstacle; or which body does."""
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.of_body:
-        entry["body"] = contact.rod
+        entry["body"] = contact.owner
     else:
-        entry |= {"rod": contact.rod, "from": contact.start, "to": contact.end}
+        entry |= {"rod": contact.owner, "from": contact.start, "to": contact.end}
     return {**entry, "kind": contact.kind}
 
 

@@ -95,9 +95,9 @@ def _contact_entry(contact: Contact) -> dict[str, Any]:
     """
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.of_body:
-        entry["body"] = contact.rod
+        entry["body"] = contact.owner
     else:
-        entry |= {"rod": contact.rod, "from": contact.start, "to": contact.end}
+        entry |= {"rod": contact.owner, "from": contact.start, "to": contact.end}
     entry |= {"force": contact.force, "kind": contact.kind}
     if contact.width is None:
         entry |= point_forces(contact)

@@ -103,7 +103,7 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
 def _contacts_of(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[Contact]:
     """The contacts of a rod, or of a body, with an obstacle."""
     wanted = (name, obstacle, of_body)
-    return [contact for contact in solution.contacts if (contact.rod, contact.obstacle, contact.of_body) == wanted]
+    return [contact for contact in solution.contacts if (contact.owner, contact.obstacle, contact.of_body) == wanted]
 
 
 def body_contact_numbers(contacts: Sequence[Contact]) -> list[float]:

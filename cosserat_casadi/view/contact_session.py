@@ -97,5 +97,5 @@ def _drawn_contact(solution: Solution, contact: Contact) -> dict[str, Any]:
     elif contact.start < contact.end:
         place = f" from X = {contact.start:.3g} to {contact.end:.3g}"
     force = float(np.linalg.norm(contact.force))
-    words = f"{contact.rod} touches {contact.obstacle}{place} with {force:.3g} N"
+    words = f"{contact.owner} touches {contact.obstacle}{place} with {force:.3g} N"
     return {"points": points.tolist(), "force": contact.force.tolist(), "words": words.replace("_", " ")}

@@ -68,7 +68,7 @@ def assert_same(found: CompiledContactSolution, wanted: Solution, *, forces: flo
     np.testing.assert_allclose(found.tips["rod"][:3], wanted.tip().position[0], rtol=0, atol=1e-9)
     assert len(found.contacts) == len(wanted.contacts)
     for own, other in zip(found.contacts, wanted.contacts, strict=True):
-        assert (own.obstacle, own.rod, own.kind) == (other.obstacle, other.rod, other.kind)
+        assert (own.obstacle, own.owner, own.kind) == (other.obstacle, other.owner, other.kind)
         np.testing.assert_allclose([own.start, own.end], [other.start, other.end], rtol=0, atol=1e-9)
         np.testing.assert_allclose(own.force, other.force, rtol=forces, atol=forces)
         np.testing.assert_allclose(own.ends, other.ends, rtol=forces, atol=forces)

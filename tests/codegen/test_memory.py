@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from cosserat_casadi import export
 from cosserat_casadi.codegen.memory import FRAMES, stack_bytes
-from tests.codegen.libraries import QUICK, RECIPES, Exported, run
+from tests.codegen.libraries import HARNESS, QUICK, RECIPES, Exported, run
 from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
@@ -48,6 +50,26 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:
     stack, _ = measured(library(name), optimised, "-fPIC")
     assert stack <= stated(library(name))[0]
+
+
+@pytest.mark.parametrize("name", mostly_slow(["planar", "tiny", "spatial", "thick"], quick=["tiny"]))
+def test_stack_of_batches(name: str, tmp_path: Path) -> None:
+    """Each number of a kernel in lanes is four; the stack that lanes need is that of no other function."""
+    model = RECIPES[name].model()
+    made = Exported(name, model, export(model, tmp_path / name, name, batches=True), tmp_path)
+    words = {"name": name, "MACRO": made.names.macro}
+    harness = (HARNESS / "stack.c").read_text()
+    program = tmp_path / "stack.c"
+    program.write_text(re.sub(r"@\{(\w+)\}", lambda match: words[match[1]], harness))
+    sources = [made.folder / f"{name}{part}.c" for part in ("", "_kernels", "_lanes")]
+    flags = ("-O0", "-std=gnu99", "-pthread", "-Wl,-z,now", "-DBATCHES", f"-I{made.folder}")
+    run("gcc", *flags, program, *sources, "-lm", "-o", tmp_path / "stack")
+    stack = int(run(tmp_path / "stack").split()[0])
+    found = re.search(r"at a time\. It needs up to ([\d.]+) kB of stack", (made.folder / f"{name}.h").read_text())
+    assert found is not None
+    said = 1000 * float(found[1])
+    assert f"{name}_solve_batch {found[1]} kB" in (made.folder / "README.md").read_text()
+    assert stack <= said <= MARGIN * stack + ROUNDING
 
 
 def test_no_function_of_the_solver_has_a_large_frame(library: Library) -> None:

@@ -55,6 +55,40 @@ def test_parts_that_differ_in_constants_share_a_kernel_and_compute_the_whole() -
     assert_allclose(entries, whole(x, inputs, 0.4).full()[:, 0], rtol=1e-15, atol=0)
 
 
+def test_constants_that_differ_by_rounding_share_a_kernel_and_stay_in_its_code() -> None:
+    """As a machine rounds them: of a one that is not quite one CasADi leaves no product out."""
+    up = np.nextafter(1.0, 2.0)
+    first = "1*x[0] + 0.3*ca.sin(x[1]) + 5*x[0]*x[1]"
+    second = f"{up!r}*x[2] + {0.3 * up!r}*ca.sin(x[3]) + 7*x[2]*x[3]".replace("np.float64", "")
+    whole = function(f"ca.vertcat({first}, {second})")
+    split = parted(whole, [0, 1], "k")
+    assert [part.kernel for part in split.parts] == [0, 0]
+    assert [part.constants for part in split.parts] == [[5.0], [7.0]]
+    x = np.arange(1.0, 6.0)
+    expected = whole(x, [], 0.4).full()[:, 0]
+    for part, value in zip(split.parts, expected, strict=True):
+        found = split.kernels[0](x[part.x], [], 0.4, part.constants)
+        assert_allclose(float(found), value, rtol=1e-15, atol=0)
+
+
+def test_legs_of_any_length_share_one_kernel() -> None:
+    """A stiffness of the equations is one, or one that is off by rounding, as the length of the leg has it."""
+    lengths = (0.42, 0.43, 0.45, 0.44, 0.41, 0.46)
+    places = [[0.1 * np.cos(angle), 0.1 * np.sin(angle), 0.0] for angle in np.arange(0.3, 6.0).tolist()]
+    legs = [
+        rod("reissner", name=f"leg_{i}", length=length, base={"position": place})
+        for i, (length, place) in enumerate(zip(lengths, places, strict=True))
+    ]
+    joints = [{"body": "hand", "rod": f"leg_{i}", "kind": "fixed", "position": place} for i, place in enumerate(places)]
+    wanted = scene(rods=legs, bodies=[{"name": "hand", "mass": 0.1}], joints=joints)
+    model = build(wanted, discretise(wanted, 4, 10, "magnus4"))
+    parts = assembled(model, scene_names("legs", wanted))
+    assert parts is not None
+    # One for the legs, one for what belongs to none of them.
+    assert len(parts.residual.kernels) == 2
+    assert len(parts.jacobian.kernels) == 2
+
+
 def test_parts_that_call_functions_of_equal_counts_are_told_apart() -> None:
     """Three parts that differ in what they call alone; two of their callees compute the same."""
     a = ca.SX.sym("a")

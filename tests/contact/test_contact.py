@@ -134,7 +134,7 @@ def check_complementary(solution: Solution, tolerance: float) -> None:
         assert min(contact.ends) >= 0.0
         touching = np.linspace(contact.start, contact.end, 101)
         assert_allclose(
-            gap_along(solution, contact.rod, obstacles[contact.obstacle], touching), 0.0, rtol=0, atol=tolerance
+            gap_along(solution, contact.owner, obstacles[contact.obstacle], touching), 0.0, rtol=0, atol=tolerance
         )
 
 

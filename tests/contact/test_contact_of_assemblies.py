@@ -172,10 +172,10 @@ def check_complementary(solution: Solution, tolerance: float) -> None:
     for contact in solution.contacts:
         assert min(contact.ends) > 0.0
         if contact.of_body:
-            gaps = np.array([body_gap(solution, bodies[contact.rod], obstacles[contact.obstacle])])
+            gaps = np.array([body_gap(solution, bodies[contact.owner], obstacles[contact.obstacle])])
         else:
             X = np.linspace(contact.start, contact.end, 101)
-            gaps = gap_along(solution, contact.rod, obstacles[contact.obstacle], X)
+            gaps = gap_along(solution, contact.owner, obstacles[contact.obstacle], X)
         assert_allclose(gaps, 0.0, rtol=0, atol=tolerance)
 
 
@@ -208,7 +208,7 @@ def test_two_rods_in_series_touch_as_one(one_rod: Solution, share: float, touchi
     assert_allclose(two.tip("rod").position, one_rod.tip().position, rtol=0, atol=atol)
     (contact,) = two.contacts
     (expected,) = one_rod.contacts
-    assert contact.rod == touching
+    assert contact.owner == touching
     place = share * contact.start if touching == "first" else share + (1 - share) * contact.start
     assert_allclose(place, expected.start, rtol=0, atol=atol)
     assert_allclose(contact.force, expected.force, rtol=0, atol=10 * atol)
@@ -271,7 +271,7 @@ def _mean(solution: Solution, rod: str) -> np.ndarray:
 def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
     """Force and moment of the clamp make up, about the base, for weights and contacts."""
     tree = solved(BRANCH)
-    assert {(contact.rod, contact.of_body) for contact in tree.contacts} == {("rod", False), ("fruit", True)}
+    assert {(contact.owner, contact.of_body) for contact in tree.contacts} == {("rod", False), ("fruit", True)}
     check_complementary(tree, 1e-9)
     down = np.array([0.0, 0.0, -9.81])
     fruit = tree.body("fruit").position[0]
@@ -282,7 +282,7 @@ def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
         forces.append(mass * down)
         moments.append(mass * np.cross(centre, down))
     for contact in tree.contacts:
-        at = fruit if contact.of_body else tree.pose([contact.start], contact.rod).position[0]
+        at = fruit if contact.of_body else tree.pose([contact.start], contact.owner).position[0]
         forces.append(contact.force)
         moments.append(np.cross(at, contact.force))
     wrench = tree.base_wrench("rod")
@@ -342,7 +342,7 @@ def test_a_line_on_the_last_rod_of_a_chain_is_that_of_one_rod() -> None:
 
 def test_a_ball_on_a_dome(on_dome: Solution) -> None:
     (contact,) = on_dome.contacts
-    assert (contact.rod, contact.obstacle, contact.kind, contact.of_body) == ("ball", "dome", "point", True)
+    assert (contact.owner, contact.obstacle, contact.kind, contact.of_body) == ("ball", "dome", "point", True)
     check_complementary(on_dome, 1e-12)
     # The force is along the line of centres, and the clamp bears the rest.
     out = on_dome.body().position[0] - [0.9, 0.03, -0.6]
@@ -445,7 +445,7 @@ def test_a_frame_that_leans_on_a_wall(frame: Solution) -> None:
 @pytest.mark.slow
 def test_a_leg_of_a_loop_and_its_body_touch() -> None:
     held = solved(FRAME.replace("[2.0, 0, -1.0]", "[4.0, 0, -1.0]") + WALL + PEG)
-    assert {(contact.rod, contact.obstacle) for contact in held.contacts} == {("deck", "wall"), ("right", "peg")}
+    assert {(contact.owner, contact.obstacle) for contact in held.contacts} == {("deck", "wall"), ("right", "peg")}
     check_complementary(held, 1e-9)
     bases = sum(held.base_wrench(rod).force for rod in ("left", "right"))
     contacts = sum(contact.force for contact in held.contacts)
@@ -516,7 +516,7 @@ def test_along_a_path_a_point_slides_from_one_rod_to_the_next(share: float) -> N
     assert_allclose(cut.events[0].factor, whole.events[0].factor, rtol=0, atol=1e-9)
     (expected,) = whole.contacts(-1)
     (contact,) = cut.contacts(-1)
-    assert contact.rod == "rod"
+    assert contact.owner == "rod"
     assert_allclose(share + (1 - share) * contact.start, expected.start, rtol=0, atol=1e-9)
     assert_allclose(contact.ends, expected.ends, rtol=1e-8, atol=0)
     # At the event its place on the first rod is a little before the joint, as it is along the whole one.
@@ -538,7 +538,7 @@ def test_a_point_slides_back_over_the_joint() -> None:
     path = follow_path(model, "lift.force", [0.0, 0.0, 0.95])
     assert [event.kind for event in path.events] == ["slide_over_joint", "lift_off"]
     back = path.events[0].contact
-    assert back is not None and back.rod == "rod"
+    assert back is not None and back.owner == "rod"
 
 
 @pytest.mark.slow

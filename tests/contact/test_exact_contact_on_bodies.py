@@ -358,7 +358,7 @@ def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
     path = follow_path(model, "push.force", [0.0, 0.0, -PUSH], values={"push.force": [0.0, 0.0, 0.0]})
     assert path.converged and isinstance(path, ContactPath)
     (touch,) = path.events
-    assert (touch.kind, touch.contact.obstacle, touch.contact.rod) == ("touch", "disk", "pushed")
+    assert (touch.kind, touch.contact.obstacle, touch.contact.owner) == ("touch", "disk", "pushed")
 
     def tip(push: float) -> FloatArray:
         def bent(moment: float) -> FloatArray:
@@ -399,7 +399,7 @@ def test_the_example_presses(tmp_path: Path) -> None:
     solution = solve(build(read_scene(ROOT / "examples" / "finger_on_finger.toml", ["accuracy.modes=4"])))
     assert solution.converged and solution.stable
     (contact,) = solution.contacts
-    assert (contact.obstacle, contact.rod, contact.kind) == ("rim", "lower", "point")
+    assert (contact.obstacle, contact.owner, contact.kind) == ("rim", "lower", "point")
     assert_allclose(solution.base_wrench("lower").force, -contact.force, rtol=0, atol=1e-9)
     save_plot(solution, tmp_path / "fingers.png")
 

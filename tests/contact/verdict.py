@@ -24,7 +24,7 @@ def _faults(solution: Solution, tolerance: float) -> Iterator[str]:
         if least < -tolerance:
             yield f"{least:.1e} inside {obstacle.name}"
         for contact in solution.contacts:
-            if (contact.rod, contact.obstacle) != (rod, obstacle.name):
+            if (contact.owner, contact.obstacle) != (rod, obstacle.name):
                 continue
             X = np.linspace(contact.start, contact.end, 201)
             off = np.abs(gap_along(solution, rod, obstacle, X)).max()

@@ -136,7 +136,7 @@ bodies = ["ball"]
 def test_derivatives_of_gaps_of_assemblies_are_those_of_differences(name: str, slides: bool) -> None:
     lift = "[[motions]]\ninput = 'trunk.base.position'\namplitude = [0, 0, 0.1]\nfrequency = 1.0\n"
     model = moving(head() + TWIGS + lift)
-    number = [facing.rod for facing in facings(model)].index(name)
+    number = [facing.owner for facing in facings(model)].index(name)
     follower = Follower(facings(model), (Touch(number, 0.5 if slides else 1.0, slides),))
     (facing,) = follower.facings
     rng = np.random.default_rng(3)
@@ -181,7 +181,7 @@ def test_a_ball_on_a_light_rod_strikes_as_an_oscillator_does() -> None:
     time = np.arccos(1 - depth / sag) / frequency
     speed = sag * frequency * np.sin(frequency * time)
     struck = motion.events[0]
-    assert (struck.kind, struck.rod, struck.of_body) == ("impact", "ball", True)
+    assert (struck.kind, struck.owner, struck.of_body) == ("impact", "ball", True)
     # Slopes of a thousandth are left out by hand.
     assert_allclose(struck.time, time, rtol=1e-5, atol=0)
     assert_allclose(struck.impulse, mass * speed, rtol=1e-5, atol=0)
@@ -233,7 +233,7 @@ def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -
     motion = simulate(model)
     assert motion.converged, motion.message
     struck = motion.events[0]
-    assert (struck.kind, struck.rod) == ("impact", body)
+    assert (struck.kind, struck.owner) == ("impact", body)
     impulse, speed = impulse_by_projection(model, motion, struck.time, body)
     assert_allclose(struck.impulse, impulse, rtol=1e-5, atol=0)
     assert_allclose(struck.energy, 0.5 * impulse * speed, rtol=1e-5, atol=0)
@@ -258,15 +258,15 @@ def test_two_rods_in_series_touch_as_one_across_their_joint() -> None:
     assert two.converged, two.message
     assert [event.kind for event in one.events] == ["impact"]
     struck, slid = two.events
-    assert (struck.kind, struck.rod) == ("impact", "first")
-    assert (slid.kind, slid.rod, slid.place) == ("slide_over_joint", "second", 0.0)
+    assert (struck.kind, struck.owner) == ("impact", "first")
+    assert (slid.kind, slid.owner, slid.place) == ("slide_over_joint", "second", 0.0)
     assert_allclose(struck.time, one.events[0].time, rtol=0, atol=1e-6)
     assert_allclose(struck.place / 2, one.events[0].place, rtol=0, atol=1e-5)
     assert_allclose(struck.impulse, one.events[0].impulse, rtol=1e-4, atol=0)
     assert_allclose(two.tip("second").position, one.tip().position, rtol=0, atol=1e-5 * 0.4)
     (whole,) = one.contacts[-1]
     (part,) = two.contacts[-1]
-    assert part.rod == "second"
+    assert part.owner == "second"
     assert_allclose(0.5 + part.at / 2, whole.at, rtol=0, atol=1e-4)
     assert_allclose(part.force, whole.force, rtol=0, atol=1e-2 * np.linalg.norm(whole.force))
 
@@ -276,7 +276,7 @@ def test_a_free_rod_with_a_ball_takes_the_impulse_at_the_centre_of_the_ball() ->
     text = head(duration=0.11) + club + BALL.format(rod="rod") + WEIGHT
     motion = simulate(moving(text + FLOOR.format(height=-0.25, who='bodies = ["ball"]')))
     struck = motion.events[0]
-    assert (struck.kind, struck.rod) == ("impact", "ball")
+    assert (struck.kind, struck.owner) == ("impact", "ball")
 
     def momenta(time: float) -> FloatArray:
         state = motion.at(time)
@@ -376,9 +376,9 @@ def test_a_head_that_is_shaken_off_the_floor_by_its_handle_does_not_leave_and_to
     """The handle strikes while the head is on the floor: flights of nanoseconds, and dips of less than the error."""
     motion = simulate(moving(CLUB))
     assert motion.converged, motion.message
-    assert [event.rod for event in motion.events[:2]] == ["head", "handle"]
+    assert [event.owner for event in motion.events[:2]] == ["head", "handle"]
     lies = [event.kind for event in motion.events].index("lie_down")
-    assert motion.events[lies].rod == "handle"
+    assert motion.events[lies].owner == "handle"
     assert motion.events[1].energy > 100 * sum(event.energy for event in motion.events[2:lies])
     heights = motion.body("head").position[:, 2] - 0.03
     assert heights.min() > -1e-4 * 0.4

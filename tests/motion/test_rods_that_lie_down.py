@@ -24,9 +24,11 @@ from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.consistent_start import response, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step_run import ON_GUARD
+from tests.families import mostly_slow
 
 LIES = "examples/rod_lies_down.toml"
 LENGTH = 0.4
+HEAVY = "examples/rod_on_table.toml"
 
 
 def moved(*changes: str) -> Motion:
@@ -110,6 +112,32 @@ def test_the_start_in_contact_converges_to_statics_with_the_modes() -> None:
         apart.append(float(np.linalg.norm(motion.tip().position[0] - wanted)) / LENGTH)
     assert apart[1] < 0.5 * apart[0]
     assert apart[2] < 0.5 * apart[1]
+
+
+@pytest.fixture(scope="module")
+def heavy_at_rest() -> Solution:
+    """A rod ten times as long as what its weight bends, on a table as statics has it."""
+    return solve(build(read_scene(HEAVY)))
+
+
+@pytest.mark.parametrize("modes", mostly_slow([2, 3, 4, 5, 6, 7, 10, 12, 16, 24], [3, 5, 12]))
+def test_a_heavy_rod_starts_in_contact_on_any_number_of_modes(modes: int, heavy_at_rest: Solution) -> None:
+    """Few modes stand on as many sections as they have; without the table under it the rod would be unstable."""
+    simulation = "simulation={duration=0.05,tolerance=5e-3,frames=3}"
+    scene = read_scene(HEAVY, [simulation, f"accuracy={{modes={modes},nodes={2 * modes + 4}}}"])
+    motion = simulate(build(scene.with_motion_inputs(), moving=True), start=heavy_at_rest)
+    assert motion.converged, motion.message
+    assert not motion.events
+    assert np.abs(motion.v).max() < 1e-6
+    assert_allclose(motion.tip().position[-1], motion.tip().position[0], rtol=0, atol=1e-9)
+    forces = np.array([contact.force for contact in motion.contacts[0]])
+    assert forces[:, 2].min() > 0.0
+    assert deepest(motion, np.array([0.0])) < 0.05 / modes**2
+    if modes >= 10:
+        (line,) = heavy_at_rest.contacts
+        wanted = heavy_at_rest.tip().position[0]
+        assert_allclose(forces.sum(axis=0), line.force, rtol=0, atol=1e-2 * line.force[2])
+        assert_allclose(motion.tip().position[0], wanted, rtol=0, atol=1e-2 * 1.5)
 
 
 def test_a_motion_goes_on_from_a_result_in_contact(tmp_path: Path) -> None:

@@ -56,6 +56,31 @@ def test_more_constraints_than_there_are_motions_to_stop_settle_without_pulling(
         assert_allclose(opening * forces, 0.0, rtol=0, atol=1e-7)
 
 
+@pytest.mark.parametrize("count", [12, 40])
+def test_of_constraints_that_depend_on_each_other_those_push_that_keep_all_from_closing(count: int) -> None:
+    """Their rates are not those of any motion: one that is added may have to take the place of another."""
+    rng = np.random.default_rng(count)
+    for _ in range(20):
+        directions = rng.normal(size=(count, 6))
+        compliance = directions @ directions.T
+        room = rng.uniform(0.0, 3.0, size=count)
+        rates = room + directions @ rng.normal(size=6) * 2.0
+        forces = least_pushes(compliance, rates, 1e-10)
+        assert forces is not None
+        opening = rates + compliance @ forces
+        assert forces.min() >= 0.0
+        assert opening.min() >= -1e-9
+        assert_allclose(opening * forces, 0.0, rtol=0, atol=1e-8)
+
+
+def test_where_nothing_keeps_a_constraint_from_closing_the_others_are_kept() -> None:
+    compliance = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    forces = least_pushes(compliance, np.array([-1.0, 0.5]), 1e-12)
+    assert forces is not None
+    # What the one opens by the other closes by: together they close, whatever the forces.
+    assert_allclose(forces, [1.0, 0.0], rtol=1e-15, atol=0)
+
+
 def test_a_constraint_twice_and_one_that_nothing_moves_take_no_force_of_their_own() -> None:
     compliance = np.array([[2.0, 2.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 0.0]])
     forces = least_pushes(compliance, np.array([-1.0, -1.0, -1.0]), 1e-12)

@@ -90,9 +90,9 @@ def _table_rows(path: EquilibriumPath, abscissae: dict[str, float]) -> list[_Tab
 def _event_kind(event: PathEvent) -> str:
     contact = event.contact
     if contact is not None and contact.of_body:
-        return f"{CONTACT_WORDS[event.kind]}, {contact.rod} on {contact.obstacle}"
+        return f"{CONTACT_WORDS[event.kind]}, {contact.owner} on {contact.obstacle}"
     if contact is not None:
-        return f"{CONTACT_WORDS[event.kind]}, {contact.rod} X = {contact.start:.4g} on {contact.obstacle}"
+        return f"{CONTACT_WORDS[event.kind]}, {contact.owner} X = {contact.start:.4g} on {contact.obstacle}"
     if event.multiplicity == 1:
         return event.kind
     return f"{event.kind}, {event.multiplicity}-fold"

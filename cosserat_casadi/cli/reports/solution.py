@@ -139,7 +139,7 @@ def _contact_table(solution: Solution) -> Table:
             where = f"X = {contact.start:.6g} to {contact.end:.6g}"
         if contact.width is not None:
             where += f", smooth: gap {contact.gap:.3g} m of width {contact.width:.3g} m"
-        table.add_row(escape(contact.obstacle), escape(contact.rod), where, *digits(contact.force))
+        table.add_row(escape(contact.obstacle), escape(contact.owner), where, *digits(contact.force))
     if not solution.contacts:
         table.add_row("none touched", "", "", "", "", "")
     return table

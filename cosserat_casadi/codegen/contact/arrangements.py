@@ -85,7 +85,7 @@ class _Met:
         loaded = with_contacts(self.scene, state, self.grids.bending_modes(self.scene))
         ends = []
         for name, discretisation in self.grids.discretisation(loaded).items():
-            places = {float(end) for touch in state.touches if touch.rod == name for end in touch.moving}
+            places = {float(end) for touch in state.touches if touch.owner == name for end in touch.moving}
             ends.append(tuple(None if end in places else end for end in discretisation.breaks))
         return state.signature, tuple(ends)
 
@@ -147,7 +147,7 @@ def _refuse_split_lines(states: Sequence[ContactState]) -> None:
     Raises:
         ExportError: there are some.
     """
-    split = {(touch.rod, touch.obstacle, X) for state in states for touch in state.touches for X in touch.seams}
+    split = {(touch.owner, touch.obstacle, X) for state in states for touch in state.touches for X in touch.seams}
     problems = [
         Problem(
             "loads",

@@ -228,7 +228,7 @@ class CompiledContact(LoadedLibrary):
             ends = 2 if own.is_line else 1
             contact = Contact(
                 obstacle=self.manifest["obstacles"][own.obstacle],
-                rod=self.rods[own.rod],
+                owner=self.rods[own.rod],
                 start=own.start,
                 end=own.end,
                 force=np.array(own.force),

@@ -143,7 +143,7 @@ class ArrangementKernels:
         """Force of every contact on its rod, world axes, N, three numbers for each."""
         forces: list[Matrix] = [ca.MX(0, 1)]
         for touch, ends, line in self._forces():
-            grid = self._written.system.discrete.rods[touch.rod].grid
+            grid = self._written.system.discrete.rods[touch.owner].grid
             force: Matrix = ca.MX.zeros(3)
             for number, end in enumerate(touch.ends):
                 force = force + ends[number] * self._normal(touch, grid.node_at(end))
@@ -154,7 +154,7 @@ class ArrangementKernels:
 
     def _resultant_along(self, touch: Touch, line: Matrix) -> Matrix:
         """∫ λ n over a stretch of contact."""
-        grid = self._written.system.discrete.rods[touch.rod].grid
+        grid = self._written.system.discrete.rods[touch.owner].grid
         nodes = grid.nodes_in(touch.start, touch.end)
         local = (grid.nodes_at(nodes) - touch.start) / (touch.end - touch.start)
         along = as_matrix(polynomials_at(line.shape[0], local)).T @ line
@@ -167,9 +167,9 @@ class ArrangementKernels:
 
     def _normal(self, touch: Touch, node: int) -> Matrix:
         """Normal of the obstacle at a node of the rod that touches it."""
-        base = self._written.system.base(touch.rod)
+        base = self._written.system.base(touch.owner)
         rotation = quaternion_to_matrix(base.quaternion)
-        position = base.position + rotation @ self._written.system.shapes[touch.rod].position_at(node)
+        position = base.position + rotation @ self._written.system.shapes[touch.owner].position_at(node)
         obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
         normal: Matrix = surface(obstacle)(position)[1]
         return normal
@@ -181,13 +181,13 @@ class ArrangementKernels:
         first = 0
         for touch in self._written.state.touches:
             ends = len(touch.ends)
-            count = touch.moment_count(self._written.modes[touch.rod]) if touch.is_line else 0
+            count = touch.moment_count(self._written.modes[touch.owner]) if touch.is_line else 0
             split.append((touch, f[first : first + ends], f[first + ends : first + ends + count]))
             first += ends + count
         return split
 
     def _unit(self, touch: Touch) -> float:
-        return self._written.system.discrete.tension_unit(touch.rod)
+        return self._written.system.discrete.tension_unit(touch.owner)
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:

@@ -203,7 +203,7 @@ def _manifest(
     arrangements = []
     for own in chosen.equations:
         touches = [
-            {"rod": touch.rod, "obstacle": touch.obstacle, "kind": touch.kind, "at_tip": touch.reaches_tip}
+            {"rod": touch.owner, "obstacle": touch.obstacle, "kind": touch.kind, "at_tip": touch.reaches_tip}
             for touch in own.state.touches
         ]
         nominal = own.nominal

@@ -174,7 +174,7 @@ class Tables:
         number = 0
         for touch in equations.state.touches:
             for place in touch.moving:
-                if touch.rod == rod:
+                if touch.owner == rod:
                     places[float(place)] = number
                 number += 1
         return [places.get(end, -1) for end in equations.nominal.model.discretisation[rod].breaks]
@@ -184,9 +184,9 @@ class Tables:
         first_force = 0
         first_place = 0
         for touch in equations.state.touches:
-            along = touch.moment_count(equations.nominal.modes[touch.rod]) if touch.is_line else 0
+            along = touch.moment_count(equations.nominal.modes[touch.owner]) if touch.is_line else 0
             fields = {
-                "rod": self.rods.index(touch.rod),
+                "rod": self.rods.index(touch.owner),
                 "obstacle": self.obstacles.index(touch.obstacle),
                 "is_line": int(touch.is_line),
                 "ends": len(touch.ends),
@@ -238,7 +238,7 @@ def described(equations: ContactEquations) -> str:
         where = "at its tip" if touch.reaches_tip else "at a point"
         if touch.is_line:
             where = "along a line to its tip" if touch.reaches_tip else "along a line"
-        words.append(f"{touch.rod} touches {touch.obstacle} {where}")
+        words.append(f"{touch.owner} touches {touch.obstacle} {where}")
     return ", ".join(words) or "no contact"
 
 

@@ -32,7 +32,9 @@ def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
         yield ()
         return
     middle = (touch.start + touch.end) / 2
-    first, last, between = (Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle))
+    first, last, between = (
+        Touch.point(touch.obstacle, touch.owner, place) for place in (touch.start, touch.end, middle)
+    )
     yield (first, last)
     yield (between,)
     yield (first,)
@@ -46,7 +48,7 @@ def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Ite
     """The same contacts with one place on the other side of a section with a load next to it, the nearest first."""
     crossings: list[tuple[float, ContactState]] = []
     places = state.places
-    rods = [touch.rod for touch in state.touches for _ in touch.moving]
+    rods = [touch.owner for touch in state.touches for _ in touch.moving]
     for index, (rod, place) in enumerate(zip(rods, places.tolist(), strict=True)):
         stations = np.array([0.0, *sections[rod], TIP])
         before = int(np.searchsorted(stations, place)) - 1
@@ -69,10 +71,10 @@ def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> I
             for option in instead_of_pulling(touch):
                 yield ContactState.of([*rest, *option])
         elif touch.reaches_tip:
-            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])
-            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.rod, LIES_FROM, TIP)])
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.owner, TIP - 2 * NEAR)])
+            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.owner, LIES_FROM, TIP)])
         elif not touch.of_body:
-            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP)])
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.owner, TIP)])
         yield ContactState.of(rest)
 
 
@@ -85,16 +87,16 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
     """
     of_rods = [touch for touch in state.touches if not touch.of_body]
     for first, second in pairwise(of_rods):
-        same = (first.rod, first.obstacle) == (second.rod, second.obstacle)
+        same = (first.owner, first.obstacle) == (second.owner, second.obstacle)
         if same and second.start - first.end < MET:
-            yield _with(state, {first: Touch.line(first.obstacle, first.rod, first.start, second.end), second: None})
+            yield _with(state, {first: Touch.line(first.obstacle, first.owner, first.start, second.end), second: None})
     for touch in of_rods:
         if touch.is_line and touch.end - touch.start < MET:
-            yield _with(state, {touch: Touch.point(touch.obstacle, touch.rod, touch.start)})
+            yield _with(state, {touch: Touch.point(touch.obstacle, touch.owner, touch.start)})
             continue
         if TIP - MET < touch.end < TIP:
             yield _with(state, {touch: replace(touch, start=touch.start if touch.is_line else TIP, end=TIP)})
-        for section in sections[touch.rod]:
+        for section in sections[touch.owner]:
             for number, place in enumerate(touch.moving):
                 if abs(place - section) < MET:
                     places = list(touch.moving)

@@ -33,14 +33,14 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> M
         if touch.of_body:
             rows.append(_body_gap(system, touch))
             continue
-        distances = Distances(system, touch.rod, obstacle_of(system.discrete.scene, touch.obstacle))
+        distances = Distances(system, touch.owner, obstacle_of(system.discrete.scene, touch.obstacle))
         for end, moves in zip(touch.carriers, touch.carriers_move, strict=True):
             gap, slope = distances.at(end)
             rows.append(gap)
             if moves:
                 rows.append(slope)
         if touch.is_line:
-            counts = touch.moment_counts(modes[touch.rod])
+            counts = touch.moment_counts(modes[touch.owner])
             rows += [
                 distances.moments(start, end, count)
                 for (start, end), count in zip(touch.stretches, counts, strict=True)
@@ -60,7 +60,7 @@ def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | 
             if moves:
                 widths.append(None)
         if touch.is_line:
-            counts = touch.moment_counts(modes[touch.rod])
+            counts = touch.moment_counts(modes[touch.owner])
             for (start, end), count in zip(touch.stretches, counts, strict=True):
                 widths += [end - start] * count
     return widths
@@ -68,10 +68,10 @@ def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | 
 
 def _body_gap(system: System, touch: Touch) -> Matrix:
     """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
-    body = system.discrete.bodies[touch.rod]
-    position = system.frame(FrameName("body", touch.rod)).position
+    body = system.discrete.bodies[touch.owner]
+    position = system.frame(FrameName("body", touch.owner)).position
     distance, _, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)
-    gap: Matrix = (distance - ball_radius(body)) / system.discrete.body_frame(touch.rod).length
+    gap: Matrix = (distance - ball_radius(body)) / system.discrete.body_frame(touch.owner).length
     return gap
 
 

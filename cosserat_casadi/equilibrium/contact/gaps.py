@@ -96,13 +96,13 @@ def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: Fl
 def touching_points(solution: Solution, contact: Contact, along: int) -> FloatArray:
     """Centres of the sections that touch, as many along a line as are asked for; of a body where its ball touches."""
     if contact.of_body:
-        (body,) = [body for body in solution.model.scene.bodies if body.name == contact.rod]
+        (body,) = [body for body in solution.model.scene.bodies if body.name == contact.owner]
         obstacle = obstacle_of(solution.model.scene, contact.obstacle)
         normal = body_normal(solution, body.name, obstacle)
         return np.asarray(solution.body(body.name).position - ball_radius(body) * normal)
     count = along if contact.start < contact.end else 1
     X = np.linspace(contact.start, contact.end, count)
-    return solution.pose(X, contact.rod).position
+    return solution.pose(X, contact.owner).position
 
 
 def runs(chosen: npt.NDArray[np.bool_]) -> Iterator[slice]:

@@ -87,7 +87,7 @@ class Found:
 
     def pressure(self, touch: Touch, line: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Abscissae along a line of contact and the force per length there, without unit."""
-        return pressure_along(touch, line, self.placed.modes[touch.rod])
+        return pressure_along(touch, line, self.placed.modes[touch.owner])
 
     def weakest(self, touch: Touch) -> float:
         """Abscissa at which a line presses least, or pulls most; of sections too."""
@@ -136,7 +136,7 @@ class Penetrated:
     """A stretch of a rod that is inside an obstacle; or a body.
 
     Attributes:
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that is inside.
         obstacle: name of the obstacle.
         start: abscissa of its first section.
         end: of its last one.
@@ -145,7 +145,7 @@ class Penetrated:
         of_body: whether it is a body.
     """
 
-    rod: str
+    owner: str
     obstacle: str
     start: float
     end: float
@@ -160,7 +160,7 @@ class Penetrated:
 
     def is_at(self, touch: Touch) -> bool:
         """Whether it begins or ends at a contact."""
-        if (touch.rod, touch.obstacle, touch.of_body) != (self.rod, self.obstacle, self.of_body):
+        if (touch.owner, touch.obstacle, touch.of_body) != (self.owner, self.obstacle, self.of_body):
             return False
         return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
@@ -351,8 +351,8 @@ def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
         lifted = found.weakest(touch)
         reach = OPENING * min(lifted - touch.start, touch.end - lifted)
         if reach > 0.0:
-            before = Touch.line(touch.obstacle, touch.rod, touch.start, lifted - reach)
-            after = Touch.line(touch.obstacle, touch.rod, lifted + reach, touch.end)
+            before = Touch.line(touch.obstacle, touch.owner, touch.start, lifted - reach)
+            after = Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end)
             yield before, after
     yield from instead_of_pulling(touch)
 
@@ -360,22 +360,22 @@ def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
     """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
     if penetrated.of_body:
-        yield (Touch.ball(penetrated.obstacle, penetrated.rod),)
+        yield (Touch.ball(penetrated.obstacle, penetrated.owner),)
         return
     here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
-    point = Touch.point(penetrated.obstacle, penetrated.rod, here)
+    point = Touch.point(penetrated.obstacle, penetrated.owner, here)
     if touch is None:
         yield (point,)
         return
     start = min(penetrated.start, touch.start)
     end = max(penetrated.end, touch.end)
-    line = Touch.line(penetrated.obstacle, penetrated.rod, start, end)
+    line = Touch.line(penetrated.obstacle, penetrated.owner, start, end)
     if touch.is_line:
         yield (line,)
         yield (touch, point)
     elif touch.end == TIP:
         # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
-        inwards = Touch.point(penetrated.obstacle, penetrated.rod, min(here, TIP - 2 * NEAR))
+        inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(here, TIP - 2 * NEAR))
         yield (inwards,)
         yield (line,)
         yield (inwards, touch)

@@ -36,7 +36,7 @@ class Touch:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod, or of the body.
+        owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 for a body.
         end: abscissa at which it ends; the same for a point.
         is_line: whether a stretch lies on the obstacle.
@@ -45,7 +45,7 @@ class Touch:
     """
 
     obstacle: str
-    rod: str
+    owner: str
     start: Place
     end: Place
     is_line: bool = False
@@ -188,12 +188,12 @@ class ContactState:
     def signature(self) -> tuple[tuple[str, str, str, bool, bool], ...]:
         """What of the state is discrete: two states with the same differ in their places alone."""
         return tuple(
-            (touch.rod, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
+            (touch.owner, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
         )
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
         """The same contacts with seams at the sections of each rod, by name, that are inside them."""
-        touches = [touch if touch.of_body else touch.split(sections[touch.rod]) for touch in self.touches]
+        touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
         return ContactState(tuple(touches))
 
     @property
@@ -203,7 +203,7 @@ class ContactState:
 
     def along(self, rod: str) -> list[Touch]:
         """The contacts of a rod, from base to tip."""
-        return [touch for touch in self.touches if touch.rod == rod and not touch.of_body]
+        return [touch for touch in self.touches if touch.owner == rod and not touch.of_body]
 
     def at(self, places: Sequence[Place]) -> ContactState:
         """The same contacts at other places: numbers, or expressions."""
@@ -227,14 +227,14 @@ class ContactState:
         first = 0
         for touch in self.touches:
             last = first + len(touch.carriers)
-            count = touch.moment_count(modes[touch.rod]) if touch.is_line else 0
+            count = touch.moment_count(modes[touch.owner]) if touch.is_line else 0
             yield touch, forces[first:last], forces[last : last + count]
             first = last + count
 
     @property
     def in_order(self) -> bool:
         """Whether the places of each rod follow each other between base and tip, a little apart."""
-        for rod in {touch.rod for touch in self.touches}:
+        for rod in {touch.owner for touch in self.touches}:
             ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers)]
             gaps = np.diff(ends)
             if np.any(gaps < SHORTEST) or ends[-1] > TIP:
@@ -256,8 +256,8 @@ class ContactState:
                 loads.append(
                     ContactPoint.model_construct(
                         name=f"contact {len(loads) + 1}",
-                        rod=None if touch.of_body else touch.rod,
-                        body=touch.rod if touch.of_body else None,
+                        rod=None if touch.of_body else touch.owner,
+                        body=touch.owner if touch.of_body else None,
                         obstacle=obstacle,
                         at=end,
                         force=0.0,
@@ -265,11 +265,11 @@ class ContactState:
                 )
             if not touch.is_line:
                 continue
-            for span, count in zip(touch.stretches, touch.moment_counts(modes[touch.rod]), strict=True):
+            for span, count in zip(touch.stretches, touch.moment_counts(modes[touch.owner]), strict=True):
                 loads.append(
                     ContactLine.model_construct(
                         name=f"contact {len(loads) + 1}",
-                        rod=touch.rod,
+                        rod=touch.owner,
                         obstacle=obstacle,
                         span=span,
                         force=((0.0,) * count,),
@@ -333,12 +333,13 @@ def state_in(scene: scenes.Scene) -> ContactState:
             continue
         start, end = line.span
         touch = Touch.line(line.obstacle.name, line.rod, start, end)
-        if touches and (touches[-1].rod, touches[-1].obstacle, touches[-1].end) == (touch.rod, touch.obstacle, start):
+        last = touches[-1] if touches else None
+        if last is not None and (last.owner, last.obstacle, last.end) == (touch.owner, touch.obstacle, start):
             # One line, of stretches that follow each other.
             before = touches.pop()
             touch = replace(touch, start=before.start, seams=(*before.seams, start))
         touches.append(touch)
-    of_lines = {(touch.rod, touch.obstacle, at) for touch in touches for at in touch.carriers}
+    of_lines = {(touch.owner, touch.obstacle, at) for touch in touches for at in touch.carriers}
     for point in loads:
         if not isinstance(point, ContactPoint):
             continue
@@ -351,4 +352,4 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 def _order(touch: Touch) -> tuple[bool, str, Place, str]:
     """What contacts are sorted by."""
-    return touch.of_body, touch.rod, touch.start, touch.obstacle
+    return touch.of_body, touch.owner, touch.start, touch.obstacle

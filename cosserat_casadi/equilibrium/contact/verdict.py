@@ -75,15 +75,15 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
     """The contacts by name, with the forces on the rods."""
     contacts = []
     for touch, carried, line in found.parts():
-        unit = found.placed.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
+        unit = found.placed.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
         obstacle = found.placed.obstacle(touch.obstacle)
         zero = PRESSING * found.largest_force
         # What only rounding pulls does not pull.
         forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
         if touch.of_body:
-            normal = body_normal(found.solution, touch.rod, obstacle)[None, :]
+            normal = body_normal(found.solution, touch.owner, obstacle)[None, :]
         else:
-            normal = normals(found.solution, touch.rod, obstacle, np.array(touch.carriers))
+            normal = normals(found.solution, touch.owner, obstacle, np.array(touch.carriers))
         total = forces @ normal
         if touch.is_line:
             total = total + unit * _resultant(found, touch, obstacle, line)
@@ -91,7 +91,7 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
         contacts.append(
             Contact(
                 obstacle=touch.obstacle,
-                rod=touch.rod,
+                owner=touch.owner,
                 start=touch.start,
                 end=touch.end,
                 force=total,
@@ -107,13 +107,13 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
 
 def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
     """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
-    grid = found.placed.model.discrete.rods[touch.rod].grid
+    grid = found.placed.model.discrete.rods[touch.owner].grid
     total = np.zeros(3)
-    for start, end, own in touch.by_stretch(line, found.placed.modes[touch.rod]):
+    for start, end, own in touch.by_stretch(line, found.placed.modes[touch.owner]):
         nodes = grid.nodes_in(start, end)
         X = known(grid.nodes_at(nodes))
         along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
-        normal = normals(found.solution, touch.rod, obstacle, X)
+        normal = normals(found.solution, touch.owner, obstacle, X)
         total += (grid.weights[nodes] * along) @ normal
     return total
 
@@ -143,7 +143,7 @@ def _eigenvalues(found: Found) -> FloatArray:
                 held.append(own[1])
             else:
                 # Every row of the Jacobian is in a unit of its own.
-                unit = model.discrete.rods[touch.rod].energy_unit / model.discrete.unknowns.units
+                unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
                 jacobian = jacobian + carried[0] / bend * np.outer(unit * own[1], own[1])
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
@@ -151,9 +151,9 @@ def _eigenvalues(found: Found) -> FloatArray:
 def _gap_curvature(found: Found, touch: Touch) -> float:
     """Second derivative of the gap with X at a point of contact, over the length."""
     X = np.array([touch.start])
-    pose = found.solution.pose(X, touch.rod)
-    strain = found.solution.strain(X, touch.rod)[0]
-    length = found.placed.model.discrete.rods[touch.rod].properties.length
+    pose = found.solution.pose(X, touch.owner)
+    strain = found.solution.strain(X, touch.owner)[0]
+    length = found.placed.model.discrete.rods[touch.owner].properties.length
     tangent = length * pose.rotation[0] @ strain[3:]
     # The rate of the extension is along the tangent, on which the normal stands.
     bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])

@@ -1,4 +1,5 @@
-/* Measures the stack that the library's functions need: each runs on a painted one. Prints bytes. */
+/* Measures the stack that the library's functions need, with -DBATCHES that of batches alone: each runs on a painted one.
+   Prints bytes. */
 #include "@{name}.h"
 
 #include <pthread.h>
@@ -40,6 +41,19 @@ static void results(void) {
   @{name}_evaluate(x, inputs, &found);
 }
 
+#ifdef BATCHES
+enum { CASES = 16 };
+
+static @{name}_real many[CASES * ROOM], solved[CASES * N];
+static @{name}_batch_workspace batch_workspace;
+static @{name}_info infos[CASES];
+
+static void batch(void) {
+  for (int i = 0; i < CASES * INPUTS; i++) many[i] = inputs[i % INPUTS];
+  @{name}_solve_batch(CASES, many, solved, &batch_workspace, 1, infos);
+}
+#endif
+
 static void *run(void *task) {
   volatile unsigned char mark = 1;
   top = (unsigned char *)(uintptr_t)&mark;
@@ -61,10 +75,15 @@ static int bytes_of(void (*task)(void)) {
 }
 
 int main(void) {
+#ifdef BATCHES
+  void (*const tasks[])(void) = {batch};
+#else
   void (*const tasks[])(void) = {solve, follow, track, sensitivity, equations, results};
+#endif
+  const int count = (int)(sizeof tasks / sizeof *tasks);
   int most = 0;
   for (int i = 0; i < INPUTS; i++) near[i] = (@{name}_real)1.1 * inputs[i];
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < count; i++) {
     const int bytes = bytes_of(tasks[i]);
     if (bytes < 0) return 1;
     fprintf(stderr, "%d ", bytes);
