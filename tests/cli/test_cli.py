@@ -307,6 +307,8 @@ def test_inverse_writes_what_was_found(wire: Path) -> None:
         assert found["targets"][0]["angle_gap"] is None
         assert (wire / "f.svg").stat().st_size > 1000
         assert ("The targets are met." in found["message"]) is (code == 0)
+        # What was asked for is what the first line tells.
+        assert done.stdout.splitlines()[1].startswith("The targets are met." if code == 0 else "The targets are not")
     assert found["targets"][0]["position_gap"] == pytest.approx(np.hypot(0.3, 0.1) - 0.2, abs=1e-3)
     assert "misses tip of wire" in found["message"]
 
@@ -572,7 +574,13 @@ upper = [0, 0, -4.0]
     (tmp_path / "column.toml").write_text(COLUMN + target)
     refused = cosserat("inverse", "column.toml", "--output", "r.json", cwd=tmp_path)
     assert refused.returncode == 3, refused.stderr
-    assert refused.stdout.splitlines()[1].startswith("Not stable: a real rod leaves this equilibrium.")
+    expected = "Not stable: a real rod leaves this equilibrium. The targets are met. Equilibrium found"
+    words = " ".join(refused.stdout.split())
+    assert expected in words
+    assert refused.stdout.splitlines()[1].startswith("Not stable")
+    # The solve that judges what the optimiser has found takes no step, and is not what was done.
+    assert "of the optimiser from 1 start" in words
+    assert "iteration" not in words
     assert "--unstable" in refused.stderr
     result = json.loads((tmp_path / "r.json").read_text())
     assert (result["targets_met"], result["stable"]) == (True, False)
