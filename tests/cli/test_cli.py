@@ -537,6 +537,25 @@ force = [0, 0, -5.0]
 """
 
 
+@pytest.mark.parametrize(
+    ("accuracy", "warned"),
+    [
+        ({"modes": 3, "nodes": 6, "tolerance": 1e-6}, True),
+        ({"modes": 9, "nodes": 20, "tolerance": 1e-6}, False),
+        # Nobody has asked for the tolerance that a scene has by default.
+        ({"modes": 3, "nodes": 6}, False),
+    ],
+)
+def test_fixed_modes_that_miss_the_tolerance_are_warned_of(
+    wire: Path, accuracy: dict[str, float], warned: bool
+) -> None:
+    changes = [f"accuracy.{key}={value}" for key, value in accuracy.items()]
+    options = [word for change in changes for word in ("--set", change)]
+    done = cosserat("solve", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 0, done.stderr
+    assert ("is above the tolerance of 1e-06" in done.stderr) is warned
+
+
 def test_unstable_equilibrium_is_warned_of_and_stable_one_found(tmp_path: Path) -> None:
     (tmp_path / "column.toml").write_text(COLUMN)
     straight = cosserat("solve", "column.toml", "--output", "straight.json", cwd=tmp_path)

@@ -209,28 +209,6 @@ def test_the_object_is_compiled_once(strip: Path, tmp_path: Path) -> None:
     assert {path.name: path.read_bytes() for path in strip.iterdir()} == before
 
 
-def test_manifest_of_another_version(tmp_path: Path) -> None:
-    (tmp_path / MANIFEST).write_text(json.dumps({**SOUND, "schema": 2}))
-    expected = "has the schema 2, where this version reads 1"
-    assert refusal(tmp_path) == (str(tmp_path / MANIFEST), expected, "export the folder anew")
-
-
-def test_files_of_two_exports(strip: Path, tmp_path: Path) -> None:
-    """Arrays of two modes under a library for three would be written beyond their end."""
-    given = scene(push(), strain="planar")
-    other = export(build(given, discretise(given, 3, 4)), tmp_path / "other", "strip", derivatives=True)
-    shutil.copy(strip / MANIFEST, other)
-    expected = "says STRIP_UNKNOWNS 3, where manifest.json has 2"
-    assert refusal(other) == (str(other / "strip.h"), expected, "export the folder anew")
-
-
-def test_other_inputs_than_the_header_has(strip: Path) -> None:
-    described = json.loads((strip / MANIFEST).read_text())
-    described["inputs"] = described["inputs"][:-1]
-    (strip / MANIFEST).write_text(json.dumps(described))
-    assert refusal(strip)[1].startswith("says STRIP_INPUTS ")
-
-
 @needs_compiler
 @pytest.mark.parametrize("ending", [".c", ".h", "_config.h", "_kernels.c", "_kernels.h", "_derivatives.c"])
 def test_a_changed_source_gives_another_object(strip: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,6 +59,25 @@ def print_unstable(console: Console) -> None:
     )
 
 
+def print_beyond_tolerance(console: Console, solution: Solution) -> None:
+    """Warn where the modes and nodes that a scene fixes leave a larger error than the tolerance that it gives."""
+    accuracy = solution.model.scene.accuracy
+    # A tolerance that nobody has written asks for nothing.
+    if not accuracy.fixed or "tolerance" not in accuracy.model_fields_set:
+        return
+    error, what = solution.error_estimate, "the tips"
+    if accuracy.shape:
+        error, what = solution.shape_error_estimate, "the shape"
+    if error is None or error <= accuracy.tolerance:
+        return
+    print_plain(
+        console,
+        f"[bold yellow]Warning:[/] the estimated error of {what}, {error:.1e} of the length, is above the tolerance "
+        f"of {accuracy.tolerance:g}: the scene fixes its modes, nodes or rotation. Leave them out to meet it.",
+        soft_wrap=True,
+    )
+
+
 def print_unstable_inverse(console: Console) -> None:
     """Say what to do about inputs that lead to an unstable equilibrium."""
     print_plain(
