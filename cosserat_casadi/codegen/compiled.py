@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -28,7 +28,15 @@ from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_obj
 from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
-from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import (
+    EXPORT_FIRST,
+    MANIFEST,
+    check_folder,
+    input_count,
+    is_in_contact,
+    is_sound,
+    read_manifest,
+)
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
@@ -339,7 +347,8 @@ def load(
         progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
 
     Raises:
-        ExportError: the folder is not one of an export, there is no compiler, or it fails.
+        ExportError: the folder is not one of an export, another version has written it, its files do not belong
+            together, there is no compiler, or it fails.
     """
     folder = Path(directory)
     described = read_manifest(folder)
@@ -348,6 +357,7 @@ def load(
         raise ExportError(Problem(str(folder), problem, "load it with load_in_contact"))
     if not is_sound(described, _has_rods):
         raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", EXPORT_FIRST))
+    check_folder(folder, described, _sizes(described))
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
@@ -359,6 +369,17 @@ def load(
     headers += [folder / file for file in described["files"] if file in beside]
     library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
     return Compiled(library, described, names, _scene_text(folder))
+
+
+def _sizes(described: Mapping[str, Any]) -> dict[str, int]:
+    """Sizes of the library by what a manifest says, by their macros."""
+    sizes = {
+        "UNKNOWNS": sum(entry["count"] for entry in described["unknowns"]),
+        "INPUTS": input_count(described),
+    }
+    if described.get("parameters"):
+        sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
+    return sizes
 
 
 def _scene_text(folder: Path) -> str:

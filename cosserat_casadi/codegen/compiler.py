@@ -15,6 +15,9 @@ from cosserat_casadi.errors import ExportError, Problem
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
+EXPORT_ANEW = "export the folder anew"
+"""What helps where files of a folder are missing, of another version, or do not belong together."""
+
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
 Progress = Callable[[str, int, int], None]
@@ -122,4 +125,4 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError:
-        raise ExportError(Problem(str(path), "is missing", "export the folder anew")) from None
+        raise ExportError(Problem(str(path), "is missing", EXPORT_ANEW)) from None

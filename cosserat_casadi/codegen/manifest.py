@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
@@ -12,6 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.codegen.compiler import EXPORT_ANEW
 from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.names import Names, library_names
@@ -26,6 +28,9 @@ MANIFEST = "manifest.json"
 
 ARRANGEMENTS = "arrangements"
 """Key of the arrangements of contacts, which a folder of a scene in exact contact has alone."""
+
+SCHEMA = 1
+"""Version of the manifest that is written, and read back."""
 
 EXPORT_FIRST = "write one with cosserat export"
 """What helps where there is no manifest."""
@@ -65,6 +70,48 @@ def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
         return False
 
 
+def check_folder(folder: Path, described: Mapping[str, Any], sizes: Mapping[str, int]) -> None:
+    """Refuse a folder of another version, or one whose header has other sizes than its manifest, as of mixed exports.
+
+    What is compiled with the sizes of the header writes beyond arrays that have those of the manifest.
+
+    Args:
+        folder: the exported folder.
+        described: its manifest, sound.
+        sizes: by macro, without the name of the library, what the manifest says.
+
+    Raises:
+        ExportError: the schema is not the one that is read, or with every size that differs.
+    """
+    schema = described.get("schema")
+    if schema != SCHEMA:
+        problem = f"has the schema {schema!r}, where this version reads {SCHEMA}"
+        raise ExportError(Problem(str(folder / MANIFEST), problem, EXPORT_ANEW))
+    library = described["name"]
+    header = folder / f"{library}.h"
+    try:
+        text = header.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        # The compiler is not called without it: it is told to be missing then.
+        return
+    problems = []
+    for macro, size in sizes.items():
+        name = f"{library.upper()}_{macro}"
+        defined = re.search(rf"^#define {name} (\d+)$", text, re.MULTILINE)
+        if defined is None:
+            problems.append(Problem(str(header), f"does not define {name}", EXPORT_ANEW))
+        elif int(defined.group(1)) != size:
+            problem = f"says {name} {defined.group(1)}, where {MANIFEST} has {size}"
+            problems.append(Problem(str(header), problem, EXPORT_ANEW))
+    if problems:
+        raise ExportError(*problems)
+
+
+def input_count(described: Mapping[str, Any]) -> int:
+    """Numbers in the vector of inputs of a manifest."""
+    return sum(len(entry["value"]) for entry in described["inputs"])
+
+
 def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: float | None) -> dict[str, Any]:
     """The manifest as plain data.
 
@@ -76,7 +123,7 @@ def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: 
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
-        "schema": 1,
+        "schema": SCHEMA,
         "name": names.name,
         "title": model.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},

@@ -78,7 +78,8 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
     result = replace(result, met=meets_all(result))
     message = solution.message
     if solution.converged:
-        message += _targets_sentence(result)
+        # What was asked for comes first: whether the targets are met.
+        message = f"{_targets_sentence(result)} {message}"
     if result.unstable:
         message = UNSTABLE + message
     refused = stable and result.unstable
@@ -106,10 +107,10 @@ def _targets_sentence(result: Inverse) -> str:
     missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
     if missed:
         misses = "; ".join(_words(gap) for gap in missed)
-        sentence = f" The targets are not all met; the closest that was found misses {misses}."
+        sentence = f"The targets are not all met; the closest that was found misses {misses}."
         return sentence + _minimum_sentence(result)
     if meets_all(result):
-        return " The targets are met."
+        return "The targets are met."
     return _model_sentence(result)
 
 
@@ -129,7 +130,7 @@ def _model_sentence(result: Inverse) -> str:
     scene = result.solution.model.scene
     errors = [model_error(result.solution, target) or 0.0 for target in result.targets]
     return (
-        " The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
+        "The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
         f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "
         "larger tolerance."
     )

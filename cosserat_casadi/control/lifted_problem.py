@@ -26,9 +26,6 @@ Strong damping at first keeps the rods on the branch that they start on.
 SETTLED = 1e-9
 """Change of the inputs from round to round, in their scales, below which they have settled."""
 
-SETTLED = 1e-9
-"""Change of the inputs from round to round, in their scales, below which they have settled."""
-
 ROUNDS = 7
 """Most rounds."""
 

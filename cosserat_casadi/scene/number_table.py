@@ -16,6 +16,10 @@ MOST_TOLD = 20
 """Faults of one table that are told; a file may have one in every row."""
 
 
+SEPARATORS = (";", "\t")
+"""What other programs put between columns; no name of a column has them."""
+
+
 def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Problem]]:
     """Header of a CSV file, its numbers, shape (count, columns), the line of each row, and every fault of its cells.
 
@@ -38,12 +42,17 @@ def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """
     try:
         rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, ValueError, csv.Error) as error:
+    except OSError as error:
+        raise SceneError(Problem(str(path), f"cannot be read: {error.strerror}")) from None
+    except (ValueError, csv.Error) as error:
         raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
     filled = [(line, row) for line, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
     if len(filled) < 2:
         raise SceneError(Problem(str(path), "holds no row of numbers", "give a header and a row of numbers below it"))
     header = [cell.strip() for cell in filled[0][1]]
+    if len(header) == 1 and any(sign in header[0] for sign in SEPARATORS):
+        problem = f"has the one column {header[0]!r}"
+        raise SceneError(Problem(str(path), problem, "separate columns by commas, and write decimals with a point"))
     return header, filled[1:]
 
 

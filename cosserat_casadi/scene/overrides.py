@@ -143,4 +143,16 @@ def _index(container: Any, segment: str) -> Any:
         # At most nine digits: Python refuses to read integers of thousands.
         if re.fullmatch(r"[0-9]{1,9}", segment) and int(segment) < len(container):
             return int(segment)
-    raise RefusedOverride(f"there is no {shown(segment)} to set")
+    raise RefusedOverride(f"there is no {shown(segment)} to set", _what_there_is(container))
+
+
+def _what_there_is(container: Any) -> str:
+    """What may be set where a key leads to something else; empty where that is no list."""
+    if not isinstance(container, list) or not container:
+        return ""
+    names = [entry["name"] for entry in container if isinstance(entry, dict) and isinstance(entry.get("name"), str)]
+    if names:
+        return f"there are {', '.join(names)}"
+    if len(container) == 1:
+        return "it has one entry, [0]"
+    return f"its entries are [0] to [{len(container) - 1}]"

@@ -307,6 +307,8 @@ def test_inverse_writes_what_was_found(wire: Path) -> None:
         assert found["targets"][0]["angle_gap"] is None
         assert (wire / "f.svg").stat().st_size > 1000
         assert ("The targets are met." in found["message"]) is (code == 0)
+        # What was asked for is what the first line tells.
+        assert done.stdout.splitlines()[1].startswith("The targets are met." if code == 0 else "The targets are not")
     assert found["targets"][0]["position_gap"] == pytest.approx(np.hypot(0.3, 0.1) - 0.2, abs=1e-3)
     assert "misses tip of wire" in found["message"]
 
@@ -535,6 +537,25 @@ force = [0, 0, -5.0]
 """
 
 
+@pytest.mark.parametrize(
+    ("accuracy", "warned"),
+    [
+        ({"modes": 3, "nodes": 6, "tolerance": 1e-6}, True),
+        ({"modes": 9, "nodes": 20, "tolerance": 1e-6}, False),
+        # Nobody has asked for the tolerance that a scene has by default.
+        ({"modes": 3, "nodes": 6}, False),
+    ],
+)
+def test_fixed_modes_that_miss_the_tolerance_are_warned_of(
+    wire: Path, accuracy: dict[str, float], warned: bool
+) -> None:
+    changes = [f"accuracy.{key}={value}" for key, value in accuracy.items()]
+    options = [word for change in changes for word in ("--set", change)]
+    done = cosserat("solve", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 0, done.stderr
+    assert ("is above the tolerance of 1e-06" in done.stderr) is warned
+
+
 def test_unstable_equilibrium_is_warned_of_and_stable_one_found(tmp_path: Path) -> None:
     (tmp_path / "column.toml").write_text(COLUMN)
     straight = cosserat("solve", "column.toml", "--output", "straight.json", cwd=tmp_path)
@@ -572,7 +593,13 @@ upper = [0, 0, -4.0]
     (tmp_path / "column.toml").write_text(COLUMN + target)
     refused = cosserat("inverse", "column.toml", "--output", "r.json", cwd=tmp_path)
     assert refused.returncode == 3, refused.stderr
-    assert refused.stdout.splitlines()[1].startswith("Not stable: a real rod leaves this equilibrium.")
+    expected = "Not stable: a real rod leaves this equilibrium. The targets are met. Equilibrium found"
+    words = " ".join(refused.stdout.split())
+    assert expected in words
+    assert refused.stdout.splitlines()[1].startswith("Not stable")
+    # The solve that judges what the optimiser has found takes no step, and is not what was done.
+    assert "of the optimiser from 1 start" in words
+    assert "iteration" not in words
     assert "--unstable" in refused.stderr
     result = json.loads((tmp_path / "r.json").read_text())
     assert (result["targets_met"], result["stable"]) == (True, False)

@@ -328,7 +328,7 @@ def test_manifest_that_is_not_json(tmp_path: Path, content: bytes) -> None:
     assert refusal(tmp_path) == (str(tmp_path / MANIFEST), "is not JSON", ANEW)
 
 
-SOUND: dict[str, object] = {"name": "strip", "unknowns": [], "inputs": [], "files": [], "functions": []}
+SOUND: dict[str, object] = {"schema": 1, "name": "strip", "unknowns": [], "inputs": [], "files": [], "functions": []}
 ONE_RADIUS = {"name": "rod.radius", "unit": "m", "value": [1.0], "shape": [1, 1]}
 FOREIGN = {
     "a number": 1,
@@ -363,6 +363,28 @@ def test_manifest_with_nothing_wrong_is_one(tmp_path: Path) -> None:
 def test_manifest_of_something_else(tmp_path: Path, content: object) -> None:
     (tmp_path / MANIFEST).write_text(json.dumps(content))
     assert refusal(tmp_path) == (str(tmp_path / MANIFEST), "is not the manifest of an exported folder", ANEW)
+
+
+def test_manifest_of_another_version(tmp_path: Path) -> None:
+    (tmp_path / MANIFEST).write_text(json.dumps({**SOUND, "schema": 2}))
+    expected = "has the schema 2, where this version reads 1"
+    assert refusal(tmp_path) == (str(tmp_path / MANIFEST), expected, "export the folder anew")
+
+
+def test_files_of_two_exports(strip: Path, tmp_path: Path) -> None:
+    """Arrays of two modes under a library for three would be written beyond their end."""
+    given = scene(push(), strain="planar")
+    other = export(build(given, discretise(given, 3, 4)), tmp_path / "other", "strip", derivatives=True)
+    shutil.copy(strip / MANIFEST, other)
+    expected = "says STRIP_UNKNOWNS 3, where manifest.json has 2"
+    assert refusal(other) == (str(other / "strip.h"), expected, "export the folder anew")
+
+
+def test_other_inputs_than_the_header_has(strip: Path) -> None:
+    described = json.loads((strip / MANIFEST).read_text())
+    described["inputs"] = described["inputs"][:-1]
+    (strip / MANIFEST).write_text(json.dumps(described))
+    assert refusal(strip)[1].startswith("says STRIP_INPUTS ")
 
 
 @needs_compiler

@@ -507,6 +507,22 @@ def test_a_bad_override_is_refused_where_it_stands(override, where, piece):
     assert_plain(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("override", "remedy"),
+    [
+        # Columns of sweeps are written so.
+        ("push.force.x=1", "its entries are [0] to [2]"),
+        ("push.force[3]=1", "its entries are [0] to [2]"),
+        ("loads.pull.force=[1, 0, 0]", "there are push"),
+        ("finger.length.x=1", ""),
+    ],
+)
+def test_an_override_of_what_is_not_there_is_told_what_is(override, remedy):
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene(PUSH), overrides=[override])
+    assert [problem.remedy for problem in caught.value.problems] == [remedy]
+
+
 def test_bad_overrides_are_told_together_with_the_faults_of_the_file():
     text = scene(PUSH, rods=rod(length="-1"))
     with pytest.raises(SceneError) as caught:

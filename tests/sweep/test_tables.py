@@ -105,6 +105,15 @@ def test_files_that_are_none(tmp_path: Path) -> None:
             read_table(tmp_path / name)
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_columns_that_other_signs_separate(tmp_path: Path, separator: str) -> None:
+    """Spreadsheets of some countries write semicolons, and commas in numbers."""
+    file = tmp_path / "rows.csv"
+    file.write_text(separator.join(["push.force.x", "push.force.z"]) + "\n" + separator.join(["0,1", "0,2"]) + "\n")
+    with pytest.raises(SceneError, match="separate columns by commas"):
+        read_table(file)
+
+
 def test_faults_of_a_csv_name_line_and_column(tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
     file.write_text("push.force.x,push.force.z\n1,2\n\nnan,x\n1\n")

@@ -29,22 +29,23 @@ STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Print the outcome, the rods, bodies and actuators, the figures of merit, and the files that were written."""
-    _print_outcome(console, solution)
-    _print_equilibrium(console, solution, written)
+    _print_outcome(console, solution, _outcome_colour(solution))
+    _print_equilibrium(console, solution, counted(solution.iterations, "iteration"), written)
 
 
-def _print_outcome(console: Console, solution: Solution) -> None:
+def _print_outcome(console: Console, solution: Solution, colour: str) -> None:
     print_plain(console, title_line(solution.model.scene.title))
-    print_plain(console, f"[bold {_outcome_colour(solution)}]{escape(solution.message)}[/]")
+    print_plain(console, f"[bold {colour}]{escape(solution.message)}[/]")
 
 
-def _print_equilibrium(console: Console, solution: Solution, written: Sequence[Path]) -> None:
+def _print_equilibrium(console: Console, solution: Solution, work: str, written: Sequence[Path]) -> None:
+    """Print rods, actuators and contacts, the figures of merit with the work that it took, and the files."""
     console.print(_rod_table(solution))
     if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
     if solution.model.scene.obstacles:
         console.print(_contact_table(solution))
-    print_plain(console, _merit_sentence(solution))
+    print_plain(console, _merit_sentence(solution, work))
     print_written(console, written)
 
 
@@ -54,6 +55,25 @@ def print_unstable(console: Console) -> None:
         console,
         "[bold yellow]Warning:[/] this equilibrium is not stable: a real rod leaves it. "
         "Add --stable to find one that it keeps.",
+        soft_wrap=True,
+    )
+
+
+def print_beyond_tolerance(console: Console, solution: Solution) -> None:
+    """Warn where the modes and nodes that a scene fixes leave a larger error than the tolerance that it gives."""
+    accuracy = solution.model.scene.accuracy
+    # A tolerance that nobody has written asks for nothing.
+    if not accuracy.fixed or "tolerance" not in accuracy.model_fields_set:
+        return
+    error, what = solution.error_estimate, "the tips"
+    if accuracy.shape:
+        error, what = solution.shape_error_estimate, "the shape"
+    if error is None or error <= accuracy.tolerance:
+        return
+    print_plain(
+        console,
+        f"[bold yellow]Warning:[/] the estimated error of {what}, {error:.1e} of the length, is above the tolerance "
+        f"of {accuracy.tolerance:g}: the scene fixes its modes, nodes or rotation. Leave them out to meet it.",
         soft_wrap=True,
     )
 
@@ -70,7 +90,10 @@ def print_unstable_inverse(console: Console) -> None:
 
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
     """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
-    _print_outcome(console, inverse.solution)
+    colour = _outcome_colour(inverse.solution)
+    if inverse.solution.converged and not inverse.met:
+        colour = "yellow"
+    _print_outcome(console, inverse.solution, colour)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
         stacked = np.ravel(value, order="F")
@@ -83,7 +106,9 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     console.print(targets)
     if any(gap.position_error is not None for gap in inverse.gaps):
         print_plain(console, "± is the estimated error of the model that the gap was measured on.")
-    _print_equilibrium(console, inverse.solution, written)
+    # The equilibrium was found by the optimiser: the solve that judges it has next to nothing left to do.
+    work = f"{counted(inverse.rounds, 'round')} of the optimiser from {counted(inverse.starts, 'start')}"
+    _print_equilibrium(console, inverse.solution, work, written)
 
 
 def _angle(gap: Gap) -> str:
@@ -156,9 +181,9 @@ def _actuator_table(solution: Solution) -> Table:
     return table
 
 
-def _merit_sentence(solution: Solution) -> str:
-    """How good the solution is, and what it was found on."""
-    parts = [f"residual {solution.residual_norm:.1e}", counted(solution.iterations, "iteration")]
+def _merit_sentence(solution: Solution, work: str) -> str:
+    """How good the solution is, what it took to find it, and what it was found on."""
+    parts = [f"residual {solution.residual_norm:.1e}", work]
     if solution.error_estimate is not None:
         parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
     if solution.shape_error_estimate is not None:

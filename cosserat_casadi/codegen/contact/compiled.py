@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_obj
 from cosserat_casadi.codegen.contact.sources import VERBATIM
 from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, check_folder, input_count, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
@@ -261,13 +261,16 @@ def load_in_contact(
         progress: told what is compiled, likewise.
 
     Raises:
-        ExportError: the folder is not one of a scene in exact contact, there is no compiler, or it fails.
+        ExportError: the folder is not one of a scene in exact contact, another version has written it, its files do
+            not belong together, there is no compiler, or it fails.
     """
     folder = Path(directory)
     described = read_manifest(folder)
     if not is_sound(described, _has_contacts):
         problem = "is not the manifest of a scene in exact contact"
         raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
+    sizes = {"INPUTS": input_count(described), "ARRANGEMENTS": len(described[ARRANGEMENTS])}
+    check_folder(folder, described, sizes)
     name = described["name"]
     sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
     headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]

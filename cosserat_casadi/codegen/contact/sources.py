@@ -15,7 +15,7 @@ from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import comment, input_words, version_words
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, input_entries
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import contact_status_words
@@ -214,7 +214,7 @@ def _manifest(
         }
         arrangements.append({"contacts": touches, **sizes})
     return {
-        "schema": 1,
+        "schema": SCHEMA,
         "name": names.name,
         "title": chosen.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},

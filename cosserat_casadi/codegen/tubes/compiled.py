@@ -16,7 +16,7 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
-from cosserat_casadi.codegen.manifest import MANIFEST, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
 from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
@@ -227,13 +227,15 @@ def load_tubes(
         progress: told what is compiled, likewise.
 
     Raises:
-        ExportError: the folder is not one of concentric tubes, there is no compiler, or it fails.
+        ExportError: the folder is not one of concentric tubes, another version has written it, its files do not belong
+            together, there is no compiler, or it fails.
     """
     folder = Path(directory)
     described = read_manifest(folder)
     if not is_sound(described, _has_tubes):
         problem = "is not the manifest of concentric tubes"
         raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
+    check_folder(folder, described, {"INPUTS": input_count(described), "UNKNOWNS": described["unknowns"]})
     name = described["name"]
     sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
     headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]

@@ -26,7 +26,7 @@ from cosserat_casadi.codegen.library import (
     version_words,
     words_of_inputs,
 )
-from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
@@ -208,7 +208,7 @@ def _manifest(solution: TubeSolution, names: Names) -> dict[str, Any]:
     robot = solution.robot
     error = solution.error_estimate
     return {
-        "schema": 1,
+        "schema": SCHEMA,
         "name": names.name,
         "title": robot.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
