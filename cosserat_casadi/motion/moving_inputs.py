@@ -155,7 +155,8 @@ class MovingInputs:
 def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None:
     known = ", ".join(layout.names) or "none"
     unknown = [motion.input for motion in motions if motion.input not in layout.names]
-    problems = [Problem(name, "is not an input of this model", f"its inputs are {known}") for name in unknown]
+    remedy = f"build scene.with_motion_inputs(); its inputs are {known}"
+    problems = [Problem(name, "is not an input of this model", remedy) for name in unknown]
     if problems:
         raise SceneError(*problems)
 

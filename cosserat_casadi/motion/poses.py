@@ -24,6 +24,18 @@ class Poses(NamedTuple):
     quaternion: FloatArray
 
 
+class Frames(NamedTuple):
+    """Frames over T times in the world frame.
+
+    Attributes:
+        position: shape (T, 3), m.
+        rotation: world_R_frame, shape (T, 3, 3).
+    """
+
+    position: FloatArray
+    rotation: FloatArray
+
+
 class ActuatorStates(NamedTuple):
     """What an actuator does over T times.
 
@@ -56,6 +68,18 @@ def body_poses(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Po
     """Poses of a rigid body, shapes (T, 3) and (T, 4); arguments as in :func:`tip_poses`."""
     position, quaternion, _ = _evaluated(model.body[body], x, inputs)
     return Poses(position[:, :, 0], quaternion[:, :, 0])
+
+
+def tip_frames(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Frames:
+    """Frames of a rod's tip; arguments as in :func:`tip_poses`."""
+    position, _, rotation = _evaluated(model.tip[rod], x, inputs)
+    return Frames(position[:, :, 0], rotation)
+
+
+def body_frames(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Frames:
+    """Frames of a rigid body; arguments as in :func:`tip_poses`."""
+    position, _, rotation = _evaluated(model.body[body], x, inputs)
+    return Frames(position[:, :, 0], rotation)
 
 
 def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, inputs: FloatArray) -> Poses:

@@ -20,7 +20,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.paths import path_distance, watched_times
+from cosserat_casadi.motion.paths import Paths, path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
     MOST_TIGHTENINGS,
     Simulator,
@@ -80,14 +80,14 @@ class Level:
     Attributes:
         simulator: that computed it.
         history: the motion.
-        paths: what is compared, shape (T, points, 3).
+        paths: what is compared.
         rung: place of the modes on the ladder.
         distance: of the paths from those of the level before; infinite for the first.
     """
 
     simulator: Simulator
     history: History
-    paths: FloatArray
+    paths: Paths
     rung: int = 0
     distance: float = float("inf")
 

@@ -24,7 +24,7 @@ from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.paths import path_distance, paths, watched_times
+from cosserat_casadi.motion.paths import Paths, path_distance, paths, watched_times
 from cosserat_casadi.motion.start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.trajectory import (
@@ -158,8 +158,8 @@ class Simulator:
         tolerance = EXACT / self.displacements
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
-    def paths(self, history: History) -> FloatArray:
-        """What two motions are compared by, shape (T, points, 3)."""
+    def paths(self, history: History) -> Paths:
+        """What two motions are compared by."""
         return paths(history, watched_times(history, self.simulation.duration))
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:

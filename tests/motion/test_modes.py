@@ -376,6 +376,9 @@ def test_alike_modes_are_told_apart_by_their_plane():
     assert_allclose(np.abs(tips[1, [0, 2]]), 0.0, rtol=0, atol=1e-9)
 
 
+BIELAWA = np.sqrt(1000.0)
+"""Speed of R. L. Bielawa's rotor, whose frequencies are in units of it."""
+
 ROTATING = {
     1.0: ([3.68164681, 22.18101115, 61.84176259], 3.54323627),
     2.0: ([4.13731957, 22.61492196, 62.27318411], 3.62179696),
@@ -383,6 +386,7 @@ ROTATING = {
     6.0: ([7.36037302, 26.80908168, 66.68391438], 4.26322542),
     8.0: ([9.25683760, 29.99538189], 4.65714960),
     12.0: ([13.17015049, 37.60311233, 79.61447849], 5.42704928),
+    BIELAWA: (BIELAWA * np.array([1.034558846, 2.603227497, 4.534128364]), BIELAWA * 0.265164111),
 }
 
 
@@ -393,7 +397,7 @@ def test_rotating_cantilever(speed):
     stiffness = {"bending_x": 1.0, "bending_y": 1.0}
     blade = rod(["bending_x", "bending_y"], stiffness, base={"tangent": [1.0, 0.0, 0.0]})
     described = scene(blade, inputs=["rod.base.quaternion"])
-    model = build(described, discretise(described, 14))
+    model = build(described, discretise(described, 18))
     quaternion = model.pack()
     w, x, y, z = quaternion
     # The rate of a quaternion that turns about z at the speed Ω is half of (0, 0, 0, Ω) times it.

@@ -234,3 +234,25 @@ def scissors(**simulation: Any) -> Table:
         "motions": [force, moment],
         "simulation": asked,
     }
+
+
+# Heavy top: O. Brüls, A. Cardona, M. Arnold, Mech. Mach. Theory 48 (2012) 121
+
+
+def heavy_top() -> Table:
+    """A body on a ball joint at the tip of a rod that only twists, so that the joint stays at (0, 0, 1)."""
+    rod = {"strain": ["torsion"], "stiffness": {"torsion": 1.0}, "base": {}}
+    inertia = [0.234375, 0.46875, 0.234375]
+    body = {"name": "top", "mass": 15.0, "centre_of_mass": [0, 1, 0], "inertia": inertia}
+    joint = {"rod": "rod", "body": "top", "kind": "spherical"}
+    return table(rod, {**gravity(9.81), "bodies": ["top"]}, bodies=[body], joints=[joint])
+
+
+TOP_SPIN = np.array([0.0, 150.0, -4.61538])
+"""Angular velocity at the start, in the axes of the body, which are those of the world then, rad/s."""
+
+TOP_CENTRE = np.array([-0.15041682, -0.72416559, -0.67302227])
+"""Centre of mass from the joint at t = 2, after some 48 turns."""
+
+TOP_QUATERNION = np.array([0.12294714, -0.49107989, 0.35043003, -0.78798689])
+"""Of the body at t = 2, w first."""

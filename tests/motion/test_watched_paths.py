@@ -1,0 +1,123 @@
+"""What a tolerance binds beside the places of tips: how sections turn about their tangents, and how bodies turn."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from cosserat_casadi import Motion, scene_from_dict, simulate_scene
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.displacement import LEVER
+from cosserat_casadi.motion.paths import Paths, path_distance
+from tests.motion.transients import Table, gravity, table
+
+# A rod that is twisted at its tip by A (1 − cos Ω t)
+
+TORSION = 2.0  # N m²
+TURNING_MASS = 0.02  # kg m
+TWIST = 0.1  # N m
+FREQUENCY = 1.5  # Hz
+
+
+def twisted(tolerance: float) -> Table:
+    rod = {
+        "strain": "kirchhoff",
+        "stiffness": {"bending_x": 1.0, "bending_y": 1.0, "torsion": TORSION},
+        "rotary_inertia": [0.01, 0.01, TURNING_MASS],
+        "base": {},
+    }
+    twist = {"name": "twist", "kind": "tip_wrench", "rod": "rod", "moment": [0, 0, 0]}
+    wave = {"wave": "one_minus_cosine", "frequency": FREQUENCY, "amplitude": [0, 0, TWIST], "input": "twist.moment"}
+    simulation = {"duration": 1.0, "frames": 41, "tolerance": tolerance}
+    return table(rod, twist, motions=[wave], simulation=simulation)
+
+
+def twist_of_the_tip(times: FloatArray) -> FloatArray:
+    """Turn of the tip, shape (T,), rad: the static one, and what the modes of the wave equation lag behind it.
+
+    Mode n is sin((2n − 1) π X / 2) and swings at ω = (2n − 1) π/2 √(GJ / ρI); the length is 1.
+    """
+    swings = (np.arange(1, 2001) - 0.5) * np.pi * np.sqrt(TORSION / TURNING_MASS)
+    driven = 2 * np.pi * FREQUENCY
+    shares = 2 * TWIST / TURNING_MASS * driven**2 / (swings**2 * (swings**2 - driven**2))
+    lags = (np.cos(driven * times)[:, None] - np.cos(np.outer(times, swings))) @ shares
+    return np.asarray(TWIST / TORSION * (1 - np.cos(driven * times)) - lags)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_a_rod_that_only_twists_is_as_exact_as_it_says(tolerance: float) -> None:
+    """Its tip stays where it is: what it is turned by counts on an arm of LEVER lengths."""
+    motion = simulate_scene(scene_from_dict(twisted(tolerance)))
+    assert motion.converged, motion.message
+    quaternion = motion.tip().quaternion
+    assert_allclose(motion.tip().position, np.tile([0.0, 0.0, 1.0], (41, 1)), rtol=0, atol=1e-12)
+    turn = 2 * np.arctan2(quaternion[:, 3], quaternion[:, 0])
+    error = LEVER * np.abs(turn - twist_of_the_tip(motion.times)).max()
+    assert 1e-9 < error <= motion.error_estimate <= tolerance
+
+
+# A body that hangs by a corner
+
+MASS = 0.5
+CENTRE = np.array([0.2, 0.05, -0.03])
+INERTIA = np.array([[2e-3, 3e-4, -4e-4], [3e-4, 4e-3, 5e-4], [-4e-4, 5e-4, 3e-3]])
+
+
+def hung(tolerance: float) -> Motion:
+    """The body on a ball joint at the tip of a rod that does not move, let go."""
+    rod = {"strain": ["torsion"], "stiffness": {"torsion": 1.0}, "base": {}}
+    body = {"name": "bob", "mass": MASS, "centre_of_mass": CENTRE.tolist(), "inertia": INERTIA.tolist()}
+    joint = {"body": "bob", "rod": "rod", "kind": "spherical"}
+    simulation = {"duration": 1.0, "frames": 21, "tolerance": tolerance, "start": "unloaded"}
+    scene = table(rod, gravity(9.81), bodies=[body], joints=[joint], simulation=simulation)
+    motion = simulate_scene(scene_from_dict(scene))
+    assert motion.converged, motion.message
+    return motion
+
+
+def centre_of_the_pendulum(times: FloatArray) -> FloatArray:
+    """Centre of mass from the joint, shape (T, 3), m: Euler's equations in the axes of the body, by DOP853."""
+    about_joint = INERTIA + MASS * (CENTRE @ CENTRE * np.eye(3) - np.outer(CENTRE, CENTRE))
+
+    def rate(_: float, state: FloatArray) -> FloatArray:
+        world_R_body, spin = state[:9].reshape(3, 3), state[9:]
+        weight = np.cross(CENTRE, world_R_body.T @ [0.0, 0.0, -9.81 * MASS])
+        spin_rate = np.linalg.solve(about_joint, weight - np.cross(spin, about_joint @ spin))
+        turning = np.cross(world_R_body, spin)
+        return np.concatenate([turning.ravel(), spin_rate])
+
+    start = np.concatenate([np.eye(3).ravel(), np.zeros(3)])
+    found = solve_ivp(rate, (0.0, 1.0), start, method="DOP853", rtol=1e-11, atol=1e-12, t_eval=times)
+    return np.asarray(found.y[:9].T.reshape(-1, 3, 3) @ CENTRE)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_a_body_about_its_origin_is_as_exact_as_it_says(tolerance: float) -> None:
+    """The origin of the body is its joint, and stays: its centre of mass is what swings. Products of inertia count."""
+    motion = hung(tolerance)
+    poses = motion.body("bob")
+    assert_allclose(poses.position, np.tile([0.0, 0.0, 1.0], (21, 1)), rtol=0, atol=1e-10)
+    centre = Rotation.from_quat(poses.quaternion[:, [1, 2, 3, 0]]).apply(CENTRE)
+    error = np.linalg.norm(centre - centre_of_the_pendulum(motion.times), axis=1).max()
+    assert 1e-9 < error <= motion.error_estimate <= tolerance
+
+
+# Distances
+
+
+def test_a_turn_about_the_tangent_is_all_that_axes_are_compared_by() -> None:
+    """What tips lean is left to their places: a roll of 0.3 rad beside it counts as such."""
+    axes = Rotation.from_rotvec([0.2, -0.5, 0.9])
+    rolled = axes * Rotation.from_rotvec([0.0, 0.0, -0.3])
+    leaning = axes * Rotation.from_rotvec([1e-4, -2e-4, 0.0])
+    assert_allclose(path_distance(_still(axes), _still(rolled)), 0.3 * LEVER, rtol=1e-12, atol=0)
+    assert path_distance(_still(axes), _still(leaning)) < 1e-7
+    assert path_distance(_still(axes), _still(axes)) < 1e-16
+
+
+def _still(rotation: Rotation) -> Paths:
+    """The tip of one rod at one time, at the origin."""
+    return Paths(np.zeros((1, 1, 3)), rotation.as_matrix()[None, None, :, :2])
