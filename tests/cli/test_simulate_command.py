@@ -18,6 +18,7 @@ import pytest
 from cosserat_casadi import Scene, Solution
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, REFUSED, TERMINATED
 from cosserat_casadi.cli.main import app, run
+from cosserat_casadi.motion.restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from tests.conftest import ROOT
 from tests.motions import motion_of, without_start
@@ -109,6 +110,21 @@ def test_all_files_are_written_and_the_report_is_in_words(
         "wrote m.gif",
     ):
         assert words in shown
+
+
+@pytest.mark.parametrize(("lift_offs", "words"), [(1, "1 impact, which took 0.5 J, 1 lift-off"), (2, "2 lift-offs")])
+def test_contacts_are_counted_in_words(
+    folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str], lift_offs: int, words: str
+) -> None:
+    leaving = ContactEvent("lift_off", 0.1, "wire", "ball", 0.5)
+    events = (ContactEvent("impact", 0.05, "wire", "ball", 0.5, energy=0.5), *[leaving] * lift_offs)
+
+    def touch(scene: Scene, **options: Any) -> Motion:
+        return replace(swing(scene, **options), events=events)
+
+    assert command("wire.toml", simulate=touch) == 0
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert any(line.startswith("contact: ") and line.endswith(words) for line in lines)
 
 
 def test_options_override_the_scene(folder: Path, command: Callable[..., int]) -> None:

@@ -87,7 +87,7 @@ def _contact_words(motion: Motion) -> str:
     impacts = sum(event.kind == "impact" for event in motion.events)
     lift_offs = sum(event.kind == "lift_off" for event in motion.events)
     taken = sum(event.energy for event in motion.events)
-    return f"{counted(impacts, 'impact')}, which took {taken:.3g} J, {lift_offs} lift-offs"
+    return f"{counted(impacts, 'impact')}, which took {taken:.3g} J, {counted(lift_offs, 'lift-off')}"
 
 
 def _step_words(motion: Motion) -> str:

@@ -1,0 +1,108 @@
+"""A rod that is drawn out while it swings, beside a Galerkin method in its inclination, integrated by scipy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import scene_from_dict, simulate_scene
+from cosserat_casadi.maths.typing import FloatArray
+from tests.motion.transients import Table, gravity, table
+
+STIFFNESS = 0.08  # N m²
+DENSITY = 0.4  # kg/m
+ROTARY = 1e-5  # kg m
+RETARDATION = 5e-3  # s
+WEIGHT = 9.81  # m/s²
+LENGTHS = (0.5, 0.7)  # m
+GROWING = 0.3  # s
+SPAN = 0.4  # s
+
+
+def growing(tolerance: float) -> Table:
+    rod = {
+        "length": LENGTHS[0],
+        "stiffness": {"bending_y": STIFFNESS},
+        "linear_density": DENSITY,
+        "rotary_inertia": [ROTARY, ROTARY, 2 * ROTARY],
+        "damping": {"retardation_time": RETARDATION},
+    }
+    drawn = {"input": "rod.length", "times": [0.0, GROWING], "values": list(LENGTHS), "interpolation": "cubic"}
+    simulation = {"duration": SPAN, "frames": 9, "tolerance": tolerance, "start": "unloaded"}
+    return table(rod, gravity(WEIGHT), motions=[drawn], simulation=simulation)
+
+
+def length_at(time: float) -> tuple[float, float, float]:
+    """Length, and its two rates."""
+    s = min(time / GROWING, 1.0)
+    gain = LENGTHS[1] - LENGTHS[0]
+    value = LENGTHS[0] + gain * (3 * s**2 - 2 * s**3)
+    return value, gain * 6 * (s - s**2) / GROWING, gain * (6 - 12 * s) / GROWING**2 * (s < 1.0)
+
+
+@dataclass(frozen=True)
+class Galerkin:
+    """Inclinations θ(X) = ∫ Σ φ_k p_k, with places ℓ ∫ (cos θ, sin θ): sections stay at their X as the rod grows.
+
+    Attributes:
+        slopes: φ at the Gauss points, shape (N, n).
+        shapes: their integrals from 0, shape (N, n).
+        integral: matrix of the integral from 0 to the Gauss points, shape (N, N).
+        weights: of the Gauss points, shape (N,).
+    """
+
+    slopes: FloatArray
+    shapes: FloatArray
+    integral: FloatArray
+    weights: FloatArray
+
+    def rates(self, time: float, state: FloatArray) -> FloatArray:
+        """Lagrange's equations of the mass that is there: −ρA r̈ on it, bent with the curvature θ' / ℓ."""
+        p, v = np.split(state, 2)
+        length, rate, acceleration = length_at(time)
+        theta, omega = self.shapes @ p, self.shapes @ v
+        along = np.stack([np.cos(theta), np.sin(theta)])
+        across = np.stack([-np.sin(theta), np.cos(theta)])
+        place = along @ self.integral.T
+        by_p = np.einsum("ij,kjn->kin", self.integral, across[:, :, None] * self.shapes)
+        turning = -(along * omega**2) @ self.integral.T
+        known = acceleration * place + 2 * rate * (by_p @ v) + length * turning
+        known[1] += WEIGHT
+        mass = DENSITY * length**3 * np.einsum("kin,i,kim->nm", by_p, self.weights, by_p)
+        mass += ROTARY * length * self.shapes.T @ (self.weights[:, None] * self.shapes)
+        force = -DENSITY * length**2 * np.einsum("kin,i,ki->n", by_p, self.weights, known)
+        bending = p / length + RETARDATION * (v / length - p * rate / length**2)
+        force -= STIFFNESS * self.slopes.T @ (self.weights * (self.slopes @ bending))
+        return np.concatenate([v, np.linalg.solve(mass, force)])
+
+    def tip(self, time: float, p: FloatArray) -> FloatArray:
+        theta = self.shapes @ p
+        return np.asarray(length_at(time)[0] * np.stack([np.cos(theta), np.sin(theta)]) @ self.weights)
+
+
+def galerkin(count: int, points: int) -> Galerkin:
+    nodes, weights = legendre.leggauss(points)
+    to_coefficients = np.linalg.inv(legendre.legvander(nodes, points - 1))
+    antiderivatives = [legendre.legval(nodes, legendre.legint(row, lbnd=-1)) / 2 for row in np.eye(points)]
+    integral = np.stack(antiderivatives, axis=1) @ to_coefficients
+    slopes = legendre.legvander(nodes, count - 1)
+    return Galerkin(slopes, integral @ slopes, integral, weights / 2)
+
+
+def test_a_rod_that_is_drawn_out_vs_independent_galerkin_method() -> None:
+    """Weight acts at once and the rod is damped: its tip falls, swings and is pushed out."""
+    motion = simulate_scene(scene_from_dict(growing(1e-4)))
+    assert motion.converged, motion.message
+    exact = galerkin(10, 40)
+    start = np.zeros(20)
+    found = solve_ivp(
+        exact.rates, (0.0, SPAN), start, method="Radau", t_eval=motion.times, rtol=1e-7, atol=1e-10, max_step=0.01
+    )
+    tips = np.array([exact.tip(time, state[:10]) for time, state in zip(found.t, found.y.T, strict=True)])
+    error = np.linalg.norm(motion.tip().position[:, [0, 2]] - tips, axis=1).max() / LENGTHS[0]
+    assert error <= motion.error_estimate + 1e-6
+    # It must move for its path to be wrong.
+    assert np.ptp(tips, axis=0).min() > 0.1 * LENGTHS[0]
