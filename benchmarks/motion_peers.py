@@ -14,15 +14,16 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 from doc_tables import put, table
-from motion_rivals import LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
+from motion_rivals import INTERVAL, LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
 from rich.progress import Progress
 
-from cosserat_casadi import Scene, read_scene, simulate_scene
+from cosserat_casadi import Model, Scene, export, load, read_scene, simulate_scene
 from cosserat_casadi.motion.poses import tip_poses
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion
@@ -36,6 +37,9 @@ FIGURE = "figures/motion_peers.png"
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
 OURS = "cosserat, Python"
 ON_CHOSEN = "cosserat, one motion on the modes chosen"
+IN_C = "cosserat, the same in exported C"
+C_STEPS = {1e-2: 1e-2, 1e-3: 4e-3, 1e-4: 1e-3, 1e-5: 5e-4}
+"""Size of the steps in C on the modes of a tolerance, s: shorter ones hardly make the error smaller."""
 
 HEADINGS = ("package", "", "tip error / L", "processor, s", "with first call, s")
 ROWS_OF_OTHERS = 22
@@ -60,6 +64,8 @@ def ours() -> Iterator[Rival]:
         sizes = f"{words}, estimate {motion.error_estimate:.0e}"
         yield Rival(OURS, sizes, motion.tip("rod").position, took, took)
         yield timed(ON_CHOSEN, f"{words}: {motion.model.size} unknowns", partial(again, motion, tolerance))
+        step = C_STEPS[tolerance]
+        yield timed(IN_C, f"{motion.model.size} unknowns, {1e3 * step:g} ms", partial(in_c, motion.model, step))
 
 
 def again(motion: Motion, tolerance: float) -> Run:
@@ -72,6 +78,32 @@ def again(motion: Motion, tolerance: float) -> Run:
         history = simulator.controlled(tolerance)
         x, inputs = history.rough_positions(TIMES)
         return np.asarray(tip_poses(motion.model, "rod", x, inputs).position)
+
+    return run
+
+
+def in_c(model: Model, step: float) -> Run:
+    """The motion in steps of one size by the exported functions, called one by one from Python."""
+    with TemporaryDirectory() as folder:
+        exported = load(export(model, folder, "released", dynamics=True))
+    per_time = round(INTERVAL / step)
+    inputs = exported.defaults
+
+    def run() -> Paths:
+        # Straight, with its weight acting from the first instant.
+        state = exported.rest(inputs=0 * inputs)
+        assert state is not None
+        memory = exported.step_memory()
+        unknowns = [state.x]
+        for _ in TIMES[1:]:
+            for _ in range(per_time):
+                taken = exported.step(state, step, inputs, memory=memory)
+                if not taken.done:
+                    raise RuntimeError(taken.status.value)
+                state = taken.state
+            unknowns.append(state.x)
+        x = np.array(unknowns)
+        return np.asarray(tip_poses(model, "rod", x, np.tile(inputs, (len(x), 1))).position)
 
     return run
 
@@ -110,6 +142,7 @@ def without_shear(rows: Sequence[Rival], true: Paths) -> str:
 STYLES = {
     OURS: ("#ee8866", "P"),
     ON_CHOSEN: ("#cc3311", "*"),
+    IN_C: ("#cc3311", "X"),
     "Exudyn": ("#4477aa", "o"),
     "MuJoCo": ("#228833", "s"),
     "PyElastica": ("#777777", "D"),
@@ -140,7 +173,7 @@ def main(write: Annotated[bool, typer.Option("--write", help="Put table and figu
     true = true_tips()
     with Progress(transient=True) as bar:
         contestants = chain(ours(), rivals())
-        rows = list(bar.track(contestants, total=2 * len(TOLERANCES) + ROWS_OF_OTHERS, description="moving"))
+        rows = list(bar.track(contestants, total=3 * len(TOLERANCES) + ROWS_OF_OTHERS, description="moving"))
     limits = [f"{package}: {words}" for package, words in LIMITS.items()]
     remarks = "\n".join(f"* {words}" for words in [*limits, without_shear(rows, true)])
     text = f"{table(HEADINGS, [cells(row, true) for row in rows])}\n\n{remarks}"

@@ -14,8 +14,8 @@ import tempfile
 from pathlib import Path
 from typing import Annotated, Any
 
-import markdown
 import typer
+from doc_tables import put, table
 from rich.progress import track
 
 from cosserat_casadi import Discretisation, Model, build, discretise, export, read_scene, scene_from_dict
@@ -118,10 +118,10 @@ def main(
     """Print the table."""
     headings = ["µs, steps of 1 ms", "unknowns", *COLUMNS.values(), "iterations"]
     rows = [row(name, MODELS[name]()) for name in track(names or list(MODELS), transient=True)]
-    text = markdown.table(headings, rows)
+    text = table(headings, rows)
     print(text)
     if page:
-        markdown.put(PAGE, BEGIN, END, text)
+        put(PAGE, BEGIN, END, text)
 
 
 if __name__ == "__main__":
