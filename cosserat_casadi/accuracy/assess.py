@@ -105,8 +105,8 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     visible_from = min_modes(solution, largest_turn(solution), tolerance)
     if visible_from > modes:
         return NeedsModes(visible_from, extrapolated=False)
-    resolution = Resolution(Preview(solution), waves)
     modes_bound = max(REFERENCE_SHARE * tolerance, FLOOR)
+    resolution = Resolution(Preview(solution), waves, modes_bound)
     missing = resolution.missing_modes(resolution.extrapolated_error, modes_bound)
     if missing > 0:
         return NeedsModes(modes + missing, extrapolated=True)

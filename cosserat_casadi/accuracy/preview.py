@@ -231,7 +231,8 @@ class Preview:
 
         Args:
             grids: modes, nodes and transport of every rod; modes no fewer than the reference's.
-            sweeps: number of times that added modes give way and all others follow.
+            sweeps: number of times that added modes give way and all others follow; with 0 they give way and no other
+                follows, which tells shapes but not tips.
         """
         model = self.model
         discrete = discrete_scene(model.scene, model.inputs, dict(grids))
@@ -247,11 +248,12 @@ class Preview:
         current = system(x)
         # Of the tips the modes alone: what the grid does to them is a look of its own.
         tips = self._tips_of(current)
-        for _ in range(sweeps):
+        for _ in range(max(sweeps, 1)):
             residual = _numbers(Equations(current).residual)[:, 0]
             x[~known] -= np.linalg.solve(stiffness, residual[~known])
-            residual = _numbers(Equations(system(x)).residual)[:, 0]
-            x[known] -= inverse @ residual[known]
+            if sweeps > 0:
+                residual = _numbers(Equations(system(x)).residual)[:, 0]
+                x[known] -= inverse @ residual[known]
             current = system(x)
         return FinerShift(
             tips=self._tips_of(current).change_from(tips),
@@ -327,7 +329,7 @@ class Preview:
 def _poses_of(system: System, rod: str, X: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Positions over the length and quaternions of k sections, shapes (k, 3) and (k, 4)."""
     discrete_rod = system.discrete.rods[rod]
-    shape = system.rods[rod].shape
+    shape = system.shapes[rod]
     if len(X) == 1:
         # One section watched is the tip, which is a node.
         position = shape.position_at(-1)

@@ -50,6 +50,9 @@ LOADED_SWEEPS = 2
 HIDDEN_SAFETY = 1.5
 """Factor on what that look finds."""
 
+NEGLIGIBLE = 0.01
+"""Share of the allowed error below which an extrapolated one is believed: ten times as much would not matter."""
+
 UNKNOWN = 4
 """Further modes where the error is beyond all bounds and tells nothing."""
 
@@ -64,10 +67,12 @@ class Resolution:
     Attributes:
         preview: the solution.
         waves: whether the scene puts waves along its rods, so that the last coefficients may not show what follows.
+        allowed: error of the modes that is allowed; with 0 no extrapolated one is negligible.
     """
 
     preview: Preview
     waves: bool = False
+    allowed: float = 0.0
 
     @cached_property
     def ratio(self) -> float:
@@ -88,7 +93,9 @@ class Resolution:
 
     @cached_property
     def hidden_error(self) -> float:
-        """Error found by a look at modes that the solution lacks."""
+        """Error found by a look at modes that the solution lacks; 0 where the extrapolated one is negligible."""
+        if self._sweeps == 0:
+            return 0.0
         return HIDDEN_SAFETY * change_size(self._look.tips)
 
     @cached_property
@@ -135,9 +142,14 @@ class Resolution:
     def _discretisation(self) -> dict[str, Discretisation]:
         return self.preview.model.discretisation
 
-    @property
-    def _has_supports(self) -> bool:
-        return bool(self.preview.model.scene.supports)
+    @cached_property
+    def _sweeps(self) -> int:
+        """Sweeps of the look; 0 where what the tips do needs none."""
+        if self.waves or self.preview.model.scene.supports:
+            return LOADED_SWEEPS
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed:
+            return 0
+        return SWEEPS
 
     @cached_property
     def _look(self) -> FinerShift:
@@ -145,8 +157,7 @@ class Resolution:
         finer = {}
         for name, discretisation in self._discretisation.items():
             finer[name] = self._looked_at(discretisation)
-        sweeps = LOADED_SWEEPS if self.waves or self._has_supports else SWEEPS
-        return self.preview.finer_shift(finer, sweeps)
+        return self.preview.finer_shift(finer, self._sweeps)
 
     def _looked_at(self, discretisation: Discretisation) -> Discretisation:
         """The finer discretisation of a rod at which a look is taken."""
