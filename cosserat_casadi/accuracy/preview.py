@@ -42,8 +42,8 @@ CORRECTIONS = 2
 BETWEEN = (0.25, 0.5, 0.75, 1.0)
 """Sections at which a held rod is watched."""
 
-SAMPLES = (1 - np.cos(np.pi * np.arange(129) / 128)) / 2
-"""Sections at which a whole shape is watched or compared: several for each wave of the error of 30 modes."""
+SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
+"""Sections at which a whole shape is watched or compared: several for each wave of the error of 60 modes."""
 
 
 def watched(model: Model, rod: str) -> FloatArray:
