@@ -5,8 +5,9 @@ The verdicts, in the order in which they are looked for; each has its step in ``
 ====================  ==================================================================
 ``NeedsNodes``        an interval turns too far, so the solution is not one of the rod
 ``NoEquilibrium``     the solve failed otherwise
-``NeedsModes``        the last coefficients are blind to a wave, or the modes leave too much error
+``NeedsModes``        the last coefficients are blind to a wave, or their fall promises too much error
 ``NeedsFinerGrid``    the intervals leave too much error
+``NeedsModes``        a look at modes that the solution lacks finds too much error
 ``Enough``            the errors of modes and grid are small shares of the tolerance
 ====================  ==================================================================
 """
@@ -104,15 +105,19 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     visible_from = min_modes(solution, largest_turn(solution), tolerance)
     if visible_from > modes:
         return NeedsModes(visible_from, extrapolated=False)
-    resolution = Resolution(Preview(solution), waves)
     modes_bound = max(REFERENCE_SHARE * tolerance, FLOOR)
-    missing = resolution.missing_modes(modes_bound)
+    resolution = Resolution(Preview(solution), waves, modes_bound)
+    missing = resolution.missing_modes(resolution.extrapolated_error, modes_bound)
     if missing > 0:
         return NeedsModes(modes + missing, extrapolated=True)
-    # The error of the grid is asked for last, since it takes the equations on a second grid.
+    # What takes the equations on another grid is asked for last, the look at more modes after the cheaper one at a grid
+    # alone: on a grid that is too coarse both see its error.
     grid_bound = max(REFERENCE_SHARE / 3 * tolerance, FLOOR)
     if resolution.grid_error > grid_bound:
         return NeedsFinerGrid()
+    missing = resolution.missing_modes(resolution.hidden_error, modes_bound)
+    if missing > 0:
+        return NeedsModes(modes + missing, extrapolated=True)
     return Enough(resolution)
 
 

@@ -27,6 +27,7 @@ def with_estimate(
     fine: Solution,
     factor: float = SAFETY,
     fine_error: float = 0.0,
+    fine_shape_error: float = 0.0,
 ) -> Solution:
     """A solution with the error that a finer one of the same scene and inputs gives it.
 
@@ -35,6 +36,7 @@ def with_estimate(
         fine: the finer one.
         factor: on the distance of their poses and cables.
         fine_error: error of the finer one, added.
+        fine_shape_error: error of its shape, added to that of the whole shape.
     """
     tip_distance = pose_distance(coarse, fine)
     watched_distance = max(tip_distance, cable_distance(coarse, fine))
@@ -43,7 +45,7 @@ def with_estimate(
     return replace(
         coarse,
         error_estimate=factor * watched_distance + fine_error + ROUNDING,
-        shape_error_estimate=factor * shape_distance + fine_error + ROUNDING,
+        shape_error_estimate=factor * shape_distance + fine_shape_error + ROUNDING,
     )
 
 

@@ -42,8 +42,8 @@ CORRECTIONS = 2
 BETWEEN = (0.25, 0.5, 0.75, 1.0)
 """Sections at which a held rod is watched."""
 
-SAMPLES = (1 - np.cos(np.pi * np.arange(33) / 32)) / 2
-"""Sections at which a whole shape is watched or compared."""
+SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
+"""Sections at which a whole shape is watched or compared: several for each wave of the error of 60 modes."""
 
 
 def watched(model: Model, rod: str) -> FloatArray:
@@ -98,6 +98,19 @@ class Watched:
         lengthening = np.zeros((len(self.cables), 3))
         lengthening[:, 0] = self.cables - before.cables
         return np.concatenate([displacements, rotations, lengthening])
+
+
+@dataclass(frozen=True)
+class FinerShift:
+    """Changes by modes that a reference lacks, as in :mod:`cosserat_casadi.accuracy.pose_change`.
+
+    Attributes:
+        tips: of what is watched, shape (2k + c, 3).
+        shapes: of sections all along the rods, those between the nodes of the reference included, shape (2s, 3).
+    """
+
+    tips: FloatArray
+    shapes: FloatArray
 
 
 @dataclass(frozen=True)
@@ -209,8 +222,8 @@ class Preview:
         by_unknowns = self._tips(corrected).change_from(tips)
         return by_grid + by_unknowns
 
-    def finer_shift(self, grids: Mapping[str, Discretisation]) -> FloatArray:
-        """Change of what is watched by modes that the reference lacks, on a grid that resolves them.
+    def finer_shift(self, grids: Mapping[str, Discretisation], sweeps: int) -> FinerShift:
+        """Changes by modes that the reference lacks, on a grid that resolves them.
 
         Stiffness alone holds the short waves of the added modes, so that each gives way by what the balance lacks in
         it; the reference's Jacobian tells how all others follow. A few sweeps of both are Newton's corrections with
@@ -218,6 +231,8 @@ class Preview:
 
         Args:
             grids: modes, nodes and transport of every rod; modes no fewer than the reference's.
+            sweeps: number of times that added modes give way and all others follow; with 0 they give way and no other
+                follows, which tells shapes but not tips.
         """
         model = self.model
         discrete = discrete_scene(model.scene, model.inputs, dict(grids))
@@ -231,14 +246,19 @@ class Preview:
         x = np.zeros(discrete.unknowns.size)
         x[known] = self.reference.x
         current = system(x)
+        # Of the tips the modes alone: what the grid does to them is a look of its own.
         tips = self._tips_of(current)
-        for _ in range(CORRECTIONS):
+        for _ in range(max(sweeps, 1)):
             residual = _numbers(Equations(current).residual)[:, 0]
             x[~known] -= np.linalg.solve(stiffness, residual[~known])
-            residual = _numbers(Equations(system(x)).residual)[:, 0]
-            x[known] -= inverse @ residual[known]
+            if sweeps > 0:
+                residual = _numbers(Equations(system(x)).residual)[:, 0]
+                x[known] -= inverse @ residual[known]
             current = system(x)
-        return self._tips_of(current).change_from(tips)
+        return FinerShift(
+            tips=self._tips_of(current).change_from(tips),
+            shapes=self._shapes_of(current).change_from(self._shapes),
+        )
 
     @property
     def _inputs(self) -> FloatArray:
@@ -278,33 +298,53 @@ class Preview:
         cables = relative_cable_lengths(self.model, x, self._inputs)
         return Watched(np.concatenate(positions), np.concatenate(quaternions), cables)
 
-    def _tips_of(self, system: System) -> Watched:
-        """What is watched of a system that has numbers for its arguments."""
+    @cached_property
+    def _shapes(self) -> Watched:
+        """Sections all along the rods of the reference, as its solution tells them."""
         positions = []
         quaternions = []
-        for name, discrete_rod in system.discrete.rods.items():
-            X = watched(self.model, name)
-            shape = system.rods[name].shape
-            if len(X) == 1:
-                position = shape.position_at(-1)
-                quaternion = shape.quaternion[:, -1]
-            else:
-                interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
-                position = shape.position @ interpolation
-                quaternion = shape.quaternion @ interpolation
-            # The shape is that in the frame of the base section (docs/theory.md, section 1).
-            base = system.base(name)
-            base_position = ca.repmat(base.position, 1, len(X))
-            base_quaternion = ca.repmat(base.quaternion, 1, len(X))
-            world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
-            world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
-            positions.append(_numbers(world_position).T / discrete_rod.properties.length)
-            quaternions.append(_unit(world_quaternion))
+        for name, discrete_rod in self.model.discrete.rods.items():
+            pose = self.reference.pose(SAMPLES, name)
+            positions.append(pose.position / discrete_rod.properties.length)
+            quaternions.append(pose.quaternion)
+        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
+
+    def _shapes_of(self, system: System) -> Watched:
+        """Sections all along the rods of a system that has numbers for its arguments."""
+        poses = [_poses_of(system, name, SAMPLES) for name in system.discrete.rods]
+        positions, quaternions = zip(*poses, strict=True)
+        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
+
+    def _tips_of(self, system: System) -> Watched:
+        """What is watched of a system that has numbers for its arguments."""
+        poses = [_poses_of(system, name, watched(self.model, name)) for name in system.discrete.rods]
+        positions, quaternions = zip(*poses, strict=True)
         cables = []
         for name, rod_length in watched_cables(self.model).items():
             _, cable_length, _ = system.actuators.state(name)
             cables.append(float(_numbers(cable_length)[0, 0]) / rod_length)
         return Watched(np.concatenate(positions), np.concatenate(quaternions), np.array(cables))
+
+
+def _poses_of(system: System, rod: str, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Positions over the length and quaternions of k sections, shapes (k, 3) and (k, 4)."""
+    discrete_rod = system.discrete.rods[rod]
+    shape = system.shapes[rod]
+    if len(X) == 1:
+        # One section watched is the tip, which is a node.
+        position = shape.position_at(-1)
+        quaternion = shape.quaternion[:, -1]
+    else:
+        interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
+        position = shape.position @ interpolation
+        quaternion = shape.quaternion @ interpolation
+    # The shape is that in the frame of the base section (docs/theory.md, section 1).
+    base = system.base(rod)
+    base_position = ca.repmat(base.position, 1, len(X))
+    base_quaternion = ca.repmat(base.quaternion, 1, len(X))
+    world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
+    world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
+    return _numbers(world_position).T / discrete_rod.properties.length, _unit(world_quaternion)
 
 
 def _known_unknowns(coarse: DiscreteScene, fine: DiscreteScene) -> Mask:

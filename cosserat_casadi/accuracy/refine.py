@@ -252,7 +252,7 @@ def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> So
 def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
     """The cheapest solution near a reference; the reference itself where none is near enough to it."""
     reference = resolution.preview.reference
-    reference_error = resolution.modes_error + resolution.grid_error
+    reference_error = resolution.tip_error
     for share in COARSENING_SHARES:
         bound = share * solver.tolerance - reference_error
         coarsened = Coarsening(resolution.preview, bound, solver.wave_modes).run()
@@ -267,13 +267,17 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
         if solution.stable is not reference.stable:
             continue
         judged = replace(
-            with_estimate(solution, reference, MARGIN, reference_error),
+            with_estimate(solution, reference, MARGIN, reference_error, resolution.shape_error),
             smallest_eigenvalue=reference.smallest_eigenvalue,
             message=reference.message,
         )
         if judged.error_estimate is not None and judged.error_estimate <= solver.tolerance:
             return judged
-    return replace(reference, error_estimate=reference_error + ROUNDING)
+    return replace(
+        reference,
+        error_estimate=reference_error + ROUNDING,
+        shape_error_estimate=resolution.shape_error + ROUNDING,
+    )
 
 
 def _with_fixed(solver: SceneSolver) -> Solution:

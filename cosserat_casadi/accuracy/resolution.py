@@ -2,11 +2,13 @@
 
 Its modes: drop the last two and the last four of every component and see the tips move. Two at a time, since
 symmetry may empty every other one. Geometric extrapolation of the two changes is the error that the modes it has
-leave, a careful one because spectral errors fall faster than that. Its grid: one look at a finer one.
+leave, a careful one where errors fall faster than that. Its grid: one look at a finer one.
 
-Two kinds of scene are not so regular, and a look is taken at modes that they lack too. Waves along a rod do not show in
-its last coefficients. The error of a rod with supports falls in uneven steps: where the last two modes happen to do
-little, both the change that they make and its ratio to the one before are small, and their product says far too little.
+Not all errors fall so regularly. Waves along a rod do not show in its last coefficients. The error of a rod with
+supports falls in uneven steps: where the last two modes happen to do little, both the change that they make and its
+ratio to the one before are small, and their product says far too little; that of a free rod under strong loads may do
+so too. And tips are superconvergent: what they do tells nothing of the sections between, which are farther off. So a
+look is taken at modes that the solution lacks, and at how both move by them.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from math import ceil, log
 import numpy as np
 
 from cosserat_casadi.accuracy.pose_change import change_size
-from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0
@@ -36,11 +38,20 @@ SLOWEST = 0.7
 WAVES_FACTOR = 2
 """Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""
 
-HELD_MODES = 4
-"""Modes and intervals added for a look at rods with supports, more than one uneven step of its error."""
+FURTHER_MODES = 4
+"""Modes and intervals added for a look at rods without waves, more than one uneven step of their error."""
+
+SWEEPS = 1
+"""Sweeps of a look at free rods, whose added modes stiffness holds: enough for a few per cent of their error."""
+
+LOADED_SWEEPS = 2
+"""Sweeps of a look at rods with supports or waves, where what follows the added modes moves them in turn."""
 
 HIDDEN_SAFETY = 1.5
 """Factor on what that look finds."""
+
+NEGLIGIBLE = 0.01
+"""Share of the allowed error below which an extrapolated one is believed: ten times as much would not matter."""
 
 UNKNOWN = 4
 """Further modes where the error is beyond all bounds and tells nothing."""
@@ -51,15 +62,17 @@ CLOSING = 3
 
 @dataclass(frozen=True)
 class Resolution:
-    """Pose error of a solution's tips, in two parts.
+    """Pose error of a solution: of its tips, in two parts, and of all its sections.
 
     Attributes:
         preview: the solution.
         waves: whether the scene puts waves along its rods, so that the last coefficients may not show what follows.
+        allowed: error of the modes that is allowed; with 0 no extrapolated one is negligible.
     """
 
     preview: Preview
     waves: bool = False
+    allowed: float = 0.0
 
     @cached_property
     def ratio(self) -> float:
@@ -76,17 +89,14 @@ class Resolution:
     @cached_property
     def modes_error(self) -> float:
         """Error that the number of modes leaves."""
-        if self.waves or self._has_supports:
-            return max(self.extrapolated_error, self.hidden_error)
-        return self.extrapolated_error
+        return max(self.extrapolated_error, self.hidden_error)
 
     @cached_property
     def hidden_error(self) -> float:
-        """Error found by a look at modes that the solution lacks."""
-        finer = {}
-        for name, discretisation in self._discretisation.items():
-            finer[name] = self._looked_at(discretisation)
-        return HIDDEN_SAFETY * change_size(self.preview.finer_shift(finer))
+        """Error found by a look at modes that the solution lacks; 0 where the extrapolated one is negligible."""
+        if self._sweeps == 0:
+            return 0.0
+        return HIDDEN_SAFETY * change_size(self._look.tips)
 
     @cached_property
     def extrapolated_error(self) -> float:
@@ -107,12 +117,19 @@ class Resolution:
         shift = self.preview.grid_shift(self.preview.reference.x, modes, finer)
         return GRID_SAFETY * change_size(shift)
 
-    def missing_modes(self, bound: float) -> int:
-        """Further modes per component after which the error of the modes should be below a bound."""
-        error = self.extrapolated_error
-        if error <= bound:
-            # Only now: modes that the solution lacks cost more to look at.
-            error = self.modes_error
+    @cached_property
+    def tip_error(self) -> float:
+        """Error of what is watched."""
+        return self.modes_error + self.grid_error
+
+    @cached_property
+    def shape_error(self) -> float:
+        """Error of all sections, those between nodes included; no smaller than that of the tips."""
+        between = HIDDEN_SAFETY * change_size(self._look.shapes)
+        return max(self.modes_error, between) + self.grid_error
+
+    def missing_modes(self, error: float, bound: float) -> int:
+        """Further modes per component after which an error of the modes should be below a bound."""
         if not np.isfinite(error):
             return UNKNOWN
         if error <= bound:
@@ -125,9 +142,22 @@ class Resolution:
     def _discretisation(self) -> dict[str, Discretisation]:
         return self.preview.model.discretisation
 
-    @property
-    def _has_supports(self) -> bool:
-        return bool(self.preview.model.scene.supports)
+    @cached_property
+    def _sweeps(self) -> int:
+        """Sweeps of the look; 0 where what the tips do needs none."""
+        if self.waves or self.preview.model.scene.supports:
+            return LOADED_SWEEPS
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed:
+            return 0
+        return SWEEPS
+
+    @cached_property
+    def _look(self) -> FinerShift:
+        """What modes that the solution lacks would change."""
+        finer = {}
+        for name, discretisation in self._discretisation.items():
+            finer[name] = self._looked_at(discretisation)
+        return self.preview.finer_shift(finer, self._sweeps)
 
     def _looked_at(self, discretisation: Discretisation) -> Discretisation:
         """The finer discretisation of a rod at which a look is taken."""
@@ -135,8 +165,8 @@ class Resolution:
             # Products of waves have twice their frequency.
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
             return replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
-        modes = tuple(m + HELD_MODES for m in discretisation.modes)
-        return replace(discretisation, modes=modes, nodes=discretisation.nodes + HELD_MODES)
+        modes = tuple(m + FURTHER_MODES for m in discretisation.modes)
+        return replace(discretisation, modes=modes, nodes=discretisation.nodes + FURTHER_MODES)
 
     def _shift_without(self, count: int) -> float:
         """Largest change of the watched poses with so many modes less of every component."""

@@ -23,7 +23,7 @@ from cosserat_casadi.accuracy.cost import (
 )
 from cosserat_casadi.accuracy.metrics import pose_distance
 from cosserat_casadi.accuracy.pose_change import change_size
-from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours
@@ -270,7 +270,7 @@ def test_choice_is_cheaper_than_its_neighbours() -> None:
 
 
 class _Blind:
-    """A preview that cannot foresee fewer modes."""
+    """A preview that can foresee neither fewer modes nor more."""
 
     discretisation = {"rod": Discretisation((5,), 12)}
     is_assembly = False
@@ -280,8 +280,13 @@ class _Blind:
     def mode_shift(self, modes: object) -> np.ndarray:
         return np.full(12, np.nan)
 
+    def finer_shift(self, grids: object, sweeps: int) -> FinerShift:
+        return FinerShift(tips=np.full((2, 3), np.nan), shapes=np.full((2, 3), np.nan))
+
 
 def test_what_cannot_be_foreseen_is_an_infinite_error() -> None:
     resolution = Resolution(_Blind())  # type: ignore[arg-type]
+    assert resolution.extrapolated_error == np.inf
+    assert resolution.hidden_error == np.inf
     assert resolution.modes_error == np.inf
-    assert resolution.missing_modes(1e-3) > 0
+    assert resolution.missing_modes(resolution.modes_error, 1e-3) > 0
