@@ -13,8 +13,8 @@ rod turns about one axis. Write θ_i for column i of the δθ of the section tha
 A frozen couple has the residual g_j = −c·θ_j and the Jacobian J_ji = −c·∂_iθ_j, so that with the skew matrix
 C_ji = θ_j·(c × θ_i) the triangles differ by J_ji − J_ij = −c·(θ_i × θ_j) = −C_ji. A couple that follows its section
 varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: its triangles differ by C_ji. docs/theory.md writes C
-as δθᵀ ĉ δθ. Of couples at points it is cheaper than the other triangle; where couples are spread, or columns are formed
-one by one, all entries are.
+as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; where wrenches are spread, or
+columns are formed one by one, all entries are formed.
 
 **Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. What they change by passes down
 the rod as they themselves do, and is added to the variation of the moments before the intervals work on it: a column of
@@ -38,7 +38,7 @@ from cosserat_casadi.maths.blocks import (
     hat_operator,
     reversed_places,
 )
-from cosserat_casadi.maths.rotation import cross
+from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation_stiffness import actuation_stiffness
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix
@@ -287,12 +287,10 @@ class Tangent:
         matrix = self.columns.angular
         if self._have_potential:
             return _mirrored(matrix)
-        couple = self._couple_at_points
-        # Known columns have all entries already.
-        if self.given is not None or couple is None:
+        # Known columns have all entries already; of loads per length the difference takes as long as they do.
+        if self.given is not None or not self._potential_lacks_at_points:
             return matrix
-        skew = self.rotation.T @ (hat_operator(couple / -self.rod.energy_unit) @ self.rotation)
-        return _mirrored(matrix) + ca.tril(skew, False)
+        return _mirrored(matrix) + ca.tril(self._difference_of_triangles() / self.rod.energy_unit, False)
 
     @property
     def _have_potential(self) -> bool:
@@ -305,22 +303,33 @@ class Tangent:
         return True
 
     @property
-    def _couple_at_points(self) -> Matrix | None:
-        """ĉ of dead couples less that of those that follow, 3×M, N m; None unless couples at points alone matter.
+    def _potential_lacks_at_points(self) -> bool:
+        """Whether points alone carry wrenches without a potential."""
+        for wrench in self.igm.statics.wrenches:
+            follows = wrench.follower and wrench.force is not None
+            if (follows or wrench.moment is not None) and not isinstance(wrench, PointWrench):
+                return False
+        return True
 
-        The triangles of these differ by a product of few rows.
-        """
+    def _difference_of_triangles(self) -> Matrix:
+        """Angular rows less their transpose times EI/ℓ, n_a×n_a, N m, of wrenches at points: products of few rows."""
         statics = self.igm.statics
+        difference = ca.DM(self.angular_size, self.angular_size)
+        for follower in (False, True):
+            couple = statics.couple_covector(follower)
+            if couple is not None:
+                commutator = self.rotation.T @ (hat_operator(couple) @ self.rotation)
+                difference = difference + (commutator if follower else -commutator)
         for wrench in statics.wrenches:
-            if wrench.follower and wrench.force is not None:
-                return None
-            if wrench.moment is not None and not isinstance(wrench, PointWrench):
-                return None
-        dead = statics.couple_covector(follower=False)
-        following = statics.couple_covector(follower=True)
-        if dead is None or following is None:
-            return dead if following is None else -following
-        return dead - following
+            if isinstance(wrench, PointWrench) and wrench.follower and wrench.force is not None:
+                node = self.rod.grid.node_at(wrench.at)
+                moved = self.position(node)[:, : self.angular_size]
+                turned = self.rotation_of(node)[:, : self.angular_size]
+                in_base = self.shape.rotation_at(node) @ wrench.force
+                # −δrᵀ (δθ × f) = δrᵀ f^ δθ.
+                work = moved.T @ (hat(in_base) @ turned)
+                difference = difference + work - work.T
+        return difference
 
     @property
     def moments_pass(self) -> bool:
