@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
-from unittest.mock import patch
 
 import numpy as np
 import typer
@@ -30,10 +29,8 @@ from cosserat_casadi.accuracy.cost import (
     spread_on,
     terms_of,
     time_in_columns,
-    time_in_loops,
 )
 from cosserat_casadi.bench.program import Program, Times
-from cosserat_casadi.codegen import kernels
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.fours import columns_in_fours
@@ -53,9 +50,6 @@ INTEGRATORS = ((None, 1.0), ("magnus4", 1.4), ("magnus8", 0.8))
 """Integrators in turn, that of the pick first, with the share of its intervals."""
 
 METHODS = (PLANAR, "magnus4", "magnus6", "magnus8")
-LONG = 12_000
-"""Statements by columns from which on the Jacobian is timed in loops as well."""
-
 PARTS = 10
 """Parts of the rows, each of which is foreseen once from the others."""
 
@@ -85,7 +79,6 @@ class Compiled:
         operations: counted in the model's residual and Jacobian.
         statements: of the Jacobian by columns in C; -1 where it has no such form.
         residual_jacobian: time of both.
-        in_loops: the same where the Jacobian is written in loops; -1 where it is too short for that to be of interest.
         igm: of the inverse geometric model.
         warm: of a solve from the equilibrium of other inputs.
         cold: of a solve from the unloaded rod.
@@ -111,7 +104,6 @@ class Compiled:
     operations: float
     statements: int
     residual_jacobian: float
-    in_loops: float
     igm: float
     warm: float
     cold: float
@@ -122,15 +114,11 @@ def compiled(model: Model, seed: int, tolerance: float) -> Compiled | None:
     d, rod = model.discretisation[ROD], model.discrete.rods[ROD].properties
     program = Program(model, find_compiler())
     statements = statements_of(model)
-    times = times_of(program)
-    if times is None:
+    program.wait()
+    times = program.times()
+    program.close()
+    if not isinstance(times, Times):
         return None
-    in_loops = -1.0
-    if statements >= LONG:
-        with patch.object(kernels, "MOST_IN_COLUMNS", 0):
-            loops = times_of(Program(model, find_compiler()))
-        if loops is not None:
-            in_loops = loops.jacobian
     terms = terms_of(rod, d, spread_on(model.scene, ROD))
     foreseen = terms.operations
     return Compiled(
@@ -138,16 +126,8 @@ def compiled(model: Model, seed: int, tolerance: float) -> Compiled | None:
         terms.method, terms.groups, terms.intervals, terms.turns, terms.integrals, terms.entries,
         foreseen.intervals, foreseen.structure, foreseen.follower, foreseen.couple,
         model.operations(model.jacobian), statements,
-        times.jacobian, in_loops, times.igm, times.warm, times.cold,
+        times.jacobian, times.igm, times.warm, times.cold,
     )  # fmt: skip
-
-
-def times_of(program: Program) -> Times | None:
-    """None where it does not converge."""
-    program.wait()
-    times = program.times()
-    program.close()
-    return times if isinstance(times, Times) else None
 
 
 def statements_of(model: Model) -> int:
@@ -184,7 +164,6 @@ class Row:
     terms: Terms
     statements: float
     time: float
-    time_in_loops: float
 
     @property
     def in_columns(self) -> bool:
@@ -196,10 +175,7 @@ def row_of(row: dict[str, str]) -> Row:
     numbers = {name: float(row[name]) for name in ("intervals", "turns", "integrals", "entries")}
     operations = Operations(*(float(row[name]) for name in ("of_intervals", "structure", "follower", "couple")))
     terms = Terms(method=row["method"], groups=int(row["groups"]), operations=operations, **numbers)
-    statements = float(row["statements"])
-    time = float(row["residual_jacobian"])
-    in_loops = time if statements > MOST_IN_COLUMNS else float(row["in_loops"])
-    return Row(terms, statements, time, in_loops)
+    return Row(terms, float(row["statements"]), float(row["residual_jacobian"]))
 
 
 def affine(terms: Terms, groups: int) -> dict[str, float]:
@@ -222,16 +198,6 @@ def of_statements(terms: Terms) -> dict[str, float]:
     # Intervals are counted by method already.
     del found["in columns"]
     return found
-
-
-def in_loops(terms: Terms) -> dict[str, float]:
-    """What the factors of the law of loops belong to."""
-    operations = terms.operations
-    return {
-        "intervals": terms.intervals,
-        "structure": operations.structure,
-        "loads": operations.follower + operations.couple,
-    }
 
 
 @dataclass(frozen=True)
@@ -259,7 +225,6 @@ LAWS = (
         lambda row: row.statements, foreseen_statements, lambda row: row.statements > 0,
     ),
     Law("µs by columns", of_time, lambda row: row.time, time_in_columns, lambda row: row.in_columns),
-    Law("µs in loops", in_loops, lambda row: row.time_in_loops, time_in_loops, lambda row: row.time_in_loops > 0),
 )  # fmt: skip
 
 

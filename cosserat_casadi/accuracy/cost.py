@@ -26,7 +26,7 @@ Functions of one interval are called: each call is one instruction.
 MOST_IN_COLUMNS = 60_000
 """Statements up to which a Jacobian is written by columns, four at a time; a longer one is written in loops.
 
-Compilers take more than a minute for 90 000.
+Loops take up to two thirds longer there (benchmarks/code_limit.py), compilers some 20 s for what stands beside as well.
 """
 
 TOGETHER = 4
@@ -84,27 +84,27 @@ class LoopsLaw:
 
 
 STATEMENTS = AffineLaw(
-    constant=217.0,
-    of_intervals={PLANAR: 41.8, "magnus4": 137.0, "magnus6": 224.0, "magnus8": 480.0},
+    constant=194.0,
+    of_intervals={PLANAR: 68.6, "magnus4": 122.0, "magnus6": 190.0, "magnus8": 398.0},
     in_columns=0.0,
-    turns=1.0,
-    integrals=2.0,
-    entries=2.0,
+    turns=0.836,
+    integrals=6.24,
+    entries=3.04,
 )
 """Statements of the Jacobian by columns, which are written once for all groups of columns."""
 
 TIME_IN_COLUMNS = AffineLaw(
-    constant=0.0446,
-    of_intervals={PLANAR: 0.0416, "magnus4": 0.00908, "magnus6": 0.0365, "magnus8": 0.156},
-    in_columns=0.0178,
-    turns=0.001,
-    integrals=0.001,
-    entries=0.00176,
+    constant=0.110,
+    of_intervals={PLANAR: 0.0134, "magnus4": 0.0241, "magnus6": 0.0495, "magnus8": 0.165},
+    in_columns=0.00679,
+    turns=0.000586,
+    integrals=0.00108,
+    entries=0.000858,
 )
 """µs of residual and Jacobian by columns."""
 
-TIME_IN_LOOPS = LoopsLaw(intervals=0.101, structure=0.499e-3, loads=0.156e-3)
-"""µs of residual and Jacobian in loops."""
+TIME_IN_LOOPS = LoopsLaw(intervals=0.406, structure=0.163e-3, loads=0.0190e-3)
+"""µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py)."""
 
 
 @dataclass(frozen=True)

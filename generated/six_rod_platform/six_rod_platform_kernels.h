@@ -196,7 +196,7 @@ int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 2194
+#define six_rod_platform_k_jacobian_1_SZ_W 2195
 #ifdef __cplusplus
 } /* extern "C" */
 #endif
