@@ -2,9 +2,9 @@
 
 Counting the operations of a model takes longer than solving it, compiling it far longer. The laws of operations follow
 the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
-a time (codegen/columns.py), are affine in few terms: intervals, groups of four columns in them, entries of the
-Jacobian. benchmarks/compiled_cost.py fits their factors to compiled rods of every strain model, section and load, and
-tells how far they are off.
+a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
+the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
+factors to compiled rods of every strain model, section and load, and tells how far they are off.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Functions of one interval are called: each call is one instruction.
 MOST_IN_COLUMNS = 60_000
 """Statements up to which a Jacobian is written by columns, four at a time; a longer one is written in loops.
 
-Compilers take more than a minute for 90 000.
+Loops take up to two thirds longer there (benchmarks/code_limit.py), compilers some 20 s for what stands beside as well.
 """
 
 TOGETHER = 4
@@ -43,6 +43,9 @@ _LAWS = {
 }
 """For each interval: operations of its functions, and the factors of the turning coordinates and of their square."""
 
+_TAYLOR_COUNT = {PLANAR: 1, "magnus4": 2, "magnus6": 3, "magnus8": 4}
+"""Numbers that an interval takes of the strain about each axis."""
+
 
 @dataclass(frozen=True)
 class AffineLaw:
@@ -51,18 +54,18 @@ class AffineLaw:
     Attributes:
         constant: whatever the rod.
         of_intervals: of the intervals, by method.
-        groups: of the groups of columns.
+        in_columns: of the intervals in each group of columns.
+        turns: of products with the matrix of turns in each group of columns.
+        integrals: of products with the matrix of integration in each group of columns.
         entries: of the entries of the Jacobian.
-        follower: of operations for a force per length that turns with the sections.
-        couple: of operations for a moment per length.
     """
 
     constant: float
     of_intervals: Mapping[str, float]
-    groups: float
+    in_columns: float
+    turns: float
+    integrals: float
     entries: float
-    follower: float
-    couple: float
 
 
 @dataclass(frozen=True)
@@ -81,27 +84,27 @@ class LoopsLaw:
 
 
 STATEMENTS = AffineLaw(
-    constant=217.0,
-    of_intervals={PLANAR: 41.8, "magnus4": 137.0, "magnus6": 224.0, "magnus8": 480.0},
-    groups=0.0,
-    entries=6.68,
-    follower=1.04,
-    couple=1.18,
+    constant=194.0,
+    of_intervals={PLANAR: 68.6, "magnus4": 122.0, "magnus6": 190.0, "magnus8": 398.0},
+    in_columns=0.0,
+    turns=0.836,
+    integrals=6.24,
+    entries=3.04,
 )
 """Statements of the Jacobian by columns, which are written once for all groups of columns."""
 
 TIME_IN_COLUMNS = AffineLaw(
-    constant=0.0446,
-    of_intervals={PLANAR: 0.0416, "magnus4": 0.00908, "magnus6": 0.0365, "magnus8": 0.156},
-    groups=0.0178,
-    entries=0.00176,
-    follower=0.143e-3,
-    couple=0.239e-3,
+    constant=0.110,
+    of_intervals={PLANAR: 0.0134, "magnus4": 0.0241, "magnus6": 0.0495, "magnus8": 0.165},
+    in_columns=0.00679,
+    turns=0.000586,
+    integrals=0.00108,
+    entries=0.000858,
 )
 """µs of residual and Jacobian by columns."""
 
-TIME_IN_LOOPS = LoopsLaw(intervals=0.101, structure=0.499e-3, loads=0.156e-3)
-"""µs of residual and Jacobian in loops."""
+TIME_IN_LOOPS = LoopsLaw(intervals=0.406, structure=0.163e-3, loads=0.0190e-3)
+"""µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py)."""
 
 
 @dataclass(frozen=True)
@@ -145,15 +148,19 @@ class Terms:
 
     Attributes:
         method: of the rotations, or :data:`PLANAR`.
+        groups: groups of four columns.
         intervals: intervals, each as often as it has axes to turn about.
-        groups: groups of four columns in each of them; none of a planar rod, whose columns are constant.
+        turns: products of one column with the constant matrix of turns.
+        integrals: those with the constant matrix of integration, which forces per length that follow take.
         entries: entries of the Jacobian.
         operations: of the Jacobian, among them those for loads along the rod.
     """
 
     method: str
+    groups: int
     intervals: float
-    groups: float
+    turns: float
+    integrals: float
     entries: float
     operations: Operations
 
@@ -189,21 +196,21 @@ def foreseen_operations(
     nodes = elements * (chosen.nodes + 1)
     intervals = elements * chosen.nodes
     turning, stretching = _coordinates(rod, chosen)
-    # A coordinate moves the elements beyond its own only: these are shares of all pairs, and of all triples.
-    once = (elements + 1) / (2 * elements)
-    twice = (elements + 1) * (2 * elements + 1) / (6 * elements**2)
+    once = _share_beyond(chosen)
     structure = linear * once * turning + square * (once * turning) ** 2
     structure += 32 * once * stretching + 0.6 * once**2 * turning * stretching
+    # Loads without a potential take the other triangle of the Jacobian as well.
+    triangle = intervals * square * (once * turning) ** 2
     follower = 0.0
     if spread.follower:
-        # The product with S that dead forces do without (docs/theory.md, section 6).
-        products = 6 * once * nodes**2
-        variations = 6 * once * nodes * (turning + stretching)
-        follower = turning * (products + 9 * nodes + variations)
+        integrals = 2 * _integrals(rod, chosen)
+        follower = triangle + turning * (integrals + nodes * (27 + 2.2 * stretching))
     couple = 0.0
     # About one axis rotations commute, and a moment per length leaves the Jacobian as it is.
     if spread.couple and method != PLANAR:
-        couple = 3 * twice * nodes * turning**2 + 9 * nodes * turning
+        couple = 31 * nodes * turning
+        if not spread.follower:
+            couple += triangle
     return Operations(
         intervals=intervals * function,
         structure=intervals * structure,
@@ -222,12 +229,12 @@ def terms_of(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread
     """
     method = _method(rod, chosen)
     turning, stretching = _coordinates(rod, chosen)
-    intervals = chosen.elements * chosen.nodes * len(rod.turning_axes)
-    groups = 0 if method == PLANAR else ceil(turning / TOGETHER)
     return Terms(
         method=method,
-        intervals=intervals,
-        groups=intervals * groups,
+        groups=ceil(turning / TOGETHER),
+        intervals=chosen.elements * chosen.nodes * len(rod.turning_axes),
+        turns=turning * chosen.nodes * _TAYLOR_COUNT[method],
+        integrals=_integrals(rod, chosen) if spread.follower else 0.0,
         entries=(turning + stretching) ** 2,
         operations=foreseen_operations(rod, chosen, spread),
     )
@@ -235,12 +242,12 @@ def terms_of(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread
 
 def foreseen_statements(terms: Terms) -> float:
     """Statements of the Jacobian by columns in C, approximately: what :data:`MOST_IN_COLUMNS` is a bound of."""
-    return _affine(STATEMENTS, terms)
+    return _affine(STATEMENTS, terms, groups=1)
 
 
 def time_in_columns(terms: Terms) -> float:
     """Time of residual and Jacobian by columns, µs."""
-    return _affine(TIME_IN_COLUMNS, terms)
+    return _affine(TIME_IN_COLUMNS, terms, terms.groups)
 
 
 def time_in_loops(terms: Terms) -> float:
@@ -269,10 +276,11 @@ def foreseen_time(
     return time_in_loops(terms)
 
 
-def _affine(law: AffineLaw, terms: Terms) -> float:
-    of_rod = law.of_intervals[terms.method] * terms.intervals + law.groups * terms.groups + law.entries * terms.entries
-    of_loads = law.follower * terms.operations.follower + law.couple * terms.operations.couple
-    return law.constant + of_rod + of_loads
+def _affine(law: AffineLaw, terms: Terms, groups: int) -> float:
+    """What a law says of code whose columns run for so many groups."""
+    once = law.of_intervals[terms.method] * terms.intervals + law.entries * terms.entries
+    of_group = law.in_columns * terms.intervals + law.turns * terms.turns + law.integrals * terms.integrals
+    return law.constant + once + groups * of_group
 
 
 def _method(rod: RodProperties, chosen: Discretisation) -> str:
@@ -290,3 +298,15 @@ def _coordinates(rod: RodProperties, chosen: Discretisation) -> tuple[float, flo
         else:
             stretching += modes
     return chosen.elements * turning, chosen.elements * stretching
+
+
+def _share_beyond(chosen: Discretisation) -> float:
+    """Share of all pairs of elements of which the second is not before the first: a coordinate moves no others."""
+    return (chosen.elements + 1) / (2 * chosen.elements)
+
+
+def _integrals(rod: RodProperties, chosen: Discretisation) -> float:
+    """Products of forces on the nodes, of those components that a rod's turning changes, with the matrix S."""
+    nodes = chosen.elements * (chosen.nodes + 1)
+    components = 2 if len(rod.turning_axes) < 2 else 3
+    return components * _share_beyond(chosen) * nodes**2

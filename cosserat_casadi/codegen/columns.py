@@ -154,7 +154,7 @@ class ColumnedJacobian:
         passing = {name: tangent for name, tangent in tangents.items() if tangent.moments_pass}
         self.rods = {name: self._rod_columns(tangent) for name, tangent in passing.items()}
         symbols = {name: ca.MX.sym("columns", rod.pattern) for name, rod in self.rods.items()}
-        known = {name: _unstacked(passing[name], columns) for name, columns in symbols.items()}
+        known = {name: _unstacked(passing[name].columns, columns) for name, columns in symbols.items()}
         jacobian = written.of_system(replace(written.system, columns=known))
         self.of_columns = self._scalar("of_columns", list(symbols.values()), jacobian)
 
@@ -264,17 +264,20 @@ def in_columns(written: WrittenJacobian, name: str) -> ColumnForm | None:
     return jacobian.part(ca.densify(entries), rod).form(name)
 
 
-def _heights(tangent: Tangent) -> list[int]:
-    """Rows of the parts of a column."""
-    linear = [tangent.rod.size_of(component) for component in tangent.rod.linear]
-    return [3 * tangent.intervals, tangent.angular_size, *linear]
+def _parts(columns: Columns) -> list[Matrix]:
+    """The parts of columns, one below the other."""
+    return [columns.section_rotation, columns.angular, *columns.linear.values(), *columns.following.values()]
 
 
 def _stacked(columns: Columns) -> Matrix:
-    return ca.vertcat(columns.section_rotation, columns.angular, *columns.linear.values())
+    return ca.vertcat(*_parts(columns))
 
 
-def _unstacked(tangent: Tangent, every: ca.MX) -> Columns:
-    ends = np.cumsum([0, *_heights(tangent)]).tolist()
-    rotation, angular, *linear = ca.vertsplit(every, ends)
-    return Columns(rotation, angular, dict(zip(tangent.rod.linear, linear, strict=True)))
+def _unstacked(alike: Columns, every: ca.MX) -> Columns:
+    """Stacked columns in parts as those of other columns of the rod."""
+    ends = np.cumsum([0, *(part.shape[0] for part in _parts(alike))]).tolist()
+    rotation, angular, *further = ca.vertsplit(every, ends)
+    count = len(alike.linear)
+    linear: dict[int, Matrix] = dict(zip(alike.linear, further[:count], strict=True))
+    following: dict[int, Matrix] = dict(zip(alike.following, further[count:], strict=True))
+    return Columns(rotation, angular, linear, following)

@@ -404,12 +404,13 @@ class _Writing:
         entries = self.listing.outputs[1]
         for row in range(form.rows):
             place = row * form.stride
-            if row in entries and not self.in_column[entries[row]]:
-                raise UnknownOperationError("a row that all columns share")
-            if row in entries:
-                statements.append(Statement(f"STORE(columns + {place}, {{0}});", [entries[row]]))
-            else:
+            made = entries.get(row)
+            if made is None or self.listing.values[made] == Constant(0.0):
                 statements.append(Statement(f"CLEAR(columns + {place});", []))
+            elif self.in_column[made]:
+                statements.append(Statement(f"STORE(columns + {place}, {{0}});", [made]))
+            else:
+                raise UnknownOperationError("a row that all columns share")
         return statements
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:

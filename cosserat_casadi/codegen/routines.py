@@ -1,8 +1,9 @@
 """What is changed in the C code that CasADi writes: products of matrices, checks that never fail, long functions.
 
 CasADi adds column after column to a column in memory, entry by entry. Here some rows of a column stay in registers
-until all their products are summed, two in each register where the processor can. Sums and their order are the same.
-There is a routine for each number of rows: the bunches fill them, and none is left that waits for single sums.
+until all their products are summed, four in each register where the processor can. Sums and their order are the same.
+There is a routine for each number of rows: the bunches fill them, and none is left that waits for single sums. On x86
+it is made twice, as kernels in fours are (templates/fours.c.in): the wider one is taken where the processor has it.
 
 CasADi asks before every entry that it reads or writes whether there is such an argument or result. Steps that are
 written together are called with all of them, and compilers spend most of their time on these questions.
@@ -19,7 +20,29 @@ import re
 ROWS_AT_ONCE = 16
 """Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
 
-SPARSE = """static void casadi_mtimes_dense_sparse_{rows}(const casadi_real* x,
+TOGETHER_IN_REGISTER = 4
+"""Doubles in one of the widest registers: bunches are multiples of it, but for the last."""
+
+TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE) && \\
+    !defined(FOURS_ONE_BY_ONE)
+#define PRODUCT(name, given, passed)                                                                    \\
+  __attribute__((target("avx2"))) static void name##_wide given { name##_sums passed; }                 \\
+  static void name given {                                                                              \\
+    if (__builtin_cpu_supports("avx2")) name##_wide passed;                                             \\
+    else name##_sums passed;                                                                            \\
+  }
+#else
+#define PRODUCT(name, given, passed) static void name given { name##_sums passed; }
+#endif
+#ifdef __GNUC__
+#define SUMS static inline __attribute__((always_inline)) void
+#else
+#define SUMS static void
+#endif
+"""
+"""What makes a routine of its sums, for any processor and for the wider vectors of newer ones."""
+
+SPARSE = """SUMS casadi_mtimes_dense_sparse_{rows}_sums(const casadi_real* x,
     const casadi_real* y, const casadi_int* sp_y, casadi_real* z) {{
   const casadi_int columns = sp_y[1], *colind = sp_y + 2, *row = colind + columns + 1;
   casadi_int c, k, r;
@@ -28,9 +51,11 @@ SPARSE = """static void casadi_mtimes_dense_sparse_{rows}(const casadi_real* x,
 {sums}
   }}
 }}
+PRODUCT(casadi_mtimes_dense_sparse_{rows}, (const casadi_real* x, const casadi_real* y,
+    const casadi_int* sp_y, casadi_real* z), (x, y, sp_y, z))
 """
 
-DENSE = """static void casadi_mtimes_dense_{rows}(const casadi_real* x, casadi_int inner,
+DENSE = """SUMS casadi_mtimes_dense_{rows}_sums(const casadi_real* x, casadi_int inner,
     const casadi_real* y, casadi_int columns, casadi_real* z) {{
   casadi_int c, k, r;
   for (c = 0; c < columns; ++c, y += inner, z += {rows}) {{
@@ -38,9 +63,11 @@ DENSE = """static void casadi_mtimes_dense_{rows}(const casadi_real* x, casadi_i
 {sums}
   }}
 }}
+PRODUCT(casadi_mtimes_dense_{rows}, (const casadi_real* x, casadi_int inner, const casadi_real* y,
+    casadi_int columns, casadi_real* z), (x, inner, y, columns, z))
 """
 
-SUMS = """    for (r = {first}; r < {last}; r += {count}) {{
+BUNCHES = """    for (r = {first}; r < {last}; r += {count}) {{
       casadi_real {begun};
       for (k = begin; k < end; ++k) {{
         const casadi_real f = y[k], *s = x + {column} * {rows} + r;
@@ -114,28 +141,32 @@ def _with_fast_products(source: str) -> str:
         made = "".join(routine.format(rows=count, sums=_sums(count, column)) for count in rows)
         source = re.sub(rf"^static void {name}\(.*?^\}}\n", made, source, flags=re.M | re.S)
         source = re.sub(pattern, rf"{name}_\2(\1, \3);", source)
-    return source
+    begin = source.find("SUMS ")
+    if begin < 0:
+        return source
+    return source[:begin] + TWICE + source[begin:]
 
 
 def _sums(rows: int, column: str) -> str:
-    """The sums of the rows of one column of the result, in bunches of nearly the same size.
+    """The sums of the rows of one column of the result, in bunches of one size and what is left.
 
     Args:
         rows: their number.
         column: the column of x that meets y[k].
     """
     bunches = -(-rows // ROWS_AT_ONCE)
-    size, larger = divmod(rows, bunches)
-    middle = larger * (size + 1)
+    in_each = -(-rows // bunches)
+    size = min(rows, -(-in_each // TOGETHER_IN_REGISTER) * TOGETHER_IN_REGISTER)
+    middle = rows // size * size
     parts = []
-    for first, last, count in ((0, middle, size + 1), (middle, rows, size)):
+    for first, last, count in ((0, middle, size), (middle, rows, rows - middle)):
         if first < last:
             parts.append(_sum(rows, first, last, count, column))
     return "\n".join(parts)
 
 
 def _sum(rows: int, first: int, last: int, count: int, column: str) -> str:
-    return SUMS.format(
+    return BUNCHES.format(
         rows=rows,
         first=first,
         last=last,

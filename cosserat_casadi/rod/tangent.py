@@ -3,19 +3,25 @@
 Column i of every matrix below is the variation of a field with the i-th strain coordinate, stacked component by
 component. Rotations vary by δθ = Σ R T ∂Ω/∂q over the intervals passed, tangents by δt = δθ × t + ℓ Σ d_c δΓ_c.
 
-**Frozen wrenches.** Forces of fixed direction have a potential, so the upper triangle of their part is enough and the
-lower one is its mirror. Couples have none, and the mirror is repaired. Write θ_i for column i of the δθ of the section
-that a couple c acts on, θ_i^ = ∂_iR Rᵀ. Since ∂_i∂_jR = ∂_j∂_iR,
+**Frozen wrenches.** The moments that intervals pass vary as the rod beyond them turns. Forces of fixed direction have a
+potential, so the upper triangle of their part is enough and the lower one is its mirror. Couples have none, unless the
+rod turns about one axis. Write θ_i for column i of the δθ of the section that a couple c acts on, θ_i^ = ∂_iR Rᵀ. Since
+∂_i∂_jR = ∂_j∂_iR,
 
     ∂_iθ_j − ∂_jθ_i = θ_i × θ_j .
 
 A frozen couple has the residual g_j = −c·θ_j and the Jacobian J_ji = −c·∂_iθ_j, so that with the skew matrix
-C_ji = θ_j·(c × θ_i) the triangles differ by J_ji − J_ij = −c·(θ_i × θ_j) = −C_ji: below the diagonal C is taken from
-the mirror. A couple that follows its section varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: below,
-the two cancel and the mirror stands; above, C is added. docs/theory.md writes C as δθᵀ ĉ δθ.
+C_ji = θ_j·(c × θ_i) the triangles differ by J_ji − J_ij = −c·(θ_i × θ_j) = −C_ji. A couple that follows its section
+varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: its triangles differ by C_ji. docs/theory.md writes C
+as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; where wrenches are spread, or
+columns are formed one by one, all entries are formed.
 
-**What else varies.** Forces that follow turn with their sections, loads that depend on poses vary by the derivative of
-their kernel, efforts by the curvature of the quantity that they work on. Only what a scene's loads need is formed.
+**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. What they change by passes down
+the rod as they themselves do, and is added to the variation of the moments before the intervals work on it: a column of
+the Jacobian is formed from the tip to the base, and no two columns meet in a product.
+
+**What else varies.** Loads that depend on poses vary by the derivative of their kernel, efforts by the curvature of the
+quantity that they work on. Only what a scene's loads need is formed.
 """
 
 from __future__ import annotations
@@ -32,7 +38,6 @@ from cosserat_casadi.maths.blocks import (
     hat_operator,
     reversed_places,
 )
-from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation_stiffness import actuation_stiffness
@@ -43,7 +48,8 @@ from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
+from cosserat_casadi.rod.turned_wrenches import TurnedWrenches
+from cosserat_casadi.rod.wrenches import PointWrench
 
 
 @dataclass(frozen=True)
@@ -53,12 +59,14 @@ class Columns:
     Attributes:
         section_rotation: :attr:`Tangent.section_rotation`.
         angular: angular rows before they are made symmetric, n_a rows.
-        linear: rows of each linear strain against the angular columns, by component.
+        linear: rows of each linear strain against the angular columns under frozen forces, by component.
+        following: what forces that follow add to these, by component; empty where none does.
     """
 
     section_rotation: Matrix
     angular: Matrix
     linear: dict[int, Matrix]
+    following: dict[int, Matrix]
 
 
 @dataclass(frozen=True)
@@ -111,8 +119,14 @@ class Tangent:
     @cached_property
     def columns(self) -> Columns:
         """Columns of the turns, or of all angular coordinates, where moments pass."""
+        if self.given is not None:
+            return self.given
         linear = {component: self._linear_rows(component) for component in self.rod.linear}
-        return Columns(self.section_rotation, self._angular_product, linear)
+        following = {}
+        force = self._turned.force
+        if force is not None:
+            following = {component: self._following_rows(component, force) for component in self.rod.linear}
+        return Columns(self.section_rotation, self._angular_product, linear, following)
 
     def under(self, load: LoadedSections) -> Tangent:
         """The same variations of the same shape where one load that depends on poses acts alone."""
@@ -120,7 +134,7 @@ class Tangent:
         if not self.kernels.axes:
             return Tangent(model, self.in_loops)
         # The turns are those of the rod under all its loads; what moments make of them is not asked for.
-        turns = Columns(self.section_rotation, ca.DM(self.angular_size, self.angular_size), {})
+        turns = Columns(self.section_rotation, ca.DM(self.angular_size, self.angular_size), {}, {})
         return Tangent(model, self.in_loops, given=turns)
 
     @cached_property
@@ -232,8 +246,8 @@ class Tangent:
         elastic = self.rod.stiffness_matrix
         if self.shape.ratio is not None:
             elastic = elastic / self.shape.ratio
-        matrix = elastic + self._frozen_wrenches()
-        for part in (self._following_forces(), self._pose_stiffness(), actuation_stiffness(self.igm)):
+        matrix = elastic + self._wrenches()
+        for part in (self._pose_stiffness(), actuation_stiffness(self.igm)):
             if part is not None:
                 matrix = matrix + part
         return matrix
@@ -248,45 +262,83 @@ class Tangent:
         linear = ca.DM(angular.shape[0], self._linear_size)
         return ca.horzcat(angular, linear)
 
-    def _frozen_wrenches(self) -> Matrix:
-        """What all wrenches add but for following forces, n×n; linear strains do not meet each other."""
-        rows = [self._linear_rows(c) for c in self.rod.linear]
-        # A rod without linear strains has no such row.
-        rows.append(ca.DM(0, self.angular_size))
-        linear = ca.vertcat(*rows)
-        none = ca.DM(linear.shape[0], linear.shape[0])
+    def _wrenches(self) -> Matrix:
+        """What wrenches add, taken as dead or following ones, n×n; linear strains do not meet each other."""
+        if not self.moments_pass:
+            return ca.DM(self.rod.size, self.rod.size)
+        # Sections do not turn with linear strains, and neither do the forces that follow them.
+        dead = self._of_linear_strains(self.columns.linear)
+        rows = dead
+        if self.columns.following:
+            rows = dead + self._of_linear_strains(self.columns.following)
+        none = ca.DM(self._linear_size, self._linear_size)
         blocks = [
-            [self._angular_rows(), linear.T],
-            [linear, none],
+            [self._angular_rows(), dead.T],
+            [rows, none],
         ]
         return ca.blockcat(blocks)
 
+    def _of_linear_strains(self, rows: dict[int, Matrix]) -> Matrix:
+        """Rows of all linear strains; a rod without any has none."""
+        return ca.vertcat(*rows.values(), ca.DM(0, self.angular_size))
+
     def _angular_rows(self) -> Matrix:
-        """Angular rows and columns but for following forces, n_a×n_a."""
+        """Angular rows and columns, n_a×n_a."""
+        matrix = self.columns.angular
+        if self._have_potential:
+            return _mirrored(matrix)
+        # Known columns have all entries already; of loads per length the difference takes as long as they do.
+        if self.given is not None or not self._potential_lacks_at_points:
+            return matrix
+        return _mirrored(matrix) + ca.tril(self._difference_of_triangles() / self.rod.energy_unit, False)
+
+    @property
+    def _have_potential(self) -> bool:
+        """Whether all wrenches have a potential once those that depend on poses are taken as dead ones."""
+        for wrench in self.igm.statics.wrenches:
+            if wrench.follower and wrench.force is not None:
+                return False
+            if wrench.moment is not None and not self._about_one_axis:
+                return False
+        return True
+
+    @property
+    def _potential_lacks_at_points(self) -> bool:
+        """Whether points alone carry wrenches without a potential."""
+        for wrench in self.igm.statics.wrenches:
+            follows = wrench.follower and wrench.force is not None
+            if (follows or wrench.moment is not None) and not isinstance(wrench, PointWrench):
+                return False
+        return True
+
+    def _difference_of_triangles(self) -> Matrix:
+        """Angular rows less their transpose times EI/ℓ, n_a×n_a, N m, of wrenches at points: products of few rows."""
         statics = self.igm.statics
-        unit = self.rod.energy_unit
-        if not self.moments_pass:
-            return ca.DM(self.angular_size, self.angular_size)
-        matrix = ca.triu2symm(ca.triu(self._angular_product))
-        # The mirror lacks the skew part of couples: of dead ones below the diagonal, of followers above.
-        dead = statics.couple_covector(follower=False)
-        if dead is not None:
-            matrix = matrix - ca.tril(self._commutator(dead / unit), False)
-        following = statics.couple_covector(follower=True)
-        if following is not None:
-            matrix = matrix + ca.triu(self._commutator(following / unit), False)
-        return matrix
+        difference = ca.DM(self.angular_size, self.angular_size)
+        for follower in (False, True):
+            couple = statics.couple_covector(follower)
+            if couple is not None:
+                commutator = self.rotation.T @ (hat_operator(couple) @ self.rotation)
+                difference = difference + (commutator if follower else -commutator)
+        for wrench in statics.wrenches:
+            if isinstance(wrench, PointWrench) and wrench.follower and wrench.force is not None:
+                node = self.rod.grid.node_at(wrench.at)
+                moved = self.position(node)[:, : self.angular_size]
+                turned = self.rotation_of(node)[:, : self.angular_size]
+                in_base = self.shape.rotation_at(node) @ wrench.force
+                # −δrᵀ (δθ × f) = δrᵀ f^ δθ.
+                work = moved.T @ (hat(in_base) @ turned)
+                difference = difference + work - work.T
+        return difference
 
     @property
     def moments_pass(self) -> bool:
         """Whether intervals that turn pass moments on."""
         return self.igm.statics.interval_moment is not None and bool(self.kernels.axes)
 
-    @cached_property
+    @property
     def _angular_product(self) -> Matrix:
-        """Angular rows of which the upper triangle holds, n_a×n_a."""
-        if self.given is not None:
-            return self.given.angular
+        """Angular rows, n_a×n_a."""
         turning, stiffness, second = self.interval_operators
         # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
         passing = self._moment_variation() + stiffness @ self.interval_variation
@@ -298,7 +350,7 @@ class Tangent:
         return (self.turn_matrix / -unit).T @ pulled
 
     def _moment_variation(self) -> Matrix:
-        """δm − δθ × m of every interval under frozen wrenches, base frame, (3·intervals)×n_a."""
+        """δm − δθ × m of every interval, base frame, (3·intervals)×n_a."""
         statics = self.igm.statics
         count = self.intervals
         rotations = [_with_base(part) for part in ca.vertsplit(self.section_rotation, count)]
@@ -306,74 +358,48 @@ class Tangent:
         moment = statics.interval_moment
         assert moment is not None, "asked for where moments pass"
         variation = hat_operator(moment) @ begins
-        if statics.force_covector is None:
-            return variation
-        # (δθ × t) × n̂ = n̂^ t^ δθ, summed over the nodes that share a section.
-        force_hat = hat_operator(statics.force_covector)
-        tangent_hat = hat_operator(self.shape.tangent)
+        parts = []
         gather = self._gather
-        lever = gather @ (force_hat @ tangent_hat) @ gather.T
+        if statics.force_covector is not None:
+            # (δθ × t) × n̂ = n̂^ t^ δθ, summed over the nodes that share a section.
+            force_hat = hat_operator(statics.force_covector)
+            tangent_hat = hat_operator(self.shape.tangent)
+            lever = gather @ (force_hat @ tangent_hat) @ gather.T
+            parts.append(lever @ self.section_rotation)
+        parts += [gather @ part for part in self._turned.moments]
+        if not parts:
+            return variation
         # An interval feels what acts beyond it: sums from the tip.
-        from_tip = reversed_places(lever @ self.section_rotation, count)
+        from_tip = reversed_places(sum(parts[1:], parts[0]), count)
         return variation + reversed_places(cumulative_sum(from_tip, count), count)
 
-    def _commutator(self, couple: Matrix) -> Matrix:
-        """Σ δθᵀ ĉ^ δθ over the nodes, C of the module's docstring, skew, n_a×n_a, for couples 3×M."""
-        turned = hat_operator(couple) @ self.rotation
-        return self.rotation.T @ turned
+    @cached_property
+    def _turned(self) -> TurnedWrenches:
+        """How wrenches vary that follow their sections."""
+        return TurnedWrenches(self.igm.statics, self.rotation, self._about_one_axis)
+
+    @property
+    def _about_one_axis(self) -> bool:
+        """Whether the rod turns about one axis: rotations commute, and a couple works on their angle."""
+        return len(self.kernels.axes) == 1
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
-        if self.given is not None:
-            return self.given.linear[component]
         covector = self.igm.statics.force_covector
-        phi = self.rod.node_matrix(component)
         if covector is None:
             return ca.DM(self.rod.size_of(component), self._turns.shape[1])
-        lever = cross(self.shape.directors[component - 3], covector)
-        rows = [ca.diag(row) for row in ca.vertsplit(lever)]
-        work = ca.horzcat(*rows) @ self.rotation
-        per_coordinate = phi * (-self.rod.length / self.rod.energy_unit)
+        return self._work_on(component, cross(self.shape.directors[component - 3], covector), self.rotation)
+
+    def _following_rows(self, component: int, force: Matrix) -> Matrix:
+        """What forces that follow, which vary by δn̂, add to these rows: −ℓ Φᵀ d·δn̂."""
+        return self._work_on(component, self.shape.directors[component - 3], force)
+
+    def _work_on(self, component: int, vectors: Matrix, variation: Matrix) -> Matrix:
+        """−ℓ Φᵀ of the products of vectors at the nodes, 3×M, with each column of a variation of the nodes, 3M×k."""
+        rows = [ca.diag(row) for row in ca.vertsplit(vectors)]
+        work = ca.horzcat(*rows) @ variation
+        per_coordinate = self.rod.node_matrix(component) * (-self.rod.length / self.rod.energy_unit)
         return per_coordinate.T @ work
-
-    def _following_forces(self) -> Matrix | None:
-        """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
-        parts = []
-        for wrench in self.igm.statics.wrenches:
-            if wrench.follower and wrench.force is not None:
-                force = wrench.force / self.rod.energy_unit
-                parts.append(self._following_force(wrench, force))
-        if not parts:
-            return None
-        return self._with_linear_columns(-sum(parts[1:], parts[0]))
-
-    def _following_force(self, wrench: Wrench, force: Matrix) -> Matrix:
-        """Sum of δtᵀ δn̂, n×n_a: δrᵀ (δθ × f) wherever the force acts."""
-        if isinstance(wrench, LineWrench):
-            return self.tangent.T @ self._following_line(wrench, force)
-        return self._following_point(wrench, force)
-
-    def _following_point(self, wrench: PointWrench, force: Matrix) -> Matrix:
-        node = self.rod.grid.node_at(wrench.at)
-        turning = self.rotation_of(node)[:, : self.angular_size]
-        in_base = self.shape.rotation_at(node) @ force
-        # δf = δθ × f = −f^ δθ, and the work is that of −δrᵀ f^ δθ.
-        turned = hat(in_base) @ turning
-        return -self.position(node).T @ turned
-
-    def _following_line(self, wrench: LineWrench, force: Matrix) -> Matrix:
-        """δn̂ of a force per length that turns with the sections, 3M×n_a."""
-        grid = self.rod.grid
-        per_length = self.igm.statics.line(wrench, force)
-        turned = -(hat_operator(per_length) @ self.rotation)
-        lengths = self.rod.node_lengths
-        if is_symbolic(lengths):
-            to_covector = ca.DM(grid.integration_matrix).T
-            turned = ca.diag(ca.repmat(lengths, 3, 1)) @ turned
-        else:
-            to_covector = ca.DM(known(lengths)[:, None] * grid.integration_matrix).T
-        components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
-        return ca.vertcat(*components)
 
     def _pose_stiffness(self) -> Matrix | None:
         """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
@@ -397,6 +423,11 @@ class Tangent:
         sections = np.eye(self.intervals + 1)[1:, section_of_node]
         gather = np.kron(np.eye(3), sections)
         return ca.sparsify(ca.DM(gather))
+
+
+def _mirrored(matrix: Matrix) -> Matrix:
+    """The upper triangle and its mirror."""
+    return ca.triu2symm(ca.triu(matrix))
 
 
 def _with_base(part: Matrix) -> Matrix:

@@ -140,7 +140,7 @@ typedef struct {
   follower_reissner_real correction[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real d_x_d_inputs[FOLLOWER_REISSNER_UNKNOWNS * 6];
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
-  follower_reissner_real kernel_reals[1679];
+  follower_reissner_real kernel_reals[1576];
   int kernel_integers[1];
 } follower_reissner_workspace;
 

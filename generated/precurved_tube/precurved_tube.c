@@ -29,10 +29,10 @@
 /* How much each unknown counts in the length of a step. */
 static const real STEP_WEIGHTS[N] = {
   (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0, (real)1.0,
-  (real)1.0, (real)1.0};
+  (real)1.0, (real)1.0, (real)1.0};
 
 /* Which unknowns are strains or poses of frames, not multipliers or tensions. */
-static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+static const int IS_SHAPE[N] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 static void (*const POSE_DERIVATIVES[POSES])(const real *, const real *, real *, real *) = {
     precurved_tube_tip_jacobian,

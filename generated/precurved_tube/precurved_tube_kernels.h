@@ -31,12 +31,12 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 446
+#define precurved_tube_k_residual_SZ_W 444
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 3
 #define precurved_tube_k_jacobian_SZ_RES 1
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 2324
+#define precurved_tube_k_jacobian_SZ_W 1704
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_rate_SZ_ARG 5
 #define precurved_tube_k_rate_SZ_RES 1
@@ -46,22 +46,22 @@ int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int*
 #define precurved_tube_k_igm_SZ_ARG 4
 #define precurved_tube_k_igm_SZ_RES 3
 #define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 466
+#define precurved_tube_k_igm_SZ_W 465
 int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_SZ_ARG 2
 #define precurved_tube_k_tip_SZ_RES 2
 #define precurved_tube_k_tip_SZ_IW 0
-#define precurved_tube_k_tip_SZ_W 153
+#define precurved_tube_k_tip_SZ_W 130
 int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_jacobian_SZ_ARG 2
 #define precurved_tube_k_tip_jacobian_SZ_RES 2
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 1234
+#define precurved_tube_k_tip_jacobian_SZ_W 796
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 3
 #define precurved_tube_k_shape_SZ_RES 2
 #define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 171
+#define precurved_tube_k_shape_SZ_W 188
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -78,6 +78,18 @@ def test_columns_make_the_jacobian(strain: str, elements: int, loads: str) -> No
     assert_allclose(found, expected, rtol=0, atol=1e-14 * abs(expected).max())
 
 
+def test_rows_of_columns_that_are_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A following force at a point leaves the linear strains beyond it alone."""
+    push = {"kind": "tip_wrench", "force": [0.3, -0.2, 0.1]}
+    pull = {"kind": "point_wrench", "at": 0.5, "force": [0.1, 0.2, 0.1], "frame": "body"}
+    monkeypatch.setitem(LOADS, "dead at the tip, following within", [push, pull])
+    model = model_of("reissner", "dead at the tip, following within", elements=2)
+    form = in_columns(on_path(model), "jacobian")
+    assert form is not None
+    body = columns_in_fours(form, kernels.dense(model.path_jacobian, "jacobian")).body
+    assert "CLEAR(columns" in body
+
+
 def test_columns_grow_by_groups_of_four() -> None:
     """Code of columns is that of four, however many there are: modes add instructions to straight-line code."""
     scene = model_of("kirchhoff", "dead force and couple at the tip").scene

@@ -138,7 +138,10 @@ def test_compiled(model: Model, name: str) -> None:
 
 
 def test_products_of_any_height() -> None:
-    """The routines take rows in bunches of up to two sizes: every height must be met."""
+    """The routines take rows in bunches of up to two sizes: every height must be met.
+
+    Digits are the same at any width of vectors.
+    """
     rng = np.random.default_rng(5)
     sparse = ca.sparsify(ca.DM(rng.uniform(-1, 1, (9, 5)) * (rng.uniform(size=(9, 5)) < 0.6)))
     y = ca.MX.sym("y", 9, 5)
@@ -153,10 +156,15 @@ def test_products_of_any_height() -> None:
     function = ca.Function("products", symbols, results)
     texts = sources([function], "products", "long long int")
     for rows in heights:
-        assert texts["products.c"].count(f" casadi_mtimes_dense_{rows}(") == 2
-        assert texts["products.c"].count(f" casadi_mtimes_dense_sparse_{rows}(") == 2
+        for routine in (f"casadi_mtimes_dense_{rows}", f"casadi_mtimes_dense_sparse_{rows}"):
+            assert texts["products.c"].count(f"PRODUCT({routine},") == 1
+            assert texts["products.c"].count(f" {routine}(") == 1
     library = compiled_texts("products", texts, find_compiler())
-    assert_same(ca.external("products", os.fspath(library)), function, 1e-14)
+    compiled = ca.external("products", os.fspath(library))
+    assert_same(compiled, function, 1e-14)
+    narrow = {**texts, "products.c": f"#define FOURS_ONCE\n{texts['products.c']}"}
+    once = ca.external("products", os.fspath(compiled_texts("products_once", narrow, find_compiler())))
+    assert_same(once, compiled, 0.0)
 
 
 def test_long_functions_without_loops_are_marked() -> None:
