@@ -213,7 +213,7 @@ typedef struct {
   six_rod_platform_real part_entries[453];
   six_rod_platform_real front_values[6][28];
   six_rod_platform_real interface_values[7];
-  six_rod_platform_real kernel_reals[2196];
+  six_rod_platform_real kernel_reals[2189];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 

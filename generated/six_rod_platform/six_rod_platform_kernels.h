@@ -37,16 +37,11 @@ int six_rod_platform_k_input_jacobian_1(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_input_jacobian_1_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_1_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_1_SZ_W 92
-int six_rod_platform_k_input_jacobian_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_input_jacobian_2_SZ_ARG 15
-#define six_rod_platform_k_input_jacobian_2_SZ_RES 4
-#define six_rod_platform_k_input_jacobian_2_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_2_SZ_W 92
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_rate_SZ_ARG 27
 #define six_rod_platform_k_rate_SZ_RES 6
 #define six_rod_platform_k_rate_SZ_IW 0
-#define six_rod_platform_k_rate_SZ_W 1054
+#define six_rod_platform_k_rate_SZ_W 1020
 int six_rod_platform_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tangent_SZ_ARG 1
 #define six_rod_platform_k_tangent_SZ_RES 1
@@ -91,62 +86,62 @@ int six_rod_platform_k_tip_leg_1(const casadi_real** arg, casadi_real** res, cas
 #define six_rod_platform_k_tip_leg_1_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_1_SZ_RES 6
 #define six_rod_platform_k_tip_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_leg_1_SZ_W 141
+#define six_rod_platform_k_tip_leg_1_SZ_W 147
 int six_rod_platform_k_tip_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_2_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_2_SZ_RES 6
 #define six_rod_platform_k_tip_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_leg_2_SZ_W 141
+#define six_rod_platform_k_tip_leg_2_SZ_W 147
 int six_rod_platform_k_tip_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_3_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_3_SZ_RES 6
 #define six_rod_platform_k_tip_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_leg_3_SZ_W 141
+#define six_rod_platform_k_tip_leg_3_SZ_W 147
 int six_rod_platform_k_tip_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_4_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_4_SZ_RES 6
 #define six_rod_platform_k_tip_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_leg_4_SZ_W 141
+#define six_rod_platform_k_tip_leg_4_SZ_W 147
 int six_rod_platform_k_tip_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_5_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_5_SZ_RES 6
 #define six_rod_platform_k_tip_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_leg_5_SZ_W 141
+#define six_rod_platform_k_tip_leg_5_SZ_W 147
 int six_rod_platform_k_tip_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_6_SZ_ARG 6
 #define six_rod_platform_k_tip_leg_6_SZ_RES 6
 #define six_rod_platform_k_tip_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_leg_6_SZ_W 141
+#define six_rod_platform_k_tip_leg_6_SZ_W 147
 int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1603
 int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1603
 int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1603
 int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1603
 int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1603
 int six_rod_platform_k_tip_jacobian_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 10
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1600
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1603
 int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_1_SZ_ARG 8
 #define six_rod_platform_k_shape_leg_1_SZ_RES 6
@@ -191,12 +186,12 @@ int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_1_SZ_ARG 4
 #define six_rod_platform_k_residual_1_SZ_RES 1
 #define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 535
+#define six_rod_platform_k_residual_1_SZ_W 536
 int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 2195
+#define six_rod_platform_k_jacobian_1_SZ_W 2188
 #ifdef __cplusplus
 } /* extern "C" */
 #endif
