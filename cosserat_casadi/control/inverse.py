@@ -92,6 +92,21 @@ def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -
     return result
 
 
+def search_near(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
+    """The same from an equilibrium whose targets are near: Newton's method first, the search where that does not do.
+
+    Args:
+        problem: the problem.
+        start: equilibrium of its model to start from.
+        stable: as in :func:`inverse`.
+        starts: as there.
+    """
+    followed = problem.followed(start)
+    if followed is not None and followed.met and not followed.unstable:
+        return followed
+    return search(problem, start, stable, starts)
+
+
 def _from_start(problem: LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
     """The search from one start.
 

@@ -12,7 +12,7 @@ from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search
+from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, wanted_poses
@@ -140,7 +140,9 @@ def _searched(model: Model, rows: Sequence[Targets], stable: bool, progress: Pro
             progress(len(found), len(rows))
         row = min(remaining, key=lambda candidate: (distances[candidate], candidate))
         remaining.discard(row)
-        result = search(replace(problem, targets=rows[row]), starts[row], stable, STARTS)
+        # The first equilibrium meets no targets: what is near it is not known to be.
+        searched = search if starts[row] is first else search_near
+        result = searched(replace(problem, targets=rows[row]), starts[row], stable, STARTS)
         found[row] = result
         if not result.met:
             continue
@@ -163,7 +165,7 @@ def _refined(
         origin = problem.variables.clipped(start.inputs)
         of_row = replace(problem, targets=before[row].targets, origin=origin)
         # Scattered on the first discretisation alone: the next ones start from its end.
-        result = search(of_row, start, stable, 0)
+        result = search_near(of_row, start, stable, 0)
         found[row] = replace(result, starts=max(before[row].starts, result.starts))
     return found
 

@@ -10,11 +10,12 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
+from cosserat_casadi.control.nearby_inputs import NearbyInputs
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.maths.pose import POSE_SIZE
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
@@ -62,6 +63,7 @@ class LiftedProblem:
         origin: stacked inputs that changes count from.
         optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
             the same kinds share it.
+        nearby: Newton's method for targets that lie near the start; shared likewise.
     """
 
     model: Model
@@ -70,6 +72,14 @@ class LiftedProblem:
     scale: FloatArray
     origin: FloatArray
     optimiser: ca.Function
+    nearby: NearbyInputs
+
+    def followed(self, start: Solution) -> Inverse | None:
+        """What Newton's method finds from an equilibrium near the targets, judged; None where it finds none."""
+        found = self.nearby.found(
+            start.x, self.change(start.inputs), self.origin, wanted_poses(self.targets), self._ranges()
+        )
+        return None if found is None else self._judged(*found, rounds=0)
 
     def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
@@ -225,32 +235,65 @@ def lifted_problem(
     if stable:
         check_potential(model, start.inputs)
     scale = scales(model, variables, start)
-    optimiser = _optimiser(model, targets, variables, scale)
-    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser)
+    errors = _errors(model, targets, variables, scale)
+    optimiser = _optimiser(model, errors)
+    nearby = NearbyInputs(model, _linearised(errors), variables.indices, scale)
+    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser, nearby)
 
 
-def _optimiser(
+@dataclass(frozen=True)
+class _Errors:
+    """Weighted errors of targets as expressions.
+
+    Attributes:
+        x: unknowns.
+        change: of the decision variables, in their scales.
+        origin: stacked inputs that changes count from.
+        wanted: poses that the targets ask for.
+        inputs: stacked inputs after the change.
+        errors: weighted errors.
+    """
+
+    x: ca.MX
+    change: ca.MX
+    origin: ca.MX
+    wanted: ca.MX
+    inputs: ca.MX
+    errors: Matrix
+
+
+def _errors(
     model: Model,
     targets: tuple[scenes.Target, ...],
     variables: DecisionVariables,
     scale: FloatArray,
-) -> ca.Function:
-    """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
-    count = len(scale)
+) -> _Errors:
     x = ca.MX.sym("x", model.size)
-    change = ca.MX.sym("change", count)
-    centre = ca.MX.sym("centre", count)
-    damping = ca.MX.sym("damping")
+    change = ca.MX.sym("change", len(scale))
     origin = ca.MX.sym("origin", model.inputs.size)
     wanted = ca.MX.sym("wanted", POSE_SIZE * len(targets))
     inputs = origin + _scatter(variables, scale, model.inputs.size) @ change
     errors = weighted_errors(model, targets, wanted, x, inputs)
-    damped = damping * ca.sumsqr(change - centre)
+    return _Errors(x, change, origin, wanted, inputs, errors)
+
+
+def _linearised(of: _Errors) -> ca.Function:
+    """Errors with their derivatives by unknowns and changes, as :class:`NearbyInputs` takes them."""
+    arguments = [of.x, of.change, of.origin, of.wanted]
+    derivatives = [ca.jacobian(of.errors, of.x), ca.jacobian(of.errors, of.change)]
+    return ca.Function("errors", arguments, [of.errors, *derivatives])
+
+
+def _optimiser(model: Model, of: _Errors) -> ca.Function:
+    """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
+    centre = ca.MX.sym("centre", of.change.shape[0])
+    damping = ca.MX.sym("damping")
+    damped = damping * ca.sumsqr(of.change - centre)
     problem = {
-        "x": ca.vertcat(x, change),
-        "p": ca.vertcat(centre, damping, origin, wanted),
-        "f": (ca.sumsqr(errors) + damped) / 2,
-        "g": model.residual(x, inputs),
+        "x": ca.vertcat(of.x, of.change),
+        "p": ca.vertcat(centre, damping, of.origin, of.wanted),
+        "f": (ca.sumsqr(of.errors) + damped) / 2,
+        "g": model.residual(of.x, of.inputs),
     }
     options = {
         "print_time": False,

@@ -117,13 +117,16 @@ def test_rows_start_from_their_nearest_neighbour(tmp_path: Path, monkeypatch: py
     order = [2, 0, 3, 1]
     rows = [tips(given)[i][:3] for i in order]
     seen: list[tuple[Any, Any]] = []
-    search = inverse_accuracy.search
 
-    def recorded(problem: Any, start: Any, *others: Any) -> Any:
-        seen.append((problem.targets[0].position, start.tip().position[0]))
-        return search(problem, start, *others)
+    def recording(search: Any) -> Any:
+        def recorded(problem: Any, start: Any, *others: Any) -> Any:
+            seen.append((problem.targets[0].position, start.tip().position[0]))
+            return search(problem, start, *others)
 
-    monkeypatch.setattr(inverse_accuracy, "search", recorded)
+        return recorded
+
+    for name in ("search", "search_near"):
+        monkeypatch.setattr(inverse_accuracy, name, recording(getattr(inverse_accuracy, name)))
     inverse_rows(given, read_targets(write(tmp_path / "table.csv", rows, "x,y,z"), given).rows)
     searched = [rows.index(list(position)) for position, _ in seen[:4]]
     assert [order[row] for row in searched] == [0, 1, 2, 3]
