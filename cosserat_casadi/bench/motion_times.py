@@ -8,6 +8,7 @@ import numpy as np
 
 from cosserat_casadi.bench.measurement import best_time
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.price import MotionPrice, price_of_motion
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,24 @@ class MotionTimes:
     jacobian: float
     inverse_dynamics: float
     dynamics_jacobian: float
+
+
+@dataclass(frozen=True)
+class MotionCost:
+    """What the equations of motion of a model cost.
+
+    Attributes:
+        price: their scalar operations.
+        times: of a call, of the equations of statics too.
+    """
+
+    price: MotionPrice
+    times: MotionTimes
+
+
+def motion_cost(model: Model) -> MotionCost:
+    """Operations and times of a model built for a motion."""
+    return MotionCost(price_of_motion(model), motion_times(model))
 
 
 def motion_times(model: Model) -> MotionTimes:
