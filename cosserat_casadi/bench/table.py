@@ -170,7 +170,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
 
 
 def print_motion_times(
-    console: Console, unknowns: int, statics: Price, motion: MotionCost, undamped: MotionCost | None
+    console: Console, unknowns: int, statics: Price, motion: MotionCost, undamped: MotionCost | None = None
 ) -> None:
     """What inertia and damping add to a residual and to a Jacobian.
 

@@ -18,7 +18,7 @@ from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.figure import FIGURES
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.motion_times import motion_cost
+from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
@@ -194,13 +194,13 @@ def test_a_motion_is_priced_beside_statics() -> None:
     motion = price_of_motion(model)
     assert statics.residual < motion.inverse_dynamics < motion.jacobian
     assert statics.jacobian < motion.jacobian
-    cost = motion_cost(model)
+    (cost,) = motion_costs(model)
     times = cost.times
     assert cost.price == motion
     assert 0.0 < times.residual < times.dynamics_jacobian
     assert 0.0 < times.jacobian < times.dynamics_jacobian
     console = Console(file=io.StringIO(), width=160)
-    print_motion_times(console, model.size, statics, cost, None)
+    print_motion_times(console, model.size, statics, cost)
     printed = console.file.getvalue()
     assert "not compiled" in printed
     assert "of which damping" not in printed
@@ -212,16 +212,14 @@ def test_damping_has_rows_of_its_own() -> None:
     """They are what the equations of a rod with damping have over those of the same rod without any."""
     damped = rod("planar", damping={"retardation_time": 0.01}, linear_density=0.5)
     elastic = rod("planar", linear_density=0.5)
-    costs = {}
-    for name, tables in (("damped", damped), ("elastic", elastic)):
-        costs[name] = motion_cost(build(scene(push(), rods=[tables]), moving=True))
-    model = build(scene(push(), rods=[damped]), moving=True)
+    model, bare = (build(scene(push(), rods=[tables]), moving=True) for tables in (damped, elastic))
+    whole, undamped = motion_costs(model, bare)
     console = Console(file=io.StringIO(), width=160)
-    print_motion_times(console, model.size, price(model), costs["damped"], costs["elastic"])
+    print_motion_times(console, model.size, price(model), whole, undamped)
     rows = [line.split("│") for line in console.file.getvalue().splitlines() if "of which damping" in line]
     shown = [int(row[2].replace(",", "")) for row in rows]
-    residual = costs["damped"].price.inverse_dynamics - costs["elastic"].price.inverse_dynamics
-    jacobian = costs["damped"].price.jacobian - costs["elastic"].price.jacobian
+    residual = whole.price.inverse_dynamics - undamped.price.inverse_dynamics
+    jacobian = whole.price.jacobian - undamped.price.jacobian
     assert shown == [residual, jacobian]
     assert residual > 0
     assert jacobian > 0

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.bench.effects import effect_times
-from cosserat_casadi.bench.motion_times import motion_cost
+from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
@@ -67,8 +67,8 @@ def _print_motion_times(scene: Scene) -> None:
         model = build(scene.with_motion_inputs(), moving=True)
         check_simulation(model, scene.simulation)
         statics = price(model)
-        motion = motion_cost(model)
-        undamped = None
+        models = [model]
         if is_damped(scene):
-            undamped = motion_cost(build(without_damping(scene.with_motion_inputs()), moving=True))
-    print_motion_times(Console(), model.size, statics, motion, undamped)
+            models.append(build(without_damping(scene.with_motion_inputs()), moving=True))
+        motion, *undamped = motion_costs(*models)
+    print_motion_times(Console(), model.size, statics, motion, *undamped)
