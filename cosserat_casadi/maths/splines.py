@@ -55,7 +55,7 @@ def table_values(
 
 
 def least_norm(path: Callable[[FloatArray], FloatArray], start: float, end: float) -> tuple[float, float]:
-    """Least norm of a path between two times, and the time of it, s.
+    """Least norm of a path between two times, and the time of it, s; infinite where the path is no number.
 
     Where the squared norm is least its derivative is zero, or the path begins or ends. The squared norm of a cubic
     polynomial is one of degree six: the roots of its derivative are all that can be.
@@ -67,6 +67,8 @@ def least_norm(path: Callable[[FloatArray], FloatArray], start: float, end: floa
     """
     length = end - start
     inside = path(start + length * _INSIDE)
+    if not np.all(np.isfinite(inside)):
+        return float("inf"), start
     coefficients = np.linalg.solve(np.vander(_INSIDE, increasing=True), inside)
     squares = np.zeros(7)
     for entry in coefficients.T:

@@ -20,7 +20,6 @@ from cosserat_casadi.scene.values import numbers_of
 LEAST_NORM = 0.1
 """Norm of a quaternion on its way, over the largest one at the times of its tables, below which it has no direction."""
 
-
 DIGITS = 3
 """Digits behind the point of such a norm in a sentence."""
 
@@ -163,12 +162,17 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
     with np.errstate(over="ignore", invalid="ignore"):
         paths = [table_values(motion.knots, motion.knot_values, motion.interpolation) for motion in tables]
 
-        def path(times: FloatArray) -> FloatArray:
-            total: FloatArray = np.sum([of_table(times) for of_table in paths], axis=0)
-            return total
+        def total(times: FloatArray) -> FloatArray:
+            return np.asarray(np.sum([of_table(times) for of_table in paths], axis=0))
 
         knots = np.unique(np.concatenate([motion.knots for motion in tables]))
-        largest = np.linalg.norm(path(knots), axis=1).max()
+        # Squares of very large or very small numbers would be no numbers.
+        scale = max(float(np.abs(total(knots)).max()), float(np.finfo(float).tiny))
+
+        def path(times: FloatArray) -> FloatArray:
+            return total(times) / scale
+
+        largest = float(np.linalg.norm(path(knots), axis=1).max())
         end = min(duration, knots[-1])
         inside = knots[(knots > 0.0) & (knots < end)]
         cuts = np.concatenate([[min(0.0, end)], inside, [end]])
@@ -178,7 +182,7 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
     if least > LEAST_NORM * largest:
         return
     # Rounding would be told as a norm that is small, and is none.
-    norm = round(float(least / largest), DIGITS) if largest > 0.0 else 0.0
+    norm = round(least / largest, DIGITS) if largest > 0.0 else 0.0
     first, motion = next(iter(motions.items()))
     problem = (
         f"{motion.input} must stay away from zero, and its norm falls to {norm:g} of the largest at {time:g} s: "

@@ -390,6 +390,23 @@ def test_the_norm_of_a_quaternion_does_not_matter() -> None:
     assert given(table("rod.base.quaternion", [0, 2], small), duration=2.0).motions
 
 
+@pytest.mark.parametrize("size", [1e-200, 1e-150, 1e150, 1e200, 1e307])
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_quaternions_of_any_size_are_judged(size: float, interpolation: str) -> None:
+    large = [[size * entry for entry in entries] for entries in turned(0, 180)]
+    assert given(table("rod.base.quaternion", [0, 2], large, interpolation=interpolation), duration=2.0).motions
+    through = [[size, 0, 0, 0], [-size, 0, 0, 0]]
+    told = refusals(
+        lambda: given(table("rod.base.quaternion", [0, 2], through, interpolation=interpolation), duration=2.0)
+    )
+    assert any("must stay away from zero" in line for line in told), told
+
+
+def test_one_value_at_the_beginning_is_a_place() -> None:
+    assert given(table("rod.base.quaternion", [0.0], turned(90)), duration=2.0).motions
+    assert given(table("rod.base.quaternion", [-2.0, -1.0], turned(90, 90)), duration=2.0).motions
+
+
 def test_what_comes_after_the_end_of_the_motion_is_left_aside() -> None:
     late = table("rod.base.quaternion", [0, 4], turned(0, 360))
     assert given(late, duration=1.5).motions
