@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from cosserat_casadi.bench.measurement import best_time
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.price import MotionPrice, price_of_motion
+
+TURNS = 5
+"""Times that each model is timed beside others."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,32 @@ class MotionTimes:
     jacobian: float
     inverse_dynamics: float
     dynamics_jacobian: float
+
+
+@dataclass(frozen=True)
+class MotionCost:
+    """What the equations of motion of a model cost.
+
+    Attributes:
+        price: their scalar operations.
+        times: of a call, of the equations of statics too.
+    """
+
+    price: MotionPrice
+    times: MotionTimes
+
+
+def motion_costs(*models: Model) -> list[MotionCost]:
+    """Operations and times of models built for a motion, in their order.
+
+    They are timed in turn, and the best of several turns counts: what else the machine does comes to all of them.
+    """
+    turns = [[motion_times(model) for model in models] for _ in range(TURNS)]
+    costs = []
+    for model, of_model in zip(models, zip(*turns, strict=True), strict=True):
+        best = {entry.name: min(getattr(times, entry.name) for times in of_model) for entry in fields(MotionTimes)}
+        costs.append(MotionCost(price_of_motion(model), MotionTimes(**best)))
+    return costs
 
 
 def motion_times(model: Model) -> MotionTimes:

@@ -10,11 +10,11 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.motion_times import MotionTimes
+from cosserat_casadi.bench.motion_times import MotionCost
 from cosserat_casadi.bench.pareto import front
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
-from cosserat_casadi.model.price import MotionPrice, Price
+from cosserat_casadi.model.price import Price
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
 """Columns that are always shown."""
@@ -41,6 +41,9 @@ COLUMNS = (
 
 WIDE = tuple(heading for heading in COLUMNS if heading != "pose error")
 """Columns where there is room: the pose error is the larger of two of them."""
+
+OF_DAMPING = "  of which damping"
+"""Label of what damping adds to the row above."""
 
 ROOM = 178
 """Characters of a line that holds all columns."""
@@ -167,7 +170,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
 
 
 def print_motion_times(
-    console: Console, unknowns: int, statics: Price, motion: MotionPrice, times: MotionTimes
+    console: Console, unknowns: int, statics: Price, motion: MotionCost, undamped: MotionCost | None = None
 ) -> None:
     """What inertia and damping add to a residual and to a Jacobian.
 
@@ -175,19 +178,29 @@ def print_motion_times(
         console: where to print.
         unknowns: of the model in motion.
         statics: operations of the model at rest.
-        motion: operations of the model in motion.
-        times: of both, µs.
+        motion: cost of the model in motion.
+        undamped: cost of the model without its damping; None where the scene names none.
     """
+    price = motion.price
+    times = motion.times
     table = Table(title=f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)")
     table.add_column("function")
     for heading in ("operations", "µs", "over statics"):
         table.add_column(heading, justify="right")
     table.add_row("residual at rest", f"{statics.residual:,}", _digits(times.residual), "")
     share = times.inverse_dynamics / times.residual
-    table.add_row("inverse dynamics", f"{motion.inverse_dynamics:,}", _digits(times.inverse_dynamics), f"{share:.1f} ×")
+    table.add_row("inverse dynamics", f"{price.inverse_dynamics:,}", _digits(times.inverse_dynamics), f"{share:.1f} ×")
+    if undamped is not None:
+        operations = price.inverse_dynamics - undamped.price.inverse_dynamics
+        spent = times.inverse_dynamics - undamped.times.inverse_dynamics
+        table.add_row(OF_DAMPING, f"{operations:+,}", f"{spent:+.2f}", "")
     table.add_row("residual and Jacobian at rest", f"{statics.jacobian:,}", _digits(times.jacobian), "")
     share = times.dynamics_jacobian / times.jacobian
     table.add_row(
-        "inverse dynamics with K, C and M", f"{motion.jacobian:,}", _digits(times.dynamics_jacobian), f"{share:.1f} ×"
+        "inverse dynamics with K, C and M", f"{price.jacobian:,}", _digits(times.dynamics_jacobian), f"{share:.1f} ×"
     )
+    if undamped is not None:
+        operations = price.jacobian - undamped.price.jacobian
+        spent = times.dynamics_jacobian - undamped.times.dynamics_jacobian
+        table.add_row(OF_DAMPING, f"{operations:+,}", f"{spent:+.2f}", "")
     console.print(table)

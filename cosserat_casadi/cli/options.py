@@ -20,15 +20,51 @@ Settings = Annotated[
 ]
 
 
-def check_outputs(output: Path | None, plot: Path | None) -> None:
+def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json") -> None:
     """Refuse files that cannot be written, before time is spent on a solve.
 
+    Args:
+        output: file of the result.
+        plot: file of the figure.
+        suffix: of the format that the result is written in.
+
     Raises:
-        SceneError: a file cannot be written, or the figure has no suffix that can be drawn.
+        SceneError: a file cannot be written, the result has the suffix of another format, or the figure has no suffix
+            that can be drawn.
         PlotUnavailableError: a figure is asked for and matplotlib is not installed.
     """
-    if output is not None:
-        check_writable(output, "--output")
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        check_file(output, "--output", suffix)
+    with collect_problems(problems):
+        _check_plot(plot)
+    if problems:
+        raise SceneError(*problems)
+
+
+def check_file(file: Path | None, option: str, suffix: str) -> None:
+    """Refuse a file that cannot be written, or whose suffix promises another format than the one it would have.
+
+    A file without suffix promises nothing.
+
+    Args:
+        file: that is asked for; None where none is.
+        option: by which it is asked for.
+        suffix: of the only format that is written there, such as ``.json``.
+
+    Raises:
+        SceneError: the file cannot be written, or has another suffix.
+    """
+    if file is None:
+        return
+    check_writable(file, option)
+    if file.suffix.lower() not in ("", suffix):
+        written = suffix.removeprefix(".").upper()
+        problem = f"writes {written} only, and {file} has the suffix {file.suffix}"
+        raise SceneError(Problem(option, problem, f"name it {file.with_suffix(suffix)}"))
+
+
+def _check_plot(plot: Path | None) -> None:
     if plot is None:
         return
     # Imported here, because matplotlib is an extra and takes long to load.

@@ -70,6 +70,21 @@ def price_of_obstacle(scene: scenes.Scene, obstacle: str) -> int:
     return met.operations(met.residual) - bare.operations(bare.residual)
 
 
+def is_damped(scene: scenes.Scene) -> bool:
+    """Whether a rod of the scene or the contact with an obstacle is damped."""
+    rods = any(rod.damping is not None for rod in scene.rods)
+    return rods or any(obstacle.damping > 0.0 for obstacle in scene.obstacles)
+
+
+def without_damping(scene: scenes.Scene) -> scenes.Scene:
+    """The scene without the damping of its rods and of contact, and without the parameters that were of it."""
+    rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
+    obstacles = tuple(obstacle.model_copy(update={"damping": 0.0}) for obstacle in scene.obstacles)
+    # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER.
+    parameters = tuple(name for name in scene.parameters if name.split(".")[1] != "damping")
+    return scene.model_copy(update={"rods": rods, "obstacles": obstacles, "parameters": parameters})
+
+
 def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
     """The scene without one of its loads or actuators, and without the inputs that were its."""
     loads = tuple(load for load in scene.loads if load.name != name)

@@ -19,6 +19,12 @@ from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 STILL = 1e-9
 """Speed of opening, over that of approach or in lengths per interval, that counts as none."""
 
+STEADY = 1e-6
+"""Acceleration of opening, over the largest of all sections that touch, that counts as none."""
+
+FORCELESS = 1e-10
+"""Force of contact in EI/ℓ² whose acceleration counts as none: rounding of what the balances of a rod at rest sum."""
+
 LOW = 1e-6
 """Height over the length up to which a bounce is not followed: the section stays."""
 
@@ -164,13 +170,20 @@ class Onset:
         return self._follower(touches).rates(self.before.x, self.before.v, self.inputs)[0]
 
     def _openings(self, touches: Touches) -> tuple[FloatArray, FloatArray, float]:
-        """Second derivatives of gaps without forces, by forces, and the one that counts as none."""
+        """Second derivatives of gaps without forces, by forces, and the one that counts as none, 1/s².
+
+        What counts as none is judged by the accelerations and forces of this instant: how long the motion goes on says
+        nothing of them.
+        """
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
         gradients = self._gradients(touches)
         free = self.start(()).instant
         a, answers = shortly_after(self.plain, free, self.horizon, gradients.T)
-        tolerance = STILL * (float(np.abs(turning).max()) + 1.0 / self.interval**2)
-        return gradients @ a + turning, gradients @ answers, tolerance
+        opening = gradients @ a + turning
+        compliance = gradients @ answers
+        largest = float(np.abs(opening).max() + np.abs(turning).max())
+        tolerance = STEADY * largest + FORCELESS * float(np.abs(np.diag(compliance)).max())
+        return opening, compliance, tolerance
 
     def _gradients(self, touches: Touches) -> FloatArray:
         return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)

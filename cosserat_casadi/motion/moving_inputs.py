@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.splines import table_coefficients
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene.motions import InputMotion
@@ -276,15 +277,9 @@ def _path_of(motion: InputMotion) -> _Path:
 def _table_of(motion: InputMotion) -> _Table:
     knots = motion.knots
     values = motion.knot_values
-    coefficients = np.zeros((len(knots) + 1, 4, motion.entry_count))
-    # Before the first knot, and from the last one on, the value is constant.
-    coefficients[0, 0] = values[0]
-    coefficients[1:, 0] = values
+    coefficients = table_coefficients(knots, values, motion.interpolation)
     breaks = [(time, 0) for time in motion.jumps] + [(time, 1) for time in motion.kinks]
-    if motion.interpolation == "linear":
-        coefficients[1:-1, 1] = np.diff(values, axis=0) / np.diff(knots)[:, None]
-    elif motion.interpolation == "cubic":
-        coefficients[1:-1] = _cubic_coefficients(knots, values)
+    if motion.interpolation == "cubic":
         breaks = _cubic_breaks(knots, values)
     origins = np.concatenate([knots[:1], knots])
     return _Table(knots, origins, coefficients, tuple(breaks), first=0, last=len(knots))
@@ -296,41 +291,3 @@ def _cubic_breaks(knots: FloatArray, values: FloatArray) -> list[tuple[float, in
         return []
     inside = [(time, 3) for time in knots[1:-1].tolist()]
     return [(float(knots[0]), 2), *inside, (float(knots[-1]), 2)]
-
-
-def _cubic_coefficients(knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Coefficients of the cubic spline of zero slope at both ends, shape (k − 1, 4, entries)."""
-    spacing = np.diff(knots)[:, None]
-    chord = np.diff(values, axis=0) / spacing
-    slopes = _spline_slopes(spacing, chord)
-    left = slopes[:-1]
-    right = slopes[1:]
-    quadratic = (3 * chord - 2 * left - right) / spacing
-    cubic = (left + right - 2 * chord) / spacing**2
-    return np.stack([values[:-1], left, quadratic, cubic], axis=1)
-
-
-def _spline_slopes(spacing: FloatArray, chord: FloatArray) -> FloatArray:
-    """Slopes at the knots that make accelerations continuous, zero at both ends, shape (k, entries).
-
-    The equation of an inner knot i is h_i m_(i−1) + 2 (h_(i−1) + h_i) m_i + h_(i−1) m_(i+1) = 3 (h_i d_(i−1) + h_(i−1)
-    d_i) with spacings h and slopes of chords d. It is solved by elimination downwards, then upwards: its matrix is
-    diagonally dominant and needs no pivots.
-
-    Args:
-        spacing: h, shape (k − 1, 1), s.
-        chord: d, shape (k − 1, entries), units per s.
-    """
-    before = spacing[:-1]
-    after = spacing[1:]
-    diagonal = 2 * (before + after)
-    right_side = 3 * (after * chord[:-1] + before * chord[1:])
-    inner = len(right_side)
-    for i in range(1, inner):
-        factor = after[i] / diagonal[i - 1]
-        diagonal[i] -= factor * before[i - 1]
-        right_side[i] -= factor * right_side[i - 1]
-    slopes = np.zeros((len(chord) + 1, chord.shape[1]))
-    for i in reversed(range(inner)):
-        slopes[i + 1] = (right_side[i] - before[i] * slopes[i + 2]) / diagonal[i]
-    return slopes

@@ -57,6 +57,9 @@ SLOWEST = 0.9
 MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
 
+MOST_WITHOUT_START = 4
+"""Sets of modes without a start in contact before none is told."""
+
 SAFETY = 1.5
 """Factor on the error that is extrapolated from it."""
 
@@ -226,13 +229,19 @@ def _with_tolerance(search: _Search) -> Motion:
     """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
     ladder = seeing_modes(search.scene)
     rung: int | None = 0
+    without_start = 0
     while rung is not None:
         modes = ladder[rung]
         chosen = _next_modes(search, modes) if search.levels else _uniform(search.scene, modes)
         model = build(search.scene, chosen, moving=True)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
-            return not_started(model, simulator.start)
+            # Sections of a few modes may not carry a rod that lies on them: more modes have more sections.
+            without_start += 1
+            rung += 1
+            if not simulator.start.asks_for_modes or without_start == MOST_WITHOUT_START or rung == len(ladder):
+                return not_started(model, simulator.start)
+            continue
         history = _on_level(search, simulator)
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:
             raise KeyboardInterrupt

@@ -46,12 +46,14 @@ class Start:
         sentence: what the user is told; of a start that failed, why.
         found: whether there is a state to start from.
         phases: what touches; None where that is looked for.
+        asks_for_modes: whether none is found on these modes, and other modes may have one.
     """
 
     x: FloatArray
     sentence: str
     found: bool = True
     phases: Arrangement | None = None
+    asks_for_modes: bool = False
 
 
 def unloaded_start(model: Model) -> Start:
@@ -119,6 +121,6 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
     if found is None:
         modes = max(max(own.modes) for own in model.discretisation.values())
         refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
-        return Start(model.unloaded(), refused.format(modes=modes), found=False)
+        return Start(model.unloaded(), refused.format(modes=modes), found=False, asks_for_modes=True)
     x, arrangement = found
     return Start(x, sentence, phases=arrangement)

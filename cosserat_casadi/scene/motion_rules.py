@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from cosserat_casadi.maths.splines import least_norm, table_values
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_rules import field_faults, owners_of
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.values import numbers_of
+
+LEAST_NORM = 0.1
+"""Norm of a quaternion on its way, over the largest one at the times of its tables, below which it has no direction."""
+
+DIGITS = 3
+"""Digits behind the point of such a norm in a sentence."""
 
 
 class _Moving(NamedTuple):
@@ -28,6 +37,8 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
     """A motion is of what is no input or cannot be free, or its input cannot follow it."""
     motions = scene.tables("motions")
     names = [motion.get("input") for _, motion in motions]
+    # Motions of each input that must not be zero, by their places; only where all of its motions are sound.
+    turns: dict[str, dict[int, InputMotion]] = {}
     for i, table in motions:
         name = table.get("input")
         if not isinstance(name, str) or _is_of_unknown_kind(name, scene):
@@ -49,8 +60,13 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
             # Several motions of an input may leave its range one by one, and not together.
             if names.count(name) == 1:
                 faults += _range_faults(motion, moving)
+        if not faults and moving.declared.nonzero:
+            turns.setdefault(name, {})[i] = motion
         for fault in faults:
             yield fault.below(("motions", i))
+    for name, of_input in turns.items():
+        if len(of_input) == names.count(name):
+            yield from _zero_faults(of_input, _duration(scene))
 
 
 def _is_of_unknown_kind(name: str, scene: SceneTables) -> bool:
@@ -128,6 +144,52 @@ def _range_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
     elif declared.lower is not None and least < declared.lower:
         problem = f"{motion.input} must stay >= {declared.lower:g}, and goes to {least:g} {declared.unit}"
         yield Fault((key,), problem)
+
+
+def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterator[Fault]:
+    """The sum of the tables of a quaternion comes so near to zero between two times that it has no direction there.
+
+    Of waves nothing is said: they are no polynomials.
+
+    Args:
+        motions: all of one input, by their places in the scene.
+        duration: time that is simulated, s.
+    """
+    tables = list(motions.values())
+    if not all(motion.is_table for motion in tables):
+        return
+    # The format bounds no number: what overflows is not judged.
+    with np.errstate(over="ignore", invalid="ignore"):
+        paths = [table_values(motion.knots, motion.knot_values, motion.interpolation) for motion in tables]
+
+        def total(times: FloatArray) -> FloatArray:
+            return np.asarray(np.sum([of_table(times) for of_table in paths], axis=0))
+
+        knots = np.unique(np.concatenate([motion.knots for motion in tables]))
+        # Squares of very large or very small numbers would be no numbers.
+        scale = max(float(np.abs(total(knots)).max()), float(np.finfo(float).tiny))
+
+        def path(times: FloatArray) -> FloatArray:
+            return total(times) / scale
+
+        largest = float(np.linalg.norm(path(knots), axis=1).max())
+        end = min(duration, knots[-1])
+        inside = knots[(knots > 0.0) & (knots < end)]
+        cuts = np.concatenate([[min(0.0, end)], inside, [end]])
+        if not np.all(np.isfinite(path(cuts))) or not np.isfinite(largest):
+            return
+        least, time = min(least_norm(path, *piece) for piece in pairwise(cuts.tolist()))
+    if least > LEAST_NORM * largest:
+        return
+    # Rounding would be told as a norm that is small, and is none.
+    norm = round(least / largest, DIGITS) if largest > 0.0 else 0.0
+    first, motion = next(iter(motions.items()))
+    problem = (
+        f"{motion.input} must stay away from zero, and its norm falls to {norm:g} of the largest at {time:g} s: "
+        "it is interpolated by component, and normalised"
+    )
+    remedy = "-q is the same rotation as q: change the sign of one of them; a longer turn needs times in between"
+    yield Fault(("motions", first, "values"), problem, remedy)
 
 
 def _least(motion: InputMotion, moving: _Moving) -> float:

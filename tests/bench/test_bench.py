@@ -18,14 +18,15 @@ from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.figure import FIGURES
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.motion_times import motion_times
+from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
 from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.model.price import price, price_of_motion
+from cosserat_casadi.model.build import build
+from cosserat_casadi.model.price import is_damped, price, price_of_motion, without_damping
 from tests.moving_scenes import model_of
 from tests.scenes import push, rod, scene
 
@@ -193,12 +194,51 @@ def test_a_motion_is_priced_beside_statics() -> None:
     motion = price_of_motion(model)
     assert statics.residual < motion.inverse_dynamics < motion.jacobian
     assert statics.jacobian < motion.jacobian
-    times = motion_times(model)
+    (cost,) = motion_costs(model)
+    times = cost.times
+    assert cost.price == motion
     assert 0.0 < times.residual < times.dynamics_jacobian
     assert 0.0 < times.jacobian < times.dynamics_jacobian
     console = Console(file=io.StringIO(), width=160)
-    print_motion_times(console, model.size, statics, motion, times)
+    print_motion_times(console, model.size, statics, cost)
     printed = console.file.getvalue()
     assert "not compiled" in printed
+    assert "of which damping" not in printed
     for count in (statics.residual, statics.jacobian, motion.inverse_dynamics, motion.jacobian):
         assert f"{count:,}" in printed
+
+
+def test_damping_has_rows_of_its_own() -> None:
+    """They are what the equations of a rod with damping have over those of the same rod without any."""
+    damped = rod("planar", damping={"retardation_time": 0.01}, linear_density=0.5)
+    elastic = rod("planar", linear_density=0.5)
+    model, bare = (build(scene(push(), rods=[tables]), moving=True) for tables in (damped, elastic))
+    whole, undamped = motion_costs(model, bare)
+    console = Console(file=io.StringIO(), width=160)
+    print_motion_times(console, model.size, price(model), whole, undamped)
+    rows = [line.split("│") for line in console.file.getvalue().splitlines() if "of which damping" in line]
+    shown = [int(row[2].replace(",", "")) for row in rows]
+    residual = whole.price.inverse_dynamics - undamped.price.inverse_dynamics
+    jacobian = whole.price.jacobian - undamped.price.jacobian
+    assert shown == [residual, jacobian]
+    assert residual > 0
+    assert jacobian > 0
+
+
+def test_what_is_left_without_damping() -> None:
+    """Neither rods nor contact are damped, and no parameter is of damping; all else is as it was."""
+    tables = rod("planar", damping={"retardation_time": 0.01}, linear_density=0.5)
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -9], "normal": [0, 0, 1], "width": 0.1, "damping": 2.0}
+    names = ["rod.damping.retardation_time", "rod.length"]
+    damped = scene(push(), rods=[tables], obstacles=[floor], parameters=names)
+    bare = without_damping(damped)
+    assert is_damped(damped)
+    assert not is_damped(bare)
+    assert bare.parameters == ("rod.length",)
+    still = price_of_motion(build(bare, moving=True))
+    moving = price_of_motion(build(damped, moving=True))
+    assert still.inverse_dynamics < moving.inverse_dynamics
+    for without in ({"rods": bare.rods}, {"obstacles": bare.obstacles}):
+        half = damped.model_copy(update={**without, "parameters": bare.parameters})
+        assert is_damped(half)
+        assert price_of_motion(build(half, moving=True)).inverse_dynamics > still.inverse_dynamics

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,11 +12,23 @@ from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, discretise, parse_scene, read_scene, simulate, simulate_scene, solve, write_motion
+from cosserat_casadi import (
+    Scene,
+    build,
+    discretise,
+    parse_scene,
+    read_scene,
+    simulate,
+    simulate_scene,
+    solve,
+    write_motion,
+)
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion import start as starts
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start import given_start
 from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
@@ -290,3 +303,42 @@ def test_a_start_that_is_not_found_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     assert not refused.found
     assert "on at most 4 modes of a strain" in refused.sentence
     assert "Give another number of accuracy.modes" in refused.sentence
+
+
+def lying() -> Scene:
+    """A rod that lies on a table at the beginning, for a short time, on modes that are chosen for it."""
+    text = Path("examples/rod_lies_down.toml").read_text().replace("modes = 6\nnodes = 16\n", "")
+    return parse_scene(text, ["simulation.start='equilibrium'", "simulation.duration=0.02", "simulation.frames=3"])
+
+
+def without_starts_below(least: int, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """No start in contact is found on fewer modes than these; returns the modes that are tried, as they are."""
+    tried: list[int] = []
+    found = starts.resting
+
+    def resting(contacts: ExactContacts, *given: Any) -> Any:
+        modes = max(max(own.modes) for own in contacts.model.discretisation.values())
+        tried.append(modes)
+        return found(contacts, *given) if modes >= least else None
+
+    monkeypatch.setattr(starts, "resting", resting)
+    return tried
+
+
+def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = simulate_scene(lying())
+    tried = without_starts_below(9, monkeypatch)
+    motion = simulate_scene(lying())
+    assert tried[:2] == [6, 9]
+    assert motion.converged, motion.message
+    assert not motion.events
+    wanted = whole.tip().position
+    assert_allclose(motion.tip().position, wanted, rtol=0, atol=2e-3 * 0.4)
+
+
+def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = without_starts_below(100, monkeypatch)
+    motion = simulate_scene(lying())
+    assert tried == [6, 9, 12, 16]
+    assert motion.outcome is MotionOutcome.NO_START
+    assert "on at most 16 modes of a strain" in motion.message

@@ -140,6 +140,26 @@ def test_a_heavy_rod_starts_in_contact_on_any_number_of_modes(modes: int, heavy_
         assert_allclose(motion.tip().position[0], wanted, rtol=0, atol=1e-2 * 1.5)
 
 
+def test_a_short_motion_has_the_contacts_of_a_long_one(heavy_at_rest: Solution) -> None:
+    """What counts as no acceleration is judged at its instant: gravity is one, however soon the motion ends."""
+    found = []
+    for duration in (0.05, 1e-3):
+        simulation = f"simulation={{duration={duration},tolerance=5e-3,frames=3}}"
+        scene = read_scene(HEAVY, [simulation, "accuracy={modes=8,nodes=20}"])
+        found.append(simulate(build(scene.with_motion_inputs(), moving=True), start=heavy_at_rest))
+    long, short = found
+    for motion in found:
+        assert motion.converged, motion.message
+        assert not motion.events
+    assert short.statistics.steps == long.statistics.steps
+    for row in (0, -1):
+        places = [[contact.at for contact in motion.contacts[row]] for motion in found]
+        assert len(places[0]) > 3
+        assert_allclose(places[1], places[0], rtol=0, atol=1e-9)
+        forces = [np.array([contact.force for contact in motion.contacts[row]]) for motion in found]
+        assert_allclose(forces[1], forces[0], rtol=1e-6, atol=1e-9)
+
+
 def test_a_motion_goes_on_from_a_result_in_contact(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text(Path(LIES).read_text().replace("duration = 0.5", "duration = 0.02"))

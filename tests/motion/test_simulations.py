@@ -63,6 +63,20 @@ def test_rows_are_at_the_frames_or_the_times() -> None:
     assert len(given.energy.kinetic) == len(given.x) == 3
 
 
+def test_a_row_at_a_jump_has_what_held_before_it() -> None:
+    """Inputs and accelerations jump there, positions and velocities do not; at t = 0 the jump is over."""
+    for jump, wanted in ((0.2, [0.0, 0.0, 0.0, 0.5, 0.5]), (0.0, [0.5, 0.5, 0.5, 0.5, 0.5])):
+        values = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.5]]
+        step = {"input": "push.force", "times": [jump - 1.0, jump], "values": values, "interpolation": "step"}
+        scene = table({}, at_tip(), accuracy=FEW, motions=[step])
+        motion = simulated({**scene, "simulation": asked(start="unloaded", frames=5)})
+        assert_allclose(motion.inputs[:, motion.model.inputs.slices["push.force"]][:, 2], wanted, rtol=0, atol=0)
+        assert_allclose(motion.at(0.2).inputs, motion.inputs[2], rtol=0, atol=0)
+        if jump > 0.0:
+            assert_allclose(motion.a[2], 0.0, rtol=0, atol=1e-9)
+            assert np.abs(motion.at(0.2 + 1e-6).a).max() > 0.1
+
+
 def test_dense_output_is_what_the_rows_hold() -> None:
     motion = simulated(falling())
     for row in (0, 17, 60, 100):

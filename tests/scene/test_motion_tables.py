@@ -312,6 +312,24 @@ BAD_MOTIONS = {
         "amplitude: pulled.tension must stay >= 0, and goes to -0.2 N",
     ),
     "quaternion": (table("rod.base.quaternion", [0.0], [[0, 0, 0, 0]]), "values: must not be zero"),
+    "quaternion_through_zero": (
+        table("rod.base.quaternion", [0, 2], [[1, 0, 0, 0], [-1, 0, 0, 0]]),
+        "values: rod.base.quaternion must stay away from zero, and its norm falls to 0 of the largest at 1 s: it is "
+        "interpolated by component, and normalised (-q is the same rotation as q: change the sign of one of them",
+    ),
+    "quaternion_near_zero": (
+        table("rod.base.quaternion", [0, 2], [[1, 0, 0, 0], [-0.99, 0, 0, 0.14106735979665883]]),
+        "values: rod.base.quaternion must stay away from zero, and its norm falls to 0.071 of the largest at 1 s",
+    ),
+    "quaternion_through_zero_as_cubic": (
+        table(
+            "rod.base.quaternion",
+            [0, 1, 2],
+            [[1, 0, 0, 0], [0.6, 0, 0, 0.8], [-0.6, 0, 0, -0.8]],
+            interpolation="cubic",
+        ),
+        "values: rod.base.quaternion must stay away from zero, and its norm falls to 0.082 of the largest at 1.446",
+    ),
 }
 
 
@@ -341,6 +359,70 @@ def test_motions_that_are_refused(case: str) -> None:
 )
 def test_motions_that_are_allowed(motions: list[dict[str, Any]]) -> None:
     assert len(given(*motions, duration=2.0).motions) == len(motions)
+
+
+def turned(*degrees: float) -> list[list[float]]:
+    """Quaternions of turns about the z axis."""
+    halves = np.deg2rad(degrees) / 2
+    return [[float(np.cos(half)), 0.0, 0.0, float(np.sin(half))] for half in halves]
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_half_a_turn_is_allowed_and_a_whole_one_is_not(interpolation: str) -> None:
+    """The norm in the middle is the cosine of a quarter of the turn: one of 0.098 is refused, 0.102 is not."""
+    for degrees, allowed in ((180.0, True), (336.6, True), (337.5, False), (360.0, False), (382.0, False)):
+        turn = table("rod.base.quaternion", [0, 2], turned(0.0, degrees), interpolation=interpolation)
+        if allowed:
+            assert given(turn, duration=2.0).motions
+            continue
+        (told,) = refusals(lambda turn=turn: given(turn, duration=2.0))  # type: ignore[misc]
+        norm = round(abs(float(np.cos(np.deg2rad(degrees) / 4))), 3)
+        assert f"its norm falls to {norm:g} of the largest at 1 s" in told
+
+
+def test_a_whole_turn_with_times_in_between_is_allowed() -> None:
+    steps = table("rod.base.quaternion", [0, 0.5, 1, 2], turned(0, 120, 240, 360), interpolation="cubic")
+    assert given(steps, duration=2.0).motions
+
+
+def test_the_norm_of_a_quaternion_does_not_matter() -> None:
+    small = [[0.01 * entry for entry in entries] for entries in turned(0, 180)]
+    assert given(table("rod.base.quaternion", [0, 2], small), duration=2.0).motions
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e-150, 1e150, 1e200, 1e307])
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_quaternions_of_any_size_are_judged(size: float, interpolation: str) -> None:
+    large = [[size * entry for entry in entries] for entries in turned(0, 180)]
+    assert given(table("rod.base.quaternion", [0, 2], large, interpolation=interpolation), duration=2.0).motions
+    through = [[size, 0, 0, 0], [-size, 0, 0, 0]]
+    told = refusals(
+        lambda: given(table("rod.base.quaternion", [0, 2], through, interpolation=interpolation), duration=2.0)
+    )
+    assert any("must stay away from zero" in line for line in told), told
+
+
+def test_one_value_at_the_beginning_is_a_place() -> None:
+    assert given(table("rod.base.quaternion", [0.0], turned(90)), duration=2.0).motions
+    assert given(table("rod.base.quaternion", [-2.0, -1.0], turned(90, 90)), duration=2.0).motions
+
+
+def test_what_comes_after_the_end_of_the_motion_is_left_aside() -> None:
+    late = table("rod.base.quaternion", [0, 4], turned(0, 360))
+    assert given(late, duration=1.5).motions
+    assert refusals(lambda: given(late, duration=2.0))
+
+
+def test_tables_of_a_quaternion_are_judged_by_their_sum() -> None:
+    """Two that pass through zero one by one stay away from it together; two that do not may meet it together."""
+    there = table("rod.base.quaternion", [0, 2], [[1, 0, 0, 0], [-1, 0, 0, 0]])
+    aside = table("rod.base.quaternion", [0, 1, 2], [[0, 0, 0, 0], [0, 0, 0, 1], [0, 0, 0, 0]], interpolation="cubic")
+    assert given(there, aside, duration=2.0).motions
+    first = table("rod.base.quaternion", [0, 2], [[1, 0, 0, 0], [-1, 0, 0, 1]])
+    second = table("rod.base.quaternion", [0, 2], [[0, 0, 0, 0], [0, 0, 0, -1]])
+    assert given(first, duration=2.0).motions
+    (told,) = refusals(lambda: given(first, second, duration=2.0))
+    assert told.startswith("motions[0].values: rod.base.quaternion must stay away from zero")
 
 
 def test_bases_that_cannot_move() -> None:

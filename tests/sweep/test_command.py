@@ -97,11 +97,12 @@ def test_an_interrupt_that_is_lost_stops_the_command(
     monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
     monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
     monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", lose)
-    words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
-    monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words, "--output", "out.csv"])
+    words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
+    monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])
     before = signal.getsignal(signal.SIGINT)
     assert run(app) == INTERRUPTED
     assert lost == [True]
     assert signal.getsignal(signal.SIGINT) is before
-    assert not (folder / "out.csv").exists()
+    # A stopped sweep keeps the rows that it has, under a name of their own.
+    assert not [file for file in ("out.csv", "out.json") if (folder / file).exists()]
     assert "Stopped" in capsys.readouterr().err

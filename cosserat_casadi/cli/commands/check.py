@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.bench.effects import effect_times
-from cosserat_casadi.bench.motion_times import motion_times
+from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
@@ -17,7 +17,7 @@ from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.price import price, price_of_motion
+from cosserat_casadi.model.price import is_damped, price, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
@@ -67,6 +67,8 @@ def _print_motion_times(scene: Scene) -> None:
         model = build(scene.with_motion_inputs(), moving=True)
         check_simulation(model, scene.simulation)
         statics = price(model)
-        motion = price_of_motion(model)
-        times = motion_times(model)
-    print_motion_times(Console(), model.size, statics, motion, times)
+        models = [model]
+        if is_damped(scene):
+            models.append(build(without_damping(scene.with_motion_inputs()), moving=True))
+        motion, *undamped = motion_costs(*models)
+    print_motion_times(Console(), model.size, statics, motion, *undamped)

@@ -16,7 +16,7 @@ from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.estimation import Estimate, estimate_scene
-from cosserat_casadi.files import write_atomically
+from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.spelling import counted
@@ -39,7 +39,9 @@ def estimate(
     """
     problems: list[Problem] = []
     with collect_problems(problems):
-        check_outputs(output, plot)
+        check_writable(output, "--output")
+    with collect_problems(problems):
+        check_outputs(None, plot)
     suffix = output.suffix.lower()
     if suffix not in WRITERS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))

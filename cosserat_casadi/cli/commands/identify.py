@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.identification import (
     print_identification,
@@ -17,7 +17,7 @@ from cosserat_casadi.cli.reports.identification import (
     print_refused_scene,
 )
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification import identify_scene
 from cosserat_casadi.identification.fitted import beside
 from cosserat_casadi.results.identification_file import identification_text
@@ -45,9 +45,8 @@ def identify(
     problems: list[Problem] = []
     with collect_problems(problems):
         check_outputs(output, plot)
-    if write is not None:
-        with collect_problems(problems):
-            check_writable(write, "--write")
+    with collect_problems(problems):
+        check_file(write, "--write", ".toml")
     if starts is not None and starts < 1:
         problems.append(Problem("--starts", f"must be 1 or more, got {starts}"))
     if hold_out is not None and not 0.0 <= hold_out < 1.0:

@@ -47,7 +47,7 @@ def inverse(
     """
     if stable and unstable:
         raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
-    check_outputs(output, plot)
+    check_outputs(output, plot, ".json" if table is None else ".csv")
     if table is not None:
         _check_table(output, plot)
         _inverse_of_table(scene, settings, table, output, stable, unstable)

@@ -71,9 +71,8 @@ def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> N
 
 
 def _check_files(output: Path | None, plot: Path | None, animation: Path | None, problems: list[Problem]) -> None:
-    for file, figure in ((output, None), (None, plot)):
-        with collect_problems(problems):
-            check_outputs(file, figure)
+    with collect_problems(problems):
+        check_outputs(output, plot)
     if animation is None:
         return
     # Imported here, because matplotlib is an extra and takes long to load.

@@ -12,11 +12,11 @@ from rich.console import Console
 
 from cosserat_casadi.cli.commands.tubes import Outputs, follow_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.files import write_atomically
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
@@ -45,7 +45,10 @@ def path(
     # Every check adds to the list; the last one raises, so that all faults are seen at once.
     problems: list[Problem] = []
     _check_bifurcation(bifurcation, problems)
-    _check_files({"--output": output, "--csv": table}, plot, problems)
+    with collect_problems(problems):
+        check_outputs(output, plot)
+    with collect_problems(problems):
+        check_file(table, "--csv", ".csv")
     checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
     if checked_scene.tubes:
         if branch:
@@ -80,15 +83,6 @@ def path(
 def _check_bifurcation(bifurcation: int, problems: list[Problem]) -> None:
     if bifurcation == 0:
         problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
-
-
-def _check_files(outputs: dict[str, Path | None], plot: Path | None, problems: list[Problem]) -> None:
-    for option, file in outputs.items():
-        with collect_problems(problems):
-            if file is not None:
-                check_writable(file, option)
-    with collect_problems(problems):
-        check_outputs(None, plot)
 
 
 def _check_input(

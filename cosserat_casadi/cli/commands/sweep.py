@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems
+from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sobol import print_sobol
@@ -58,7 +58,9 @@ def sweep(
     """
     problems: list[Problem] = []
     with collect_problems(problems):
-        check_outputs(sobol, plot)
+        check_file(sobol, "--sobol", ".json")
+    with collect_problems(problems):
+        check_outputs(None, plot)
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, sobol is not None, problems)

@@ -12,10 +12,10 @@ from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.accuracy.tune import tune as tune_scene
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.options import SceneFile, Settings, check_file
 from cosserat_casadi.cli.progress import progress_bar
 from cosserat_casadi.cli.reports.model import print_tuning
-from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout
 from cosserat_casadi.scene import Scene, read_scene
@@ -36,7 +36,7 @@ def tune(
     """Find the smallest discretisation for many load cases. Exit codes: 0 written, 2 refused, 3 tolerance not met."""
     tuned_scene = read_scene(scene, tuple(settings or ()))
     layout = case_layout(tuned_scene)
-    check_writable(output, "--output")
+    check_file(output, "--output", ".toml")
     cases = load_cases(over, ranges or [], samples, layout)
     tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
     print_tuning(Console(), tuning, layout, cases)
