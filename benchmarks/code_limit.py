@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from unittest.mock import patch
 
 import typer
-from markdown import put, table
+from doc_tables import put, table
 from rows import append, read
 
 from cosserat_casadi import build, discretise, scene_from_dict
