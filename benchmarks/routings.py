@@ -26,6 +26,10 @@ from tests.fuzz.test_waves import GRANTED  # noqa: E402
 from tests.reference.routed_scenes import miss, routed_scene  # noqa: E402
 
 
+INTEGRATION = 1e-11
+"""Accuracy of the integration itself, over the length: Newton's method on the clamp's wrench ends there."""
+
+
 @dataclass(frozen=True)
 class Judged:
     """A scene beside its integration.
@@ -36,7 +40,7 @@ class Judged:
         converged: whether it was.
         tip: true error of the tip over the tolerance; nan without a solution, or where none was integrated.
         cable: of the lengths of cables.
-        estimate: the larger of the two over the estimate.
+        estimate: what the larger of the two has above the accuracy of the integration, over the estimate.
         seconds: processor time of the solution.
     """
 
@@ -70,14 +74,14 @@ def judged(seed: int) -> Judged:
     error = miss(scene, solution)
     tolerance = scene.accuracy.tolerance
     assert solution.error_estimate is not None
-    largest = max(error.tip, error.cable)
+    surely_wrong = max(error.tip, error.cable, INTEGRATION) - INTEGRATION
     return Judged(
         seed=seed,
         outcome=solution.outcome.label,
         converged=True,
         tip=error.tip / tolerance,
         cable=error.cable / tolerance,
-        estimate=largest / solution.error_estimate,
+        estimate=surely_wrong / solution.error_estimate,
         seconds=seconds,
     )
 
