@@ -87,7 +87,7 @@ def statements_of(model: Model) -> int:
 
 
 def compiled(model: Model, most: int) -> tuple[Program, float]:
-    """The model with Jacobians by columns up to so many statements, and processor time of the compiler, s."""
+    """The model under another limit of statements by columns, and processor time of the compiler, s."""
     with patch.object(kernels, "MOST_IN_COLUMNS", most):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         program = Program(model, find_compiler())
@@ -103,7 +103,7 @@ def best(programs: list[Program]) -> list[float]:
         for k, program in enumerate(programs):
             times = program.times()
             if not isinstance(times, Times):
-                raise typer.BadParameter(times)
+                raise RuntimeError(times)
             found[k] = min(found[k], times.jacobian)
     return found
 

@@ -23,11 +23,10 @@ sys.path.insert(0, str(ROOT))
 
 from cosserat_casadi import scene_from_dict, solve_scene  # noqa: E402
 from tests.fuzz.test_waves import GRANTED  # noqa: E402
-from tests.reference.routed_scenes import miss, routed_scene  # noqa: E402
+from tests.reference.routed_scenes import RTOL, miss, routed_scene  # noqa: E402
 
-
-INTEGRATION = 1e-11
-"""Accuracy of the integration itself, over the length: Newton's method on the clamp's wrench ends there."""
+INTEGRATION = RTOL
+"""Accuracy of the integration itself, over the length: below it no estimate is judged."""
 
 
 @dataclass(frozen=True)

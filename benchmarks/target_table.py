@@ -24,8 +24,9 @@ from cosserat_casadi.scene.targets import PositionTarget
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "control.md"
 BEGIN, END = "<!-- rows: written by benchmarks/target_table.py -->", "<!-- end of rows -->"
+
 LARGEST = 6.0
-"""Of the tensions that are drawn, N."""
+"""The largest tension that is drawn, N."""
 
 MODES, NODES = 9, 16
 """On which the places are computed: more than the tolerance asks for, so that all of them are in reach."""

@@ -4,7 +4,8 @@ Counting the operations of a model takes longer than solving it, compiling it fa
 the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
 a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
 the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
-factors to compiled rods of every strain model, section and load, and tells how far they are off.
+factors to compiled rods of every strain model, section and load, and tells how far they are off. Those of loops were
+set by six rods near the limit of code by columns: benchmarks/code_limit.py prints what they foresee.
 """
 
 from __future__ import annotations

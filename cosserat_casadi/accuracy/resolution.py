@@ -42,7 +42,7 @@ FURTHER_MODES = 4
 """Modes and intervals added for a look at rods without waves, more than one uneven step of their error."""
 
 SWEEPS = 1
-"""Sweeps of a look at free rods, whose added modes stiffness holds: enough for a few per cent of their error."""
+"""Sweeps of a look at rods without supports: stiffness holds added modes, and a few per cent of the error are left."""
 
 LOADED_SWEEPS = 2
 """Sweeps of a look at rods with supports or waves, where what follows the added modes moves them in turn."""

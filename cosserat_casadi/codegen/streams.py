@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from itertools import pairwise
+from math import isfinite
 
 import casadi as ca
 import numpy as np
@@ -23,7 +24,6 @@ Key = tuple[tuple[Line, ...], tuple[Hashable, ...]]
 
 CONSTANT = -1
 """Operand that is the next constant."""
-
 
 ROUNDING = 2.0**-48
 """Difference of two constants, over the larger, up to which they are one number that was rounded on its way here."""
@@ -174,27 +174,35 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     first = streams[0]
     uses = list(zip(*(stream.constants for stream in streams), strict=True))
     number_of = _numbered([value for values in uses for value in values])
-    numbers = [tuple(number_of[value] for value in values) for values in uses]
+    # What the streams have in place of one constant, by the numbers of their values: alike but for rounding.
+    alike = [tuple(number_of[value] for value in values) for values in uses]
     varied: dict[tuple[int, ...], tuple[float, ...]] = {}
-    for own, values in zip(numbers, uses, strict=True):
-        if len(set(own)) > 1:
-            varied.setdefault(own, values)
+    for numbers, values in zip(alike, uses, strict=True):
+        if len(set(numbers)) > 1:
+            varied.setdefault(numbers, values)
     arguments = [*first.function.name_in(), "constants"]
     sizes = [*map(len, first.reads), len(varied)]
     symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
     symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
-    constants = [
-        symbol_of[own] if own in symbol_of else ca.SX(values[0]) for own, values in zip(numbers, uses, strict=True)
-    ]
+    constants = []
+    for numbers, values in zip(alike, uses, strict=True):
+        constants.append(symbol_of[numbers] if numbers in symbol_of else ca.SX(values[0]))
     kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), *names_of_part(arguments))
     return kernel, [[values[i] for values in varied.values()] for i in range(len(streams))]
 
 
 def same_but_for_rounding(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> bool:
     """Whether constants are the same, one by one, but for rounding."""
-    apart = np.abs(np.subtract(one, other))
-    largest = np.maximum(np.abs(one), np.abs(other))
-    return bool(np.all(apart <= ROUNDING * largest))
+    pairs = zip(np.ravel(one), np.ravel(other), strict=True)
+    return all(_same(float(first), float(second)) for first, second in pairs)
+
+
+def _same(one: float, other: float) -> bool:
+    """Whether two constants are the same but for rounding; an infinite one is no other number rounded."""
+    if one == other:
+        return True
+    largest = max(abs(one), abs(other))
+    return isfinite(largest) and abs(one - other) <= ROUNDING * largest
 
 
 def _numbered(values: Sequence[float]) -> dict[float, int]:
@@ -202,8 +210,7 @@ def _numbered(values: Sequence[float]) -> dict[float, int]:
     ordered = sorted(set(values))
     numbers = dict.fromkeys(ordered[:1], 0)
     for before, value in pairwise(ordered):
-        same = value - before <= ROUNDING * max(abs(before), abs(value))
-        numbers[value] = numbers[before] if same else numbers[before] + 1
+        numbers[value] = numbers[before] if _same(before, value) else numbers[before] + 1
     return numbers
 
 

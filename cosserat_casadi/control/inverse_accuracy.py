@@ -166,7 +166,8 @@ def _refined(
         of_row = replace(problem, targets=before[row].targets, origin=origin)
         # Scattered on the first discretisation alone: the next ones start from its end.
         result = search_near(of_row, start, stable, 0)
-        found[row] = replace(result, starts=max(before[row].starts, result.starts))
+        rounds = before[row].rounds + result.rounds
+        found[row] = replace(result, rounds=rounds, starts=max(before[row].starts, result.starts))
     return found
 
 

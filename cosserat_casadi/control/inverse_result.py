@@ -36,7 +36,8 @@ class Inverse:
         gaps: how far each target is missed, in their order.
         met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
             estimated the error of the model too; where a stable one was wanted, whether it is that as well.
-        rounds: runs of the optimiser, from all starts together; 0 where Newton's method has met them from a neighbour.
+        rounds: runs of the optimiser, from all starts together and on all discretisations; 0 where Newton's method has
+            met the targets from a neighbour.
         starts: starts that were tried, 1 where the first has met the targets.
         at_bounds: decision variables that ended at a bound, by name.
     """

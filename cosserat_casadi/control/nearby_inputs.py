@@ -28,6 +28,9 @@ MOST_TURNS = 15
 LONGEST = 0.3
 """Largest change of an input, in its scale, or of an unknown in one turn."""
 
+NO_ERROR = 1e-9
+"""Weighted error of a target, without unit, that counts as none."""
+
 SETTLED = 1e-10
 """Change of inputs, in their scales, and of unknowns that counts as none."""
 
@@ -87,7 +90,9 @@ class NearbyInputs:
             x_step = -follows[:, 0] - follows[:, 1:] @ step
             largest = max(float(np.abs(step).max(initial=0.0)), float(np.abs(x_step).max(initial=0.0)))
             if largest <= SETTLED:
-                return x, change
+                # Steps settle too where the ranges end short of the targets.
+                reached = float(np.abs(errors).max(initial=0.0)) <= NO_ERROR
+                return (x, change) if reached else None
             share = min(1.0, LONGEST / largest)
             x = x + share * x_step
             change = np.clip(change + share * step, lower, upper)

@@ -239,9 +239,14 @@ def _with_tolerance(search: _Search) -> Motion:
             # Sections of a few modes may not carry a rod that lies on them: more modes have more sections.
             without_start += 1
             rung += 1
-            if not simulator.start.asks_for_modes or without_start == MOST_WITHOUT_START or rung == len(ladder):
-                return not_started(model, simulator.start)
-            continue
+            last = not simulator.start.asks_for_modes or without_start == MOST_WITHOUT_START or rung == len(ladder)
+            if not last:
+                continue
+            if search.levels:
+                # What fewer modes have moved is judged as it is.
+                break
+            return not_started(model, simulator.start)
+        without_start = 0
         history = _on_level(search, simulator)
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:
             raise KeyboardInterrupt

@@ -80,13 +80,19 @@ def resting(
         if pushes is None:
             return None
         active = pushes > 0.0
-        change, forces = _balanced(stiffness, column(residual), gradients[active], gaps[active])
+        balanced = _balanced(stiffness, column(residual), gradients[active], gaps[active])
+        if balanced is None:
+            return None
+        change, forces = balanced
         largest = float(np.abs(change).max())
         x = x + change * min(1.0, LONGEST / max(largest, LONGEST))
         pressing = tuple(touch for touch, presses in zip(candidates, active, strict=True) if presses)
         flat = _flat(facings, pressing, x, inputs)
         settled = largest <= SETTLED or before <= largest <= ROUNDED
         if settled and not flat:
+            # No forces keep such a section out.
+            if gaps.min(initial=0.0) < -ROUNDED:
+                return None
             return x, Arrangement(pressing, laid, Follower(facings, pressing))
         laid = laid | flat
         before = largest
@@ -116,17 +122,23 @@ def _pushes(stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, 
 
 def _balanced(
     stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray] | None:
     """Change of the unknowns that closes gaps, shape (n,), and the forces that balance it, shape (m,).
 
     The forces are known already where the gaps press: solved for with the unknowns they have less rounding.
+
+    Returns:
+        None where rounding makes the gaps depend on each other.
     """
     size, count = len(stiffness), len(gaps)
     bordered = np.zeros((size + count, size + count))
     bordered[:size, :size] = stiffness
     bordered[:size, size:] = -gradients.T
     bordered[size:, :size] = gradients
-    answer = np.linalg.solve(bordered, -np.concatenate([residual, gaps]))
+    try:
+        answer = np.linalg.solve(bordered, -np.concatenate([residual, gaps]))
+    except np.linalg.LinAlgError:
+        return None
     return answer[:size], answer[size:]
 
 

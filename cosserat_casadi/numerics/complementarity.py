@@ -14,6 +14,9 @@ DEPENDENT = 1e-9
 What the forces leave of a rate, over what they make of it, counts as rounding below the same share.
 """
 
+FALLS = 1e-4
+"""Fall of an active force, for a unit of a dependent one in their scales, below which it is rounding."""
+
 MOST_TURNS = 10
 """Turns for each constraint before the search is given up."""
 
@@ -36,7 +39,19 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
         tolerance: rate below zero that counts as none.
 
     Returns:
-        the forces; None where rounding keeps them from settling.
+        the forces; None where rounding keeps them from settling. Constraints that no forces stop close all the same.
+    """
+    try:
+        return _settled(compliance, rates, tolerance)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _settled(compliance: FloatArray, rates: FloatArray, tolerance: float) -> FloatArray | None:
+    """The forces of :func:`least_pushes`.
+
+    Raises:
+        LinAlgError: rounding has made active constraints depend on each other.
     """
     count = len(rates)
     sizes = np.sqrt(np.maximum(np.diag(compliance), 0.0))
@@ -58,7 +73,7 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
         left = float(scaled[fastest, fastest] + scaled[fastest, active] @ answers)
         if left < DEPENDENT:
             summed = abs(wanted[fastest]) + np.abs(scaled[fastest]) @ forces
-            if opening[fastest] >= -DEPENDENT * summed or not np.any(answers < 0.0):
+            if opening[fastest] >= -DEPENDENT * summed or not np.any(answers < -FALLS):
                 passed_over.add(fastest)
                 continue
             _make_room(forces, active, answers, fastest)
@@ -94,7 +109,7 @@ def _answers(scaled: FloatArray, active: Sequence[int], number: int) -> FloatArr
 def _make_room(forces: FloatArray, active: list[int], answers: FloatArray, number: int) -> None:
     """The force of a constraint grows, in place, until the first active one has none left, which leaves."""
     present = forces[active]
-    falls = answers < 0.0
+    falls = answers < -FALLS
     lasts = np.full(len(active), np.inf)
     lasts[falls] = present[falls] / -answers[falls]
     first = int(np.argmin(lasts))

@@ -1,4 +1,4 @@
-"""How dead and following wrenches vary as the sections turn that they follow: docs/theory.md section 7.
+"""How wrenches vary that follow their sections, as these turn: docs/theory.md section 7.
 
 Fields of M nodes are stacked component by component, as in maths/blocks.py, with one column for each variation.
 """

@@ -169,6 +169,7 @@ def test_foreseen_operations_of_spread_loads(magnitude: dict[str, list[float]]) 
         rod, chosen = model.discrete.rods["rod"].properties, model.discretisation["rod"]
         counted.append(model.operations(model.jacobian))
         foreseen.append(foreseen_operations(rod, chosen, spread_on(wanted, "rod")).all)
+    # Moments that follow pass down the rod with the others: 1.37 times as many.
     assert counted[1] > 1.3 * counted[0]
     assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.1, atol=0)
 

@@ -12,8 +12,8 @@ from cosserat_casadi import Scene, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, USUAL_MODES, Level
 from cosserat_casadi.accuracy.metrics import cable_distance
 from cosserat_casadi.accuracy.pose_change import change_size
-from cosserat_casadi.accuracy.preview import CORRECTIONS, Preview
-from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.resolution import LOADED_SWEEPS, Resolution
 from cosserat_casadi.accuracy.signals import BEYOND, signal_modes
 from tests.scenes import push, scene
 
@@ -82,7 +82,7 @@ def test_modes_that_are_missing_vs_a_model_that_has_them(modes: int) -> None:
     discretisations = [discretise(wanted, m, n, "magnus8") for m, n in ((modes, 60), (2 * modes, 60))]
     coarse, fine = (solve(build(wanted, d)) for d in discretisations)
     preview = Preview(coarse)
-    found = preview.finer_shift(discretisations[1], CORRECTIONS).tips
+    found = preview.finer_shift(discretisations[1], LOADED_SWEEPS).tips
     truth = Preview(fine).tips.change_from(preview.tips)
     assert change_size(truth) > 1e-9
     assert_allclose(found, truth, rtol=0, atol=0.02 * np.abs(truth).max())

@@ -12,7 +12,7 @@ from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import in_one, parted, sharing
-from cosserat_casadi.codegen.streams import CONSTANT, Stream
+from cosserat_casadi.codegen.streams import CONSTANT, Stream, same_but_for_rounding
 from tests.scenes import rod, scene
 
 
@@ -161,3 +161,11 @@ def test_more_alike_legs_are_little_more_code() -> None:
                 scale = np.abs(expected.full()).max(initial=0.0)
                 assert_allclose(found.full(), expected.full(), rtol=0, atol=1e-13 * scale)
     assert sizes[1] < 1.3 * sizes[0]
+
+
+def test_constants_are_the_same_but_for_rounding_where_both_are_numbers() -> None:
+    rounded = 1.0 + 2.0**-50
+    assert same_but_for_rounding([1.0, np.inf, 0.0], [rounded, np.inf, -0.0])
+    assert not same_but_for_rounding([1.0], [1.0 + 2.0**-40])
+    for other in (1e300, -np.inf, np.nan):
+        assert not same_but_for_rounding([np.inf], [other])

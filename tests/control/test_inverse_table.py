@@ -227,3 +227,11 @@ def test_distance_of_rows_counts_orientations() -> None:
     rows = np.array([here, [[0.0, 0.3, 0.4, 1.0, 0.0, 0.0, 0.0]], [[0.0, 0.0, 0.8, *turned]]])
     found = inverse_accuracy._distances(rows, here, np.array([0.8]))
     assert_allclose(found, [0.0, 0.5 / 0.8, 0.2], rtol=1e-12, atol=0)
+
+
+def test_rounds_of_all_discretisations_are_told() -> None:
+    """On a finer one Newton's method has next to nothing left to do: the optimiser worked before."""
+    found = inverse_scene(wanted({**POSITION, "position": [0.2, 0.05, 0.95]}, accuracy={"tolerance": 1e-10}))
+    assert found.met
+    assert max(found.solution.model.discretisation["rod"].modes) > 6
+    assert found.rounds > 0

@@ -102,6 +102,7 @@ def test_the_shortest_change() -> None:
     """Without ranges that of the pseudoinverse; within ranges one that leaves no errors, where there is one."""
     rng = np.random.default_rng(7)
     free = np.full(5, 10.0)
+    reached = 0
     for _ in range(50):
         moved, errors = rng.normal(size=(2, 5)), rng.normal(size=2)
         step = _shortest(moved, errors, -free, free)
@@ -111,10 +112,28 @@ def test_the_shortest_change() -> None:
         assert np.all(np.abs(within) <= limit * (1 + 1e-15))
         best = lsq_linear(moved, -errors, (-limit, limit), tol=1e-14)
         if best.cost < 1e-20:
+            reached += 1
             assert_allclose(moved @ within, -errors, rtol=0, atol=1e-12)
+    assert reached > 25
 
 
 def test_no_number_ends_it() -> None:
     problem, near = problem_at(model_of(POSITION, ["push.force"]), {"push.force": FORCE})
     broken = replace(near, x=np.full_like(near.x, np.nan))
     assert problem.followed(broken) is None
+
+
+def test_an_unstable_end_goes_to_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Newton's method may cross a fold: what it finds there is no answer where another may be."""
+    problem, near = problem_at(model_of(POSITION, ["push.force"]), {"push.force": FORCE})
+    followed = problem.followed(near)
+    assert followed is not None
+    unstable = replace(followed, solution=replace(followed.solution, stable=False))
+    monkeypatch.setattr(LiftedProblem, "followed", lambda *_: unstable)
+    assert search_near(problem, near, False, 0).rounds > 0
+
+
+def test_what_settles_short_of_the_target_is_not_found() -> None:
+    model = model_of(POSITION, ["push.force"], bounds=[{"input": "push.force", "lower": -0.3, "upper": 0.3}])
+    problem, near = problem_at(model, {"push.force": FORCE})
+    assert problem.followed(near) is None

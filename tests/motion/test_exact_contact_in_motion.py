@@ -342,3 +342,17 @@ def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch:
     assert tried == [6, 9, 12, 16]
     assert motion.outcome is MotionOutcome.NO_START
     assert "on at most 16 modes of a strain" in motion.message
+
+
+def test_what_fewer_modes_have_moved_is_kept_where_more_have_no_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = starts.resting
+
+    def resting(contacts: ExactContacts, *given: Any) -> Any:
+        modes = max(max(own.modes) for own in contacts.model.discretisation.values())
+        return found(contacts, *given) if modes <= 6 else None
+
+    monkeypatch.setattr(starts, "resting", resting)
+    motion = simulate_scene(lying())
+    assert motion.outcome is MotionOutcome.UNRESOLVED
+    assert not motion.converged
+    assert len(motion.times) == 3

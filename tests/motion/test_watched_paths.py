@@ -11,7 +11,8 @@ from scipy.spatial.transform import Rotation
 from cosserat_casadi import Motion, scene_from_dict, simulate_scene
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
-from cosserat_casadi.motion.paths import Paths, path_distance
+from cosserat_casadi.motion.paths import Paths, _watched_arms, path_distance
+from cosserat_casadi.scene.constraints import Body
 from tests.motion.transients import Table, gravity, table
 
 # A rod that is twisted at its tip by A (1 − cos Ω t)
@@ -121,3 +122,14 @@ def test_a_turn_about_the_tangent_is_all_that_axes_are_compared_by() -> None:
 def _still(rotation: Rotation) -> Paths:
     """The tip of one rod at one time, at the origin."""
     return Paths(np.zeros((1, 1, 3)), rotation.as_matrix()[None, None, :, :2])
+
+
+def test_points_of_bodies_that_are_followed() -> None:
+    """Centre of mass, and around it the radius of gyration; of moments of inertia alone a tenth of the longest rod."""
+    heavy = Body(name="heavy", mass=MASS, centre_of_mass=tuple(CENTRE), inertia=INERTIA.tolist())
+    weightless = Body(name="weightless", mass=0.0, inertia=INERTIA.tolist())
+    radius = np.sqrt(np.trace(INERTIA) / (2 * MASS))
+    origin = np.zeros(3)
+    assert_allclose(_watched_arms(heavy, 2.0), [origin, CENTRE, *(CENTRE + radius * np.eye(3))], rtol=1e-15, atol=0)
+    assert_allclose(_watched_arms(weightless, 2.0), [origin, *(2.0 * LEVER * np.eye(3))], rtol=1e-15, atol=0)
+    assert_allclose(_watched_arms(Body(name="light"), 2.0), [origin], rtol=0, atol=0)

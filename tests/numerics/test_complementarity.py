@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics import complementarity
 from cosserat_casadi.numerics.complementarity import least_pushes
 
 
@@ -87,3 +88,36 @@ def test_a_constraint_twice_and_one_that_nothing_moves_take_no_force_of_their_ow
     assert forces is not None
     assert_allclose(forces.sum(), 0.5, rtol=1e-14, atol=0)
     assert forces[2] == 0.0
+
+
+def test_constraints_that_differ_by_rounding_do_not_take_each_others_places() -> None:
+    """What a nearly equal constraint answers to by rounding is no force that falls."""
+    directions = np.array([
+        [-1.0, 1.0],
+        [1.0, 0.0],
+        [0.0, -1.0],
+        [1.0, 0.0],
+        [-5.0000000040621939e-01, -9.3725812687249615e-10],
+        [-2.5000000023719965e-01, -3.8105814752539382e-10],
+        [-1.0, 0.0],
+        [-5.0000000048193893e-01, -7.7999399763739520e-10],
+    ])  # fmt: skip
+    rates = np.array([
+        1.6105465589928505, 0.02672043887700397, -1.299502360381462, 0.6181423145315648,
+        -0.01336022070332409, 0.150094674025179, -0.02672043887700397, -0.01336022049494197,
+    ])  # fmt: skip
+    compliance = directions @ directions.T
+    forces = least_pushes(compliance, rates, 1e-13)
+    assert forces is not None
+    assert forces.min() >= 0.0
+    assert (rates + compliance @ forces).min() >= -1e-9
+
+
+def test_forces_that_rounding_keeps_from_being_found_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever makes the active constraints singular is an answer, not an error of linear algebra."""
+
+    def singular(*_: object) -> FloatArray:
+        raise np.linalg.LinAlgError
+
+    monkeypatch.setattr(complementarity, "_balance", singular)
+    assert least_pushes(np.eye(2), np.array([-1.0, -2.0]), 1e-12) is None
