@@ -129,7 +129,7 @@ def test_a_file_lies_beside_its_scene(tmp_path: Path) -> None:
     )
     scene = read_scene(tmp_path / "scene.toml").with_unknowns()
     layout = build(scene).inputs
-    with pytest.raises(SceneError, match="a.csv: cannot be read: No such file"):
+    with pytest.raises(SceneError, match=r"a\.csv: cannot be read: No such file"):
         read_cases(scene, layout)
     (tmp_path / "a.csv").write_text("x,note,z\n0.1,first,\n,,\n nan ,,0.2\n")
     (case,) = read_cases(scene, layout)
