@@ -15,6 +15,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import decision_variables
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
+from cosserat_casadi.control.nearby_inputs import followed
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -93,7 +94,7 @@ def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -
 
 
 def search_near(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
-    """The same from an equilibrium whose targets are near: Newton's method first, the search where that does not do.
+    """The inverse problem from an equilibrium near its targets: by Newton's method, else by :func:`search`.
 
     Args:
         problem: the problem.
@@ -101,9 +102,9 @@ def search_near(problem: LiftedProblem, start: Solution, stable: bool, starts: i
         stable: as in :func:`inverse`.
         starts: as there.
     """
-    followed = problem.followed(start)
-    if followed is not None and followed.met and not followed.unstable:
-        return followed
+    found = followed(problem, start)
+    if found is not None and found.met and not found.unstable:
+        return found
     return search(problem, start, stable, starts)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
-from cosserat_casadi.control.nearby_inputs import NearbyInputs
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
@@ -63,7 +62,8 @@ class LiftedProblem:
         origin: stacked inputs that changes count from.
         optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
             the same kinds share it.
-        nearby: Newton's method for targets that lie near the start; shared likewise.
+        errors: x, change, origin, wanted poses ↦ weighted errors of the targets, their derivatives by x and by change;
+            shared likewise.
     """
 
     model: Model
@@ -72,14 +72,7 @@ class LiftedProblem:
     scale: FloatArray
     origin: FloatArray
     optimiser: ca.Function
-    nearby: NearbyInputs
-
-    def followed(self, start: Solution) -> Inverse | None:
-        """What Newton's method finds from an equilibrium near the targets, judged; None where it finds none."""
-        found = self.nearby.found(
-            start.x, self.change(start.inputs), self.origin, wanted_poses(self.targets), self._ranges()
-        )
-        return None if found is None else self._judged(*found, rounds=0)
+    errors: ca.Function
 
     def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
@@ -114,7 +107,7 @@ class LiftedProblem:
             change = optimum[size:]
             largest_change = float(np.abs(change - centre).max())
             centre = change
-        result = self._judged(x, centre, rounds)
+        result = self.judged(x, centre, rounds)
         if result.met:
             return result
         return self._polished(result, x, centre)
@@ -124,7 +117,7 @@ class LiftedProblem:
 
         An interior-point method stays off a bound by the root of its tolerance where nothing presses against it.
         """
-        lower, upper = self._ranges()
+        lower, upper = self.ranges()
         at_lower = change <= lower + NEAR_BOUND
         at_upper = change >= upper - NEAR_BOUND
         if not np.any(at_lower | at_upper):
@@ -144,11 +137,17 @@ class LiftedProblem:
         rounds = result.rounds + 1
         if not np.all(np.isfinite(optimum)):
             return replace(result, rounds=rounds)
-        polished = self._judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
+        polished = self.judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
         return min(polished, replace(result, rounds=rounds), key=gap_left)
 
-    def _judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
-        """The equilibrium at the inputs found, solved and judged like any other."""
+    def judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
+        """The equilibrium at the inputs found, solved and judged like any other.
+
+        Args:
+            x: unknowns to start the solve from, shape (size,).
+            change: decision variables found, as changes from the origin in their scales, shape (n,).
+            rounds: runs of the optimiser that it took.
+        """
         inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
         solution = solve(self.model, values, start=x)
@@ -173,7 +172,7 @@ class LiftedProblem:
 
         Entries without a range on both sides stay at the origin.
         """
-        lower, upper = self._ranges()
+        lower, upper = self.ranges()
         closed = np.isfinite(upper - lower) & (upper > lower)
         if not np.any(closed):
             return np.zeros((0, len(self.scale)))
@@ -197,7 +196,7 @@ class LiftedProblem:
         """Parameters of the optimiser."""
         return np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)])
 
-    def _ranges(self) -> tuple[FloatArray, FloatArray]:
+    def ranges(self) -> tuple[FloatArray, FloatArray]:
         """Least and largest changes of the decision variables, each of shape (n,)."""
         start = self.origin[self.variables.indices]
         lower = (self.variables.lower - start) / self.scale
@@ -207,7 +206,7 @@ class LiftedProblem:
     def _bounds(self) -> dict[str, FloatArray]:
         """Ranges of the changes; the unknowns have none."""
         unbounded = np.full(self.model.size, np.inf)
-        lower, upper = self._ranges()
+        lower, upper = self.ranges()
         return {
             "lbx": np.concatenate([-unbounded, lower]),
             "ubx": np.concatenate([unbounded, upper]),
@@ -237,8 +236,8 @@ def lifted_problem(
     scale = scales(model, variables, start)
     errors = _errors(model, targets, variables, scale)
     optimiser = _optimiser(model, errors)
-    nearby = NearbyInputs(model, _linearised(errors), variables.indices, scale)
-    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser, nearby)
+    origin = variables.clipped(start.inputs)
+    return LiftedProblem(model, targets, variables, scale, origin, optimiser, _linearised(errors))
 
 
 @dataclass(frozen=True)
@@ -278,7 +277,7 @@ def _errors(
 
 
 def _linearised(of: _Errors) -> ca.Function:
-    """Errors with their derivatives by unknowns and changes, as :class:`NearbyInputs` takes them."""
+    """:attr:`LiftedProblem.errors`."""
     arguments = [of.x, of.change, of.origin, of.wanted]
     derivatives = [ca.jacobian(of.errors, of.x), ca.jacobian(of.errors, of.change)]
     return ca.Function("errors", arguments, [of.errors, *derivatives])

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
+from cosserat_casadi.control.inverse_result import Inverse
+from cosserat_casadi.control.lifted_problem import LiftedProblem
+from cosserat_casadi.control.target_errors import wanted_poses
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 
 MOST_TURNS = 15
 """Turns before the search is given up: near ones take three to six."""
@@ -39,64 +40,67 @@ UNMOVED = 1e-9
 
 
 @dataclass(frozen=True)
-class NearbyInputs:
-    """A model, the errors of its targets and their derivatives.
+class _Linearised:
+    """Equilibrium and errors of targets, linear in changes du of n inputs in their scales.
 
     Attributes:
-        model: the model.
-        errors: x, changes of n inputs in their scales, origin, wanted poses ↦ e, E_x, E_u; E_u in the scales too.
-        entries: of the stacked inputs that may change, shape (n,).
-        scale: of these, shape (n,).
+        follows: the unknowns change by minus its first column, and by minus the others times du, shape (size, 1 + n).
+        errors: weighted errors here, shape (m,).
+        balanced: errors after the first of these changes, shape (m,).
+        moved: what each input moves the errors by, shape (m, n).
     """
 
-    model: Model
-    errors: ca.Function
-    entries: npt.NDArray[np.int64]
-    scale: FloatArray
+    follows: FloatArray
+    errors: FloatArray
+    balanced: FloatArray
+    moved: FloatArray
 
-    def found(
-        self,
-        x: FloatArray,
-        change: FloatArray,
-        origin: FloatArray,
-        wanted: FloatArray,
-        ranges: tuple[FloatArray, FloatArray],
-    ) -> tuple[FloatArray, FloatArray] | None:
-        """Unknowns, shape (size,), and changes of the inputs, shape (n,), without errors; None where not found.
 
-        Args:
-            x: unknowns to start from.
-            change: changes of the inputs to start from.
-            origin: stacked inputs that changes count from.
-            wanted: poses that the targets ask for.
-            ranges: least and largest changes, shape (n,) each.
-        """
-        lower, upper = ranges
-        for _ in range(MOST_TURNS):
-            inputs = origin.copy()
-            inputs[self.entries] += self.scale * change
-            stiffness, residual = (part.full() for part in self.model.jacobian(x, inputs))
-            by_input = self.model.input_jacobian(x, inputs).full()[:, self.entries] * self.scale
-            errors, errors_by_x, errors_by_change = (part.full() for part in self.errors(x, change, origin, wanted))
-            try:
-                follows = np.linalg.solve(stiffness, np.column_stack([residual, by_input]))
-            except np.linalg.LinAlgError:
-                return None
-            balanced = errors[:, 0] - errors_by_x @ follows[:, 0]
-            moved = errors_by_change - errors_by_x @ follows[:, 1:]
-            if not (np.all(np.isfinite(balanced)) and np.all(np.isfinite(moved))):
-                return None
-            step = _shortest(moved, balanced, lower - change, upper - change)
-            x_step = -follows[:, 0] - follows[:, 1:] @ step
-            largest = max(float(np.abs(step).max(initial=0.0)), float(np.abs(x_step).max(initial=0.0)))
-            if largest <= SETTLED:
-                # Steps settle too where the ranges end short of the targets.
-                reached = float(np.abs(errors).max(initial=0.0)) <= NO_ERROR
-                return (x, change) if reached else None
-            share = min(1.0, LONGEST / largest)
-            x = x + share * x_step
-            change = np.clip(change + share * step, lower, upper)
+def followed(problem: LiftedProblem, start: Solution) -> Inverse | None:
+    """What Newton's method finds from an equilibrium near the targets, judged; None where it finds none.
+
+    Args:
+        problem: the problem.
+        start: equilibrium of its model.
+    """
+    x = start.x
+    change = problem.change(start.inputs)
+    lower, upper = problem.ranges()
+    for _ in range(MOST_TURNS):
+        linear = _linearised(problem, x, change)
+        if linear is None:
+            return None
+        step = _shortest(linear.moved, linear.balanced, lower - change, upper - change)
+        x_step = -linear.follows[:, 0] - linear.follows[:, 1:] @ step
+        largest = float(np.abs(np.concatenate([x_step, step])).max())
+        if largest <= SETTLED:
+            # Steps settle too where the ranges end short of the targets.
+            reached = float(np.abs(linear.errors).max(initial=0.0)) <= NO_ERROR
+            return problem.judged(x, change, rounds=0) if reached else None
+        share = min(1.0, LONGEST / largest)
+        x = x + share * x_step
+        change = np.clip(change + share * step, lower, upper)
+    return None
+
+
+def _linearised(problem: LiftedProblem, x: FloatArray, change: FloatArray) -> _Linearised | None:
+    """Equilibrium and errors about unknowns and changes of the inputs; None where they are singular or no numbers."""
+    model = problem.model
+    inputs = problem.inputs(change)
+    stiffness, residual = (part.full() for part in model.jacobian(x, inputs))
+    by_input = model.input_jacobian(x, inputs).full()[:, problem.variables.indices] * problem.scale
+    wanted = wanted_poses(problem.targets)
+    found = problem.errors(x, change, problem.origin, wanted)
+    errors, errors_by_x, errors_by_change = (part.full() for part in found)
+    try:
+        follows = np.linalg.solve(stiffness, np.column_stack([residual, by_input]))
+    except np.linalg.LinAlgError:
         return None
+    balanced = errors[:, 0] - errors_by_x @ follows[:, 0]
+    moved = errors_by_change - errors_by_x @ follows[:, 1:]
+    if not (np.all(np.isfinite(balanced)) and np.all(np.isfinite(moved))):
+        return None
+    return _Linearised(follows, errors[:, 0], balanced, moved)
 
 
 def _shortest(moved: FloatArray, errors: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:

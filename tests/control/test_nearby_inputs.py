@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from cosserat_casadi import Model, Solution, build, solve
 from cosserat_casadi.control.inverse import search, search_near
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
-from cosserat_casadi.control.nearby_inputs import _shortest
+from cosserat_casadi.control.nearby_inputs import _shortest, followed
 from cosserat_casadi.scene.targets import PoseTarget, PositionTarget
 from tests.scenes import push, scene
 
@@ -51,13 +52,13 @@ def problem_at(model: Model, values: dict[str, Any]) -> tuple[LiftedProblem, Sol
 )
 def test_what_the_optimiser_finds_is_found(target: dict[str, Any], values: dict[str, Any]) -> None:
     problem, near = problem_at(model_of(target, list(values)), values)
-    followed = problem.followed(near)
+    found = followed(problem, near)
     searched = search(problem, near, False, 0)
-    assert followed is not None
-    assert followed.met
-    assert (followed.rounds, searched.rounds > 0) == (0, True)
+    assert found is not None
+    assert found.met
+    assert (found.rounds, searched.rounds > 0) == (0, True)
     for name, value in values.items():
-        assert_allclose(followed.values[name][:, 0], value, rtol=0, atol=1e-9)
+        assert_allclose(found.values[name][:, 0], value, rtol=0, atol=1e-9)
         assert_allclose(searched.values[name][:, 0], value, rtol=0, atol=1e-6)
 
 
@@ -68,11 +69,11 @@ def test_inputs_stay_in_their_ranges() -> None:
     model = model_of(POSITION, ["push.force", "push.moment"], bounds=[limit, loose])
     # The range ends short of the force that was there.
     problem, near = problem_at(model, {"push.force": FORCE})
-    followed = problem.followed(near)
-    assert followed is not None
-    assert followed.met
-    assert_allclose(followed.gaps[0].position, 0.0, rtol=0, atol=1e-12)
-    assert np.all(np.abs(followed.values["push.force"]) <= 0.38)
+    found = followed(problem, near)
+    assert found is not None
+    assert found.met
+    assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-12)
+    assert np.all(np.abs(found.values["push.force"]) <= 0.38)
 
 
 def test_what_is_out_of_reach_goes_to_the_search() -> None:
@@ -120,20 +121,21 @@ def test_the_shortest_change() -> None:
 def test_no_number_ends_it() -> None:
     problem, near = problem_at(model_of(POSITION, ["push.force"]), {"push.force": FORCE})
     broken = replace(near, x=np.full_like(near.x, np.nan))
-    assert problem.followed(broken) is None
+    assert followed(problem, broken) is None
 
 
 def test_an_unstable_end_goes_to_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Newton's method may cross a fold: what it finds there is no answer where another may be."""
     problem, near = problem_at(model_of(POSITION, ["push.force"]), {"push.force": FORCE})
-    followed = problem.followed(near)
-    assert followed is not None
-    unstable = replace(followed, solution=replace(followed.solution, stable=False))
-    monkeypatch.setattr(LiftedProblem, "followed", lambda *_: unstable)
+    found = followed(problem, near)
+    assert found is not None
+    unstable = replace(found, solution=replace(found.solution, stable=False))
+    # The package has a function of the module's name.
+    monkeypatch.setattr(import_module("cosserat_casadi.control.inverse"), "followed", lambda *_: unstable)
     assert search_near(problem, near, False, 0).rounds > 0
 
 
 def test_what_settles_short_of_the_target_is_not_found() -> None:
     model = model_of(POSITION, ["push.force"], bounds=[{"input": "push.force", "lower": -0.3, "upper": 0.3}])
     problem, near = problem_at(model, {"push.force": FORCE})
-    assert problem.followed(near) is None
+    assert followed(problem, near) is None
