@@ -13,6 +13,20 @@ from unittest.mock import patch
 
 from cosserat_casadi.cli.main import app, run
 
+WIRE = """[[rods]]
+name = "wire"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
+section = { shape = "circle", radius = 0.5e-3 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "wire"
+force = [0.2, 0, 0]
+"""
+"""A wire with a push at its tip, the tables that many scenes of commands begin with."""
+
 
 @dataclass(frozen=True)
 class Ended:

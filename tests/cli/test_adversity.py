@@ -16,27 +16,20 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
+from tests.commands import WIRE
 from tests.families import mostly_slow
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 
-SCENE = """
+SCENE = (
+    """
 schema = 1
 title = "Draht, 3 µm² dünn"
 inputs = ["push.force"]
 accuracy = { modes = 3, nodes = 8, tolerance = 0.05 }
-[[rods]]
-name = "wire"
-length = 0.2
-strain = "kirchhoff"
-material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
-section = { shape = "circle", radius = 0.5e-3 }
-[[loads]]
-name = "push"
-kind = "tip_wrench"
-rod = "wire"
-force = [0.2, 0, 0]
-[[actuators]]
+"""
+    + WIRE
+    + """[[actuators]]
 name = "muscle"
 kind = "chamber"
 rod = "wire"
@@ -59,6 +52,7 @@ input = "push.force"
 times = [0, 0.1]
 values = [[0.2, 0, 0], [0, 0, 0]]
 """
+)
 
 MEASURED = """
 schema = 1

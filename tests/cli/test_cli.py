@@ -13,24 +13,16 @@ from cosserat_casadi import Solution, build, read_scene, solve
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.solution_file import result_text
-from tests.commands import cosserat
+from tests.commands import WIRE, cosserat
 from tests.conftest import ROOT
 
-SCENE = """
+SCENE = (
+    """
 schema = 1
 title = "A wire"
-[[rods]]
-name = "wire"
-length = 0.2
-strain = "kirchhoff"
-material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
-section = { shape = "circle", radius = 0.5e-3 }
-[[loads]]
-name = "push"
-kind = "tip_wrench"
-rod = "wire"
-force = [0.2, 0, 0]
 """
+    + WIRE
+)
 
 
 @pytest.fixture

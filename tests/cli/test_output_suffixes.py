@@ -8,24 +8,16 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi.cli.exit_codes import REFUSED
-from tests.commands import cosserat
+from tests.commands import WIRE, cosserat
 
-SCENE = """
+SCENE = (
+    """
 schema = 1
 inputs = ["push.force"]
 accuracy = { modes = 2, nodes = 6 }
-[[rods]]
-name = "wire"
-length = 0.2
-strain = "kirchhoff"
-material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
-section = { shape = "circle", radius = 0.5e-3 }
-[[loads]]
-name = "push"
-kind = "tip_wrench"
-rod = "wire"
-force = [0.2, 0, 0]
-[[targets]]
+"""
+    + WIRE
+    + """[[targets]]
 kind = "position"
 rod = "wire"
 position = [0.1, 0, 0.15]
@@ -34,6 +26,7 @@ input = "push.force"
 lower = [0, 0, 0]
 upper = [1, 0, 0]
 """
+)
 
 TARGETS = "x,y,z\n0.1,0,0.15\n"
 

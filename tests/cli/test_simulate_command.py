@@ -20,26 +20,19 @@ from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, REFUSED, TERM
 from cosserat_casadi.cli.main import app, run
 from cosserat_casadi.motion.restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
+from tests.commands import WIRE
 from tests.conftest import ROOT
 from tests.motions import motion_of, without_start
 
-SCENE = """
+SCENE = (
+    """
 schema = 1
 title = "A wire"
 inputs = ["push.force"]
 accuracy = { modes = 3, nodes = 8 }
-[[rods]]
-name = "wire"
-length = 0.2
-strain = "kirchhoff"
-material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
-section = { shape = "circle", radius = 0.5e-3 }
-[[loads]]
-name = "push"
-kind = "tip_wrench"
-rod = "wire"
-force = [0.2, 0, 0]
 """
+    + WIRE
+)
 
 SIMULATION = """
 [simulation]
