@@ -141,11 +141,17 @@ class Model(ModelFunctions, MotionFunctions):
         return 1.0 if ratio is None else float(ca.evalf(ca.MX(ratio)))
 
     def has_potential(self, inputs: FloatArray) -> bool:
-        """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning."""
-        discrete = self.at().discrete
-        if not loads_have_potential(discrete, inputs):
-            return False
-        return actuators_have_potential(discrete, inputs)
+        """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning.
+
+        It depends on which inputs are zero, and on nothing else of them: the answer to each such pattern is kept.
+        """
+        bound = self.at()
+        known: dict[bytes, bool] = bound.__dict__.setdefault("_potential", {})
+        pattern = (np.asarray(inputs) != 0.0).tobytes()
+        if pattern not in known:
+            by_loads = loads_have_potential(bound.discrete, inputs)
+            known[pattern] = by_loads and actuators_have_potential(bound.discrete, inputs)
+        return known[pattern]
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""
