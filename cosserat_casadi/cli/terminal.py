@@ -7,17 +7,21 @@ import io
 import os
 import sys
 import unicodedata
+from itertools import groupby
 
 PLAIN = {
-    "²": "^2",
-    "³": "^3",
     "µ": "u",
+    "λ": "lambda",
+    "Λ": "Lambda",
     "±": "+/-",
     "×": "x",
     "−": "-",
     "–": "-",
     "…": "...",
     "●": "*",
+    "·": ".",
+    "÷": "/",
+    "\N{FRACTION SLASH}": "/",
     "ℓ": "l",
     "≤": "<=",
     "≥": ">=",
@@ -62,14 +66,30 @@ def _plain_letters(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     letters = error.object[error.start : error.end]
-    plain = "".join(_plain_letter(letter) for letter in letters)
+    plain = ""
+    for raised, run in groupby(letters, _is_superscript):
+        written = "".join(_plain_letter(letter) for letter in run)
+        # 10⁶ must not become 106.
+        plain += f"^{written}" if raised else written
     return plain, error.end
 
 
+def _is_superscript(letter: str) -> bool:
+    return unicodedata.decomposition(letter).startswith("<super>")
+
+
 def _plain_letter(letter: str) -> str:
+    """What stands for one letter; a question mark where nothing does."""
     if letter in PLAIN:
         return PLAIN[letter]
-    # An accent is dropped; what nothing stands for is a question mark.
+    match unicodedata.name(letter, "").split():
+        case ["GREEK", "SMALL", "LETTER", name]:
+            return name.lower()
+        case ["GREEK", "CAPITAL", "LETTER", name]:
+            return name.capitalize()
+    if unicodedata.combining(letter):
+        return ""
     decomposed = unicodedata.normalize("NFKD", letter)
-    ascii_part = decomposed.encode("ascii", errors="ignore").decode("ascii")
-    return ascii_part or "?"
+    if decomposed == letter:
+        return letter if letter.isascii() else "?"
+    return "".join(_plain_letter(part) for part in decomposed)

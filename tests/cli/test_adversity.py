@@ -14,8 +14,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
+from cosserat_casadi.cli.main import app
+from cosserat_casadi.cli.terminal import HANDLER, prepare_streams
 from tests.commands import WIRE
 from tests.families import mostly_slow
 
@@ -97,8 +100,31 @@ prior = { mean = 0.0, sigma = 0.1 }
 SHAPES = "force,x,z\n0.02,0.018,0.199\n0.04,0.035,0.196\n0.06,0.05,0.192\n"
 """Tips of a wire of the modulus above, rounded to millimetres."""
 
+TUBES = """
+schema = 1
+title = "Röhrchen, dünn"
+[[tubes]]
+name = "outer"
+material = { youngs_modulus = 6.0e10, poisson_ratio = 0.33 }
+section = { outer_radius = 1.20e-3, inner_radius = 0.95e-3 }
+straight = 0.10
+curved = 0.12
+curvature = 14.0
+translation = 0.13
+[[tubes]]
+name = "inner"
+material = { youngs_modulus = 6.0e10, poisson_ratio = 0.33 }
+section = { outer_radius = 0.90e-3, inner_radius = 0.60e-3 }
+straight = 0.18
+curved = 0.14
+curvature = 18.0
+rotation = 0.6
+translation = 0.20
+"""
+
 GIVEN = {
     "wire.toml": SCENE,
+    "tubes.toml": TUBES,
     "rows.csv": "push.force.x\n0.1\n0.2\n0.3\n",
     "wanted.csv": "x,y,z\n0.018,0,0.199\n0.035,0,0.196\n",
     "modulus.toml": MEASURED + MODULUS,
@@ -109,12 +135,17 @@ GIVEN = {
 
 COMMANDS = {
     "check": ["check", "wire.toml"],
+    "check_time": ["check", "wire.toml", "--time"],
+    "docs": ["docs", "command-line"],
     "solve": ["solve", "wire.toml", "--output", "out.json", "--plot", "out.svg"],
     "path": ["path", "wire.toml", "--input", "push.force", "--to", "[0.3,0,0]", "--output", "out.json"],
     "inverse": ["inverse", "wire.toml", "--output", "out.json"],
     "sweep": ["sweep", "wire.toml", "--over", "rows.csv", "--output", "out.csv", "--cores", "1"],
     "tune": ["tune", "wire.toml", "--range", "push.force.x=0:0.1", "--samples", "2", "--output", "out.toml"],
+    "tubes": ["solve", "tubes.toml", "--output", "out.json", "--plot", "out.svg"],
     "export": ["export", "wire.toml", "--output", "out"],
+    "export_tubes": ["export", "tubes.toml", "--output", "out"],
+    "export_fmu": ["export", "wire.toml", "--fmu", "out.fmu"],
     "simulate": ["simulate", "wire.toml", "--output", "out.json", "--plot", "out.svg"],
     "modes": ["modes", "wire.toml", "--count", "2", "--output", "out.json", "--plot", "out.svg"],
     "inverse_table": ["inverse", "wire.toml", "--table", "wanted.csv", "--output", "out.csv"],
@@ -133,13 +164,19 @@ COMMANDS = {
     "examples": ["examples", "deep_arch", "--output", "out"],
     "bench": ["bench", "wire.toml", "--methods", "magnus4", "--points", "1", "--output", "out"],
 }
-"""One call of each command, with every file that it can write."""
+"""One call of each command that ends by itself, with every file that it can write."""
 
-UNTITLED = ("tune", "inverse_table", "new", "examples", "bench")
+READING = ("check", "check_time", "docs")
+"""Those that write no file."""
+
+UNTITLED = ("docs", "export_fmu", "tune", "inverse_table", "new", "examples", "bench")
 """Those that do not print the title of a scene."""
 
-WRITING = mostly_slow([name for name in COMMANDS if name != "check"], quick=["solve", "sweep", "export"])
+WRITING = mostly_slow([name for name in COMMANDS if name not in READING], quick=["solve", "sweep", "export"])
 """Commands that write files: one that draws, one that goes on where it was stopped, one that writes a folder."""
+
+VIEW = ["view", "wire.toml", "--no-browser"]
+"""The command that goes on until it is ended."""
 
 UNREADY = {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 """What makes a terminal know ASCII alone: Python's own ways round it are closed."""
@@ -191,7 +228,12 @@ def new_files(folder: Path) -> list[str]:
     return sorted({path.name for path in folder.rglob("*")} - set(GIVEN))
 
 
-@pytest.mark.parametrize("command", ["check", *WRITING])
+def test_every_command_is_called() -> None:
+    called = {arguments[0] for arguments in COMMANDS.values()}
+    assert called | {VIEW[0]} == set(get_command(app).commands)
+
+
+@pytest.mark.parametrize("command", [*mostly_slow(READING, quick=["check"]), *WRITING])
 def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
     code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
     # The target lies beside the curve that the tip can move on.
@@ -208,6 +250,20 @@ def test_units_are_written_in_plain_letters(folder: Path) -> None:
     assert "3 um^2 dunn" in shown
     _, shown, _ = ended(start(["solve", "wire.toml", "--json"], folder, UNREADY))
     assert json.loads(shown)["title"] == "Draht, 3 µm² dünn"
+
+
+@pytest.mark.parametrize(
+    ("letters", "plain"),
+    [
+        ("10⁶ N/m², 10⁻¹² s", "10^6 N/m^2, 10^-12 s"),
+        ("½ ∂", "1/2 ?"),
+        ("λ, ξ and Γ in µm", "lambda, xi and Gamma in um"),
+        ("Röhrchen, ẋ, −3 ≤ φ ≤ 4·10³", "Rohrchen, x, -3 <= phi <= 4.10^3"),
+    ],
+)
+def test_plain_letters_keep_numbers(letters: str, plain: str) -> None:
+    prepare_streams()
+    assert letters.encode("ascii", errors=HANDLER).decode() == plain
 
 
 def fill_disk() -> None:
@@ -281,6 +337,22 @@ def stopped(command: str, number: signal.Signals, delay: float, folder: Path) ->
     assert [name for name in left if name.endswith(".part") and name != "out.csv.part"] == []
     if "out.json" in left:
         json.loads((folder / "out.json").read_text())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_view_is_served_until_it_is_ended(folder: Path, number: signal.Signals) -> None:
+    process = start(VIEW, folder, UNREADY)
+    assert process.stdout is not None
+    for line in process.stdout:
+        if b"The robot is at http" in line:
+            break
+    process.send_signal(number)
+    code, shown, said = ended(process)
+    assert code == {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}[number], said
+    assert shown.isascii()
+    assert said.isascii()
+    assert new_files(folder) == []
 
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)

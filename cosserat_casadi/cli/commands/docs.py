@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 import typer
@@ -34,7 +35,7 @@ def docs(
     text = found[page].read_text(encoding="utf-8")
     if not console.is_terminal:
         # Whoever reads it from a pipe looks for words.
-        typer.echo(text)
+        sys.stdout.write(text)
         return
     with console.pager(styles=True, links=True):
         console.print(Markdown(text))
