@@ -25,6 +25,7 @@ from cosserat_casadi.codegen.compiled_results import (
     solution_of,
 )
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.input_values import InputValues
 from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
@@ -56,8 +57,9 @@ OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner 
 class Compiled(LoadedLibrary, CompiledMotion):
     """An exported folder as compiled functions.
 
-    Where the scene names parameters, functions and methods take them: by name, those not named keeping the scene's
-    values, or all of them stacked. Functions take them behind the inputs, as those of a model do.
+    Methods take inputs by name, those not named keeping the scene's values, or all of them stacked; and so
+    parameters, where the scene names some. Functions take both stacked, parameters behind the inputs, as those of a
+    model do.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
     ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
@@ -92,7 +94,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
             in_c(*map(pointer, arguments), pointer(residual), self._workspace())
             return [residual]
 
-        arguments = {"x": (self.size, 1), "inputs": (len(self.defaults), 1)}
+        arguments = {"x": (self.size, 1), "inputs": (self.inputs.size, 1)}
         if self.parameters.size:
             arguments[PARAMETERS] = (self.parameters.size, 1)
         return PlainFunction("residual", arguments, {"residual": (self.size, 1)}, evaluate, EXPORT_WITH)
@@ -116,18 +118,13 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return sum(int(entry["count"]) for entry in self.manifest["unknowns"])
 
     @cached_property
-    def defaults(self) -> FloatArray:
-        """The scene's own inputs, stacked."""
-        return np.concatenate([np.zeros(0), *[entry["value"] for entry in self.manifest["inputs"]]])
-
-    @cached_property
     def parameters(self) -> ListedParameters:
         """Names, units and default values of the parameters; often none."""
         return listed_parameters(self.manifest.get("parameters", []), self._scene)
 
     def solve(
         self,
-        inputs: npt.ArrayLike | None = None,
+        inputs: InputValues = None,
         start: npt.ArrayLike | None = None,
         *,
         parameters: ParameterValues = None,
@@ -135,15 +132,15 @@ class Compiled(LoadedLibrary, CompiledMotion):
         """Equilibrium by the solver in C.
 
         Args:
-            inputs: stacked inputs; the scene's own by default.
+            inputs: by name or stacked; the scene's own by default.
             start: unknowns to start from; the unloaded rod by default.
             parameters: by name or stacked; the scene's own by default.
 
         Raises:
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
-        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = Info()
         p = self.parameters.passed(parameters)
@@ -152,8 +149,8 @@ class Compiled(LoadedLibrary, CompiledMotion):
 
     def follow(
         self,
-        before: npt.ArrayLike,
-        inputs: npt.ArrayLike,
+        before: InputValues,
+        inputs: InputValues,
         start: npt.ArrayLike,
         *,
         parameters_before: ParameterValues = None,
@@ -162,18 +159,18 @@ class Compiled(LoadedLibrary, CompiledMotion):
         """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
 
         Args:
-            before: stacked inputs that ``start`` is an equilibrium for.
-            inputs: stacked inputs to go to.
+            before: inputs that ``start`` is an equilibrium for.
+            inputs: inputs to go to; both by name or stacked.
             start: unknowns.
             parameters_before: parameters that ``start`` is an equilibrium for; the scene's own by default.
             parameters: parameters to go to; likewise.
 
         Raises:
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
-        old = vector(before, len(self.defaults), "before")
-        given = vector(inputs, len(self.defaults), "inputs")
+        old = self.inputs.stacked(before, "before")
+        given = self.inputs.stacked(inputs)
         x = vector(start, self.size, "start").copy()
         info = Info()
         old_p = self.parameters.passed(parameters_before)
@@ -194,8 +191,8 @@ class Compiled(LoadedLibrary, CompiledMotion):
             SceneError: the names of parameters are not those of the scene.
         """
         given = np.atleast_2d(np.asarray(inputs, dtype=np.float64))
-        if given.ndim != 2 or given.shape[1] != len(self.defaults):
-            raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
+        if given.ndim != 2 or given.shape[1] != self.inputs.size:
+            raise ValueError(f"inputs must have shape (count, {self.inputs.size}), got {given.shape}")
         p = self.parameters.rows(parameters)
         count = len(p) if len(given) == 1 else len(given)
         if len(p) not in (1, count):
@@ -211,47 +208,47 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return [solution_of(row, info) for row, info in zip(x, infos, strict=True)]
 
     def sensitivity(
-        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
     ) -> tuple[FloatArray, dict[str, FloatArray]] | None:
         """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else (found[0].x, found[0].tips)
 
     def body_sensitivity(
-        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
     ) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[0].bodies
 
     def stability(
-        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
     ) -> CompiledStability | None:
         """Whether an equilibrium is stable, for loads with a potential; None where x is no equilibrium.
 
         Args:
-            inputs: stacked inputs.
+            inputs: by name or stacked.
             x: the equilibrium for these inputs and parameters.
             parameters: by name or stacked; the scene's own by default.
 
         Raises:
             AttributeError: the folder was exported without stability.
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
         if stability_files(self._names.name)[0] not in self.manifest["files"]:
             raise AttributeError("export the folder with stability: export(..., stability=True)")
-        given = vector(inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         unknowns = vector(x, self.size, "x")
         room = (ctypes.c_char * self._function("stability_workspace_size")())()
         info = StabilityInfo()
@@ -263,27 +260,27 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return CompiledStability(info.smallest_eigenvalue, info.negative, info.zero, VERDICTS[info.verdict])
 
     def parameter_sensitivity(
-        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
     ) -> Sensitivity | None:
         """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium.
 
         Args:
-            inputs: stacked inputs.
+            inputs: by name or stacked.
             x: the equilibrium for these inputs and parameters.
             parameters: by name or stacked; the scene's own by default.
 
         Raises:
             ValueError: an argument is of the wrong size.
-            SceneError: the parameters are not those of the scene.
+            SceneError: inputs or parameters are not those of the scene.
         """
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[1]
 
     def _sensitivities(
-        self, inputs: npt.ArrayLike, x: npt.ArrayLike, parameters: ParameterValues
+        self, inputs: InputValues, x: npt.ArrayLike, parameters: ParameterValues
     ) -> tuple[Sensitivity, Sensitivity] | None:
         """Derivatives with inputs and with parameters, which have no column where there are none."""
-        given = vector(inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         unknowns = vector(x, self.size, "x")
         p = self.parameters.passed(parameters)
         rods, bodies = self._names.rods, self._names.bodies

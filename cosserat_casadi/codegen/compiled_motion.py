@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.input_values import InputValues, ListedInputs
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
@@ -136,7 +137,7 @@ class StepMemory:
 class _Given:
     """What a step is given: inputs at its start, their rates and accelerations, parameters."""
 
-    inputs: npt.ArrayLike
+    inputs: InputValues
     inputs_rate: npt.ArrayLike | None
     inputs_acceleration: npt.ArrayLike | None
     parameters: ParameterValues
@@ -199,8 +200,8 @@ class CompiledMotion(ABC):
 
     @property
     @abstractmethod
-    def defaults(self) -> FloatArray:
-        """The scene's own inputs, stacked."""
+    def inputs(self) -> ListedInputs:
+        """Names, units and default values of the inputs."""
 
     @property
     @abstractmethod
@@ -219,7 +220,7 @@ class CompiledMotion(ABC):
 
     def rest(
         self,
-        inputs: npt.ArrayLike | None = None,
+        inputs: InputValues = None,
         x: npt.ArrayLike | None = None,
         *,
         parameters: ParameterValues = None,
@@ -227,11 +228,11 @@ class CompiledMotion(ABC):
         """A state at rest; None where supports, joints or cables are not closed there.
 
         Args:
-            inputs: stacked inputs; the scene's own by default.
+            inputs: by name or stacked; the scene's own by default.
             x: unknowns, such as of an equilibrium; the unloaded scene by default.
             parameters: by name or stacked.
         """
-        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         start = vector(np.zeros(self.size) if x is None else x, self.size, "x")
         state = np.zeros(3 * self.size)
         p = self.parameters.passed(parameters)
@@ -242,7 +243,7 @@ class CompiledMotion(ABC):
         self,
         state: StepState,
         dt: float,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
@@ -255,7 +256,7 @@ class CompiledMotion(ABC):
         Args:
             state: at the start.
             dt: length of the step, s.
-            inputs: at the start, shape (inputs,).
+            inputs: at the start, by name or stacked, shape (inputs,).
             inputs_rate: at the start, shape (inputs,), per s; none by default.
             inputs_acceleration: in the step, shape (inputs,), per s²; none by default. A base or a length whose rate
                 changes from step to step needs it, for its inertia forces.
@@ -271,7 +272,7 @@ class CompiledMotion(ABC):
         self,
         state: StepState,
         dt: float,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
@@ -292,14 +293,14 @@ class CompiledMotion(ABC):
 
     def _columns(self, size: int) -> _Columns:
         """Room for columns of so many entries."""
-        count = len(self.defaults)
+        count = self.inputs.size
         by_inputs, by_rate, by_acceleration = (np.zeros((count, size)) for _ in range(3))
         return _Columns(by_inputs, by_rate, by_acceleration, np.zeros((self.parameters.size, size)))
 
     def inverse_dynamics(
         self,
         state: StepState,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
@@ -308,7 +309,7 @@ class CompiledMotion(ABC):
         """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
         residual = np.zeros(self.size)
         p = self.parameters.passed(parameters)
-        given = [self._given(inputs), *p, self._given(inputs_rate), self._given(inputs_acceleration)]
+        given = [pointer(self.inputs.stacked(inputs)), *p, self._rates(inputs_rate), self._rates(inputs_acceleration)]
         # A slice of a table is no vector in memory: C reads what lies side by side.
         named = {"x": state.x, "v": state.v, "a": state.a}
         arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
@@ -318,7 +319,7 @@ class CompiledMotion(ABC):
     def linearise(
         self,
         state: StepState,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         inputs_rate: npt.ArrayLike | None = None,
         *,
         parameters: ParameterValues = None,
@@ -328,7 +329,7 @@ class CompiledMotion(ABC):
         columns = self._columns(self.size)
         results = [stiffness, damping, mass, *columns.in_order]
         p = self.parameters.passed(parameters)
-        arguments = [pointer(self._packed(state)), self._given(inputs), *p, self._given(inputs_rate)]
+        arguments = [pointer(self._packed(state)), pointer(self.inputs.stacked(inputs)), *p, self._rates(inputs_rate)]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
         return LinearMotion(stiffness.T, damping.T, mass.T, **columns.as_matrices)
 
@@ -345,15 +346,15 @@ class CompiledMotion(ABC):
         """A step by one of the two functions in C, and what it returned."""
         chosen = options or StepOptions()
         # It must outlive the call: the struct alone does not keep it.
-        acceleration = self._given(given.inputs_acceleration)
+        acceleration = self._rates(given.inputs_acceleration)
         budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts, acceleration)
         packed = self._packed(state)
         info = _Info()
         room = memory or self.step_memory()
         status = self._motion_function(word)(
-            pointer(self._vector(given.inputs)),
+            pointer(self.inputs.stacked(given.inputs)),
             *self.parameters.passed(given.parameters),
-            self._given(given.inputs_rate),
+            self._rates(given.inputs_rate),
             ctypes.c_double(dt),
             pointer(packed),
             room.kept,
@@ -373,12 +374,9 @@ class CompiledMotion(ABC):
         )
         return end, STATUSES[status]
 
-    def _vector(self, inputs: npt.ArrayLike) -> FloatArray:
-        return vector(inputs, len(self.defaults), "inputs")
-
-    def _given(self, inputs: npt.ArrayLike | None) -> Any:
-        """Inputs, their rates or accelerations as an argument in C, which is null for zero."""
-        return None if inputs is None else pointer(self._vector(inputs))
+    def _rates(self, rates: npt.ArrayLike | None) -> Any:
+        """Rates or accelerations of the inputs as an argument in C, which is null for zero."""
+        return None if rates is None else pointer(vector(rates, self.inputs.size, "rates of inputs"))
 
     def _packed(self, state: StepState) -> FloatArray:
         """A state as its struct in C."""

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.codegen.input_values import ListedInputs, listed_values
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -23,6 +24,16 @@ class LoadedLibrary:
 
     library: Path
     manifest: dict[str, Any]
+
+    @cached_property
+    def inputs(self) -> ListedInputs:
+        """Names, units and default values of the inputs."""
+        return ListedInputs(listed_values(self.manifest["inputs"]))
+
+    @property
+    def defaults(self) -> FloatArray:
+        """The scene's own inputs, stacked."""
+        return self.inputs.pack()
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:

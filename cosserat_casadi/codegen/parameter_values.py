@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.input_values import ListedValue, listed_values
 from cosserat_casadi.codegen.plain import pointer
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.stacked import StackedLayout
@@ -22,29 +23,7 @@ ParameterValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 
 
 @dataclass(frozen=True)
-class ListedParameter:
-    """A parameter of an exported folder.
-
-    Attributes:
-        name: as the scene spells it.
-        unit: SI unit, "1" without.
-        default: the scene's value, shape (components, places along the rod).
-    """
-
-    name: str
-    unit: str
-    default: FloatArray
-
-    def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value but for its range, which the scene judges."""
-        if value.size != self.default.size:
-            yield Problem(self.name, f"must have {self.default.size} numbers, got {value.size}")
-        elif not np.all(np.isfinite(value)):
-            yield Problem(self.name, f"must be finite, got {value.tolist()}")
-
-
-@dataclass(frozen=True)
-class ListedParameters(StackedLayout[ListedParameter]):
+class ListedParameters(StackedLayout[ListedValue]):
     """The parameters of an exported folder, stacked into one vector p.
 
     Attributes:
@@ -131,8 +110,4 @@ class ListedParameters(StackedLayout[ListedParameter]):
 
 def listed_parameters(entries: Sequence[Mapping[str, Any]], scene: str = "") -> ListedParameters:
     """The parameters of a manifest, with the text of the scene that judges them."""
-    parameters = []
-    for entry in entries:
-        default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
-        parameters.append(ListedParameter(entry["name"], entry["unit"], default))
-    return ListedParameters(tuple(parameters), scene)
+    return ListedParameters(listed_values(entries), scene)

@@ -70,6 +70,9 @@ def length_faults(where: str, header: list[str], row: list[str]) -> list[Problem
 
 def finite_number(text: str) -> float | None:
     """The number that a text is; None where it is none, or not finite."""
+    if "_" in text:
+        # Python reads 1_0 as ten; in a table it is a slip.
+        return None
     try:
         value = float(text)
     except ValueError:

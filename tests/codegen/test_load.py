@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, load, solve
+from cosserat_casadi import Compiled, ExportError, Model, Scene, SceneError, build, discretise, export, load, solve
 from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.cache import cache_folder
 from cosserat_casadi.codegen.compiler import FLAGS
@@ -432,6 +432,32 @@ def test_folder_without_derivatives_gives_solver_and_values(bare: tuple[Model, C
 
 
 @needs_compiler
+def test_inputs_by_name_are_those_that_are_stacked(pair: Pair) -> None:
+    loaded = pair.loaded
+    force = 1.2 * pair.model.inputs.unpack(pair.model.pack())["push.force"]
+    named = {"push.force": force}
+    stacked = pair.model.pack(named)
+    found = loaded.solve(named)
+    assert found.converged
+    assert_allclose(loaded.inputs.stacked(named), stacked, rtol=0, atol=0)
+    assert_allclose(found.x, loaded.solve(stacked).x, rtol=0, atol=0)
+    assert not np.allclose(found.x, loaded.solve().x, rtol=1e-3, atol=0)
+    by_name, by_vector = loaded.sensitivity(named, found.x), loaded.sensitivity(stacked, found.x)
+    assert by_name is not None
+    assert by_vector is not None
+    assert_allclose(by_name[0], by_vector[0], rtol=0, atol=0)
+    followed = loaded.follow({}, named, loaded.solve().x)
+    assert_allclose(followed.x, loaded.follow(loaded.defaults, stacked, loaded.solve().x).x, rtol=0, atol=0)
+
+
+def test_inputs_that_are_none_of_the_folder_are_refused_by_name(pair: Pair) -> None:
+    with pytest.raises(SceneError, match=r"pull\.force.*is not an input.*push\.force") as refused:
+        pair.loaded.solve({"pull.force": [0.1, 0, 0], "push.force": [0.1, 0]})
+    assert "push.force: must have 3 numbers, got 2" in str(refused.value)
+    with pytest.raises(ValueError, match="inputs must have"):
+        pair.loaded.solve([0.1, 0.2])
+
+
 def test_derivatives_that_the_folder_lacks_are_refused_with_a_remedy(bare: tuple[Model, Compiled]) -> None:
     model, loaded = bare
     x = ca.MX.sym("x", model.size)

@@ -171,6 +171,7 @@ FAULTY_FILES = {
     "missing_column": ("t,value.x,value.y\n0,1,2\n", "has no column 'value.z'"),
     "no_time": ("value.x,value.y,value.z\n1,2,3\n", "has no column 't'"),
     "another_column": ("t,value.x,value.y,value.z,speed\n0,1,2,3,4\n", "has a column 'speed'"),
+    "parted_number": (CSV.replace("6", "6_0"), "line 3: value.z must be a finite number, got ' 6_0'"),
     "not_a_number": (CSV.replace("6", "nan"), "line 3: value.z must be a finite number, got ' nan'"),
     "short_row": (CSV + "1, 2\n", "line 4: has 2 values for 4 columns"),
     "not_increasing": (CSV + "\n0.5, 1, 1, 1\n", "line 5: t must be > 0.5, the time before it, got 0.5"),

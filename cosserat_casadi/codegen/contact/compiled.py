@@ -7,20 +7,19 @@ import itertools
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
+from cosserat_casadi.codegen.input_values import InputValues
 from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, check_folder, input_count, is_sound, read_manifest
-from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.errors import ExportError, Problem
@@ -111,11 +110,6 @@ class CompiledContact(LoadedLibrary):
         manifest: what the folder says of itself.
     """
 
-    @cached_property
-    def defaults(self) -> FloatArray:
-        """The scene's own inputs, stacked."""
-        return np.concatenate([np.zeros(0), *[entry["value"] for entry in self.manifest["inputs"]]])
-
     @property
     def rods(self) -> list[str]:
         """Names of the rods, in order."""
@@ -134,19 +128,20 @@ class CompiledContact(LoadedLibrary):
         return self._answer(Outcome.CONVERGED, state, info, None)
 
     def solve(
-        self, inputs: npt.ArrayLike | None = None, start: CompiledContactSolution | None = None
+        self, inputs: InputValues = None, start: CompiledContactSolution | None = None
     ) -> CompiledContactSolution:
         """Equilibrium by the solver in C.
 
         Args:
-            inputs: stacked inputs; the scene's own by default.
+            inputs: by name or stacked; the scene's own by default.
             start: a solution from which the inputs move on; that of the scene's own inputs by default, and where the
                 way from it does not lead to the inputs.
 
         Raises:
+            SceneError: names of inputs are not those of the scene.
             ValueError: the inputs are of the wrong size.
         """
-        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         state = self._room() if start is None else self._state(start)
         info = ContactInfo()
         status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
@@ -154,7 +149,7 @@ class CompiledContact(LoadedLibrary):
 
     def track(
         self,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         start: CompiledContactSolution,
         *,
         max_iterations: int | None = None,
@@ -163,19 +158,20 @@ class CompiledContact(LoadedLibrary):
         """One turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: stacked inputs.
+            inputs: by name or stacked.
             start: the solution of the turn before.
             max_iterations: most Newton steps; by default what the header says.
             max_parts: most parts of the way of the inputs; likewise.
 
         Raises:
+            SceneError: names of inputs are not those of the scene.
             ValueError: the inputs are of the wrong size, or one budget is given without the other.
         """
-        given = vector(inputs, len(self.defaults), "inputs")
+        given = self.inputs.stacked(inputs)
         options = budget(ContactOptions, max_iterations, max_parts)
         state = self._state(start)
         info = ContactInfo()
-        columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
+        columns = np.zeros((len(self.rods), self.inputs.size, POSE_SIZE))
         track = self._function("track")
         status = track(pointer(given), state, None, options, pointer(columns), self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
@@ -187,7 +183,7 @@ class CompiledContact(LoadedLibrary):
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
-        columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
+        columns = np.zeros((len(self.rods), self.inputs.size, POSE_SIZE))
         status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
         return None if status != 0 else by_tip(self.rods, columns)
 

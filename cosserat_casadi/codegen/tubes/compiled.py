@@ -6,7 +6,6 @@ import ctypes
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.input_values import InputValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
@@ -88,11 +88,6 @@ class CompiledTubes(LoadedLibrary):
         manifest: what the folder says of itself.
     """
 
-    @cached_property
-    def defaults(self) -> FloatArray:
-        """The scene's own inputs."""
-        return np.concatenate([entry["value"] for entry in self.manifest["inputs"]])
-
     @property
     def tubes(self) -> list[str]:
         """Names of the tubes, in order."""
@@ -103,35 +98,36 @@ class CompiledTubes(LoadedLibrary):
         """Number of unknowns."""
         return int(self.manifest["unknowns"])
 
-    def solve(
-        self, inputs: npt.ArrayLike | None = None, start: CompiledTubesSolution | None = None
-    ) -> CompiledTubesSolution:
+    def solve(self, inputs: InputValues = None, start: CompiledTubesSolution | None = None) -> CompiledTubesSolution:
         """Equilibrium by the solver in C.
 
         Args:
-            inputs: rotation and translation of each tube, then the loads; the scene's own by default.
+            inputs: by name, or stacked: rotation and translation of each tube, then the loads; the scene's own by
+                default.
             start: a solution to begin at; straight tubes by default, and where that does not lead to the inputs.
 
         Raises:
+            SceneError: names of inputs are not those of the scene.
             ValueError: the inputs are of the wrong size.
         """
-        given = self._given(inputs)
+        given = self.inputs.stacked(inputs)
         x = self._start(start)
         info = TubeInfo()
         status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         return self._answer(STATUSES[status], given, x, info)
 
-    def follow(self, start: CompiledTubesSolution, inputs: npt.ArrayLike) -> CompiledTubesSolution:
+    def follow(self, start: CompiledTubesSolution, inputs: InputValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
 
         Args:
             start: the other.
-            inputs: at the end of the line.
+            inputs: at the end of the line, by name or stacked.
 
         Raises:
+            SceneError: names of inputs are not those of the scene.
             ValueError: the inputs are of the wrong size.
         """
-        given = self._given(inputs)
+        given = self.inputs.stacked(inputs)
         x = self._start(start)
         info = TubeInfo()
         arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
@@ -140,7 +136,7 @@ class CompiledTubes(LoadedLibrary):
 
     def track(
         self,
-        inputs: npt.ArrayLike,
+        inputs: InputValues,
         start: CompiledTubesSolution,
         *,
         derivatives: bool = True,
@@ -150,16 +146,17 @@ class CompiledTubes(LoadedLibrary):
         """One turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: of the turn.
+            inputs: of the turn, by name or stacked.
             start: the solution of the turn before.
             derivatives: whether those of the tips are wanted.
             max_iterations: most Newton steps; by default what the header says.
             max_continuation_steps: most points between the last inputs and these; likewise.
 
         Raises:
+            SceneError: names of inputs are not those of the scene.
             ValueError: the inputs are of the wrong size, or one budget is given without the other.
         """
-        given = self._given(inputs)
+        given = self.inputs.stacked(inputs)
         options = budget(TubeOptions, max_iterations, max_continuation_steps)
         x = self._start(start)
         memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
@@ -180,16 +177,13 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("solve_sensitivity")(*arguments)
         return None if status != 0 else by_tip(self.tubes, columns)
 
-    def residual(self, x: npt.ArrayLike, inputs: npt.ArrayLike) -> FloatArray:
+    def residual(self, x: npt.ArrayLike, inputs: InputValues) -> FloatArray:
         """The residual, shape (unknowns,)."""
-        given = self._given(inputs)
+        given = self.inputs.stacked(inputs)
         result = np.zeros(self.unknowns)
         own = vector(x, self.unknowns, "x")
         self._function("residual")(pointer(own), pointer(given), pointer(result), self._workspace())
         return result
-
-    def _given(self, inputs: npt.ArrayLike | None) -> FloatArray:
-        return vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
 
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
         return np.zeros(self.unknowns) if start is None else start.x.copy()

@@ -1,0 +1,82 @@
+"""Named values of an exported folder, as its manifest lists them, and its inputs as arguments in C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.plain import vector
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.stacked import StackedLayout
+
+InputValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
+"""By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
+
+
+@dataclass(frozen=True)
+class ListedValue:
+    """An input or a parameter of an exported folder.
+
+    Attributes:
+        name: as the scene spells it.
+        unit: SI unit, "1" without.
+        default: the scene's value, shape (components, places along the rod or degrees).
+    """
+
+    name: str
+    unit: str
+    default: FloatArray
+
+    def faults(self, value: FloatArray) -> Iterator[Problem]:
+        """What is wrong with a value but for its range, which the scene judges."""
+        if value.size != self.default.size:
+            yield Problem(self.name, f"must have {self.default.size} numbers, got {value.size}")
+        elif not np.all(np.isfinite(value)):
+            yield Problem(self.name, f"must be finite, got {value.tolist()}")
+
+
+@dataclass(frozen=True)
+class ListedInputs(StackedLayout[ListedValue]):
+    """The inputs of an exported folder, stacked into one vector."""
+
+    what = "an input"
+    several = "inputs"
+
+    def stacked(self, values: InputValues = None, name: str = "inputs") -> FloatArray:
+        """All inputs as one vector, shape (size,).
+
+        Args:
+            values: by name or stacked.
+            name: what a message calls them.
+
+        Raises:
+            SceneError: a name is unknown, or its value has another size or is not finite.
+            ValueError: there are too few or too many numbers; those that are not finite are the solver's to judge.
+        """
+        if values is None:
+            return self._scene_values
+        if isinstance(values, Mapping):
+            return self.pack(values)
+        return vector(values, self.size, name)
+
+    @cached_property
+    def _scene_values(self) -> FloatArray:
+        values = self.pack()
+        # Solutions keep what they were found for: nobody may change it under them.
+        values.setflags(write=False)
+        return values
+
+
+def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ...]:
+    """Inputs or parameters of a manifest."""
+    values = []
+    for entry in entries:
+        default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
+        values.append(ListedValue(entry["name"], entry["unit"], default))
+    return tuple(values)
