@@ -75,7 +75,7 @@ class CompiledSolution:
         outcome: how it ended.
         iterations: Newton steps tried.
         jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual.
+        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
         load_factor: share of the load that x carries.
     """
 
