@@ -19,8 +19,6 @@ from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, 
 from tests.commands import WIRE
 from tests.families import mostly_slow
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 SCENE = (
     """
 schema = 1
@@ -138,8 +136,8 @@ COMMANDS = {
 UNTITLED = ("tune", "inverse_table", "new", "examples", "bench")
 """Those that do not print the title of a scene."""
 
-WRITING = mostly_slow([name for name in COMMANDS if name != "check"], quick=["solve", "sweep", "export"])
-"""Commands that write files: one that draws, one that goes on where it was stopped, one that writes a folder."""
+WRITERS = [name for name in COMMANDS if name != "check"]
+"""Commands that write files."""
 
 UNREADY = {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 """What makes a terminal know ASCII alone: Python's own ways round it are closed."""
@@ -191,7 +189,7 @@ def new_files(folder: Path) -> list[str]:
     return sorted({path.name for path in folder.rglob("*")} - set(GIVEN))
 
 
-@pytest.mark.parametrize("command", ["check", *WRITING])
+@pytest.mark.parametrize("command", mostly_slow(COMMANDS, quick=["check", "solve"]))
 def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
     code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
     # The target lies beside the curve that the tip can move on.
@@ -214,8 +212,9 @@ def fill_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (SMALLEST_FILE, SMALLEST_FILE))
 
 
-@pytest.mark.parametrize("command", WRITING)
+@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve", "sweep", "export"]))
 def test_full_disk(folder: Path, command: str) -> None:
+    # One that draws, one that goes on where it was stopped and one that writes a folder are run every time.
     code, _, said = ended(start(COMMANDS[command], folder, limit=fill_disk))
     assert code == NOT_WRITTEN, said
     assert "could not be written:" in " ".join(said.split())
@@ -245,7 +244,7 @@ def test_a_reader_that_has_seen_enough(folder: Path) -> None:
     assert "Exception ignored" not in said
 
 
-@pytest.mark.parametrize("command", WRITING)
+@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve"]))
 def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
     """/proc takes no file, even from a user who may write anywhere."""
     arguments = [f"/proc/{word}" if word.startswith("out") else word for word in COMMANDS[command]]

@@ -181,8 +181,11 @@ def test_a_motion_goes_on_from_a_result_in_contact(tmp_path: Path) -> None:
     assert run.exit_code == 0, run.output
     assert json.loads(result.read_text())["contacts"][0]["kind"] == "line"
     motion = tmp_path / "motion.json"
-    run = CliRunner().invoke(app, ["simulate", str(scene), "--from", str(result), "--output", str(motion)])
+    figure = tmp_path / "motion.png"
+    files = ["--output", str(motion), "--plot", str(figure)]
+    run = CliRunner().invoke(app, ["simulate", str(scene), "--from", str(result), *files])
     assert run.exit_code == 0, run.output
+    assert figure.stat().st_size > 0
     data = json.loads(motion.read_text())
     assert data["contact"]["row"][0] == 0
     assert all(data["contact"]["lies"])
