@@ -45,12 +45,13 @@ LONG = (
     "cosserat simulate examples/dropped_rod.toml",
     "cosserat simulate examples/rod_hits_floor.toml",
     "cosserat simulate examples/tendon_robot_move.toml",
+    "cosserat solve examples/finger_on_finger.toml",
     "cosserat solve examples/robot_leans_on_wall.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 
-LONG_PYTHON = ("environment = ReachEnvironment(",)
-"""What a block holds that takes as long: tests/environments has quick tests of it."""
+LONG_PYTHON = ("environment = ReachEnvironment(", "examples/robot_leans_on_wall.toml")
+"""What a block holds that takes as long: tests/environments and tests/contact have quick tests of it."""
 
 LANGUAGES = {"python", "sh", "toml", "c", "csv", "text"}
 
