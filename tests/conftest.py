@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.once import once
+
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT.parent / "shared" / "cases"
 
@@ -24,18 +26,34 @@ def examples() -> list[Path]:
 
 
 @pytest.fixture(scope="session")
-def quick_compiler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Libraries lie in a folder of these tests; what they compute matters, not how fast."""
-    folder = tmp_path_factory.mktemp("compiler")
-    script = folder / "cc"
-    script.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" -O0\n')
-    script.chmod(0o755)
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of one test run share."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "workshop"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_compiler(workshop: Path) -> Iterator[None]:
+    """What libraries compute matters, not how fast; they lie in the folder of these tests, not in the user's.
+
+    The processes of a test run share libraries, and so the compiler: its file tells whether a library is its own.
+    """
+    script = workshop / "cc"
+    once(script, _write_compiler)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", str(script))
-        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+        patch.setenv("XDG_CACHE_HOME", str(workshop / "cache"))
         patch.setenv("OPENBLAS_NUM_THREADS", "1")
         patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
         yield
+
+
+def _write_compiler(path: Path) -> None:
+    """A script that compiles without optimisation."""
+    path.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" -O0\n')
+    path.chmod(0o755)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -9,8 +9,6 @@ from cosserat_casadi.scene.writing import scene_text
 from tests.conftest import ROOT
 from tests.pages import DOCS, blocks, run_python
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 PAGE = DOCS / "control.md"
 
 

@@ -240,7 +240,6 @@ def _written(file: Path, text: str) -> Path:
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no C compiler")
-@pytest.mark.usefixtures("quick_compiler")
 def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _written(folder / "finger.toml", SCENE.replace("tolerance = 1e-6", "modes = 3, nodes = 6, tolerance = 0.05"))
     assert cosserat(monkeypatch, "export", "finger.toml", "--output", "finger", "--derivatives") == 0

@@ -23,8 +23,6 @@ ELSEWHERE = {
 }
 """Pages that a test of their own runs."""
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 ONE_PROGRAM = ("extending.md",)
 """Pages whose blocks of Python go on from each other, and register kinds that no other test may meet."""
 
@@ -37,15 +35,23 @@ LONG = (
     "cosserat check examples/nitinol_wire.toml --time",
     "cosserat modes examples/nitinol_wire.toml",
     "cosserat tune examples/nitinol_wire.toml --tolerance",
-    "cosserat estimate examples/felt_loads.toml",
-    "cosserat identify examples/wire_from_shapes.toml --hold-out",
+    "cosserat estimate examples/",
+    "cosserat identify examples/wire_from_shapes.toml",
     "cosserat export examples/tendon_robot_move.toml",
     "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",
     "cosserat path examples/loaded_tubes.toml",
+    "cosserat simulate examples/bouncing_rod.toml",
+    "cosserat simulate examples/dropped_rod.toml",
+    "cosserat simulate examples/rod_hits_floor.toml",
+    "cosserat simulate examples/tendon_robot_move.toml",
+    "cosserat solve examples/finger_on_finger.toml",
     "cosserat solve examples/robot_leans_on_wall.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
+
+LONG_PYTHON = ("environment = ReachEnvironment(", "examples/robot_leans_on_wall.toml")
+"""What a block holds that takes as long: tests/environments and tests/contact have quick tests of it."""
 
 LANGUAGES = {"python", "sh", "toml", "c", "csv", "text"}
 
@@ -65,7 +71,25 @@ def of_all(language_or_commands: str) -> list[object]:
     return found
 
 
-@pytest.mark.parametrize("code", of_all("python"))
+def python_blocks() -> list[object]:
+    """Blocks of Python that tests run, those of many seconds marked slow."""
+    return [
+        pytest.param(*case.values, id=case.id, marks=pytest.mark.slow if _is_long(case.values[0]) else ())
+        for case in of_all("python")
+    ]
+
+
+def _is_long(code: str) -> bool:
+    return any(words in code for words in LONG_PYTHON)
+
+
+def test_every_long_block_is_on_a_page() -> None:
+    texts = [text for page in RUN_HERE for text in blocks(page, "python")]
+    for words in LONG_PYTHON:
+        assert any(words in text for text in texts), words
+
+
+@pytest.mark.parametrize("code", python_blocks())
 def test_python_runs(code: str) -> None:
     run_python(code)
 

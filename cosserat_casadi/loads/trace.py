@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -17,6 +18,12 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.section_kernel import RATES, SectionKernel
 
 KERNEL_ARGUMENTS = ["position", "rotation", "parameters", "data"]
+
+REMEMBERED = 64
+"""Kernels that are kept: those of the loads of some scenes, each a few kilobytes."""
+
+Patterns = tuple[tuple[str, tuple[int, ...]], ...]
+"""Values by name with their sparsity patterns as CasADi compresses them."""
 
 NO_RATES: Mapping[str, Matrix] = MappingProxyType({})
 """Of a kernel at rest."""
@@ -87,7 +94,7 @@ class TracedLoad:
 
 
 def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
-    """The kernel of a load.
+    """The kernel of a load, made once for each load: it differs neither with its inputs nor with the discretisation.
 
     Args:
         member: the kind of load.
@@ -96,13 +103,30 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
             stored is read.
         data_size: how many numbers of a section it depends on.
     """
+    patterns = tuple((name, tuple(value.sparsity().compress())) for name, value in values.items())
+    # Expressions belong to a model, which would be held for good; records that change cannot be compared.
+    if expressions_in(load) or not _has_hash(load):
+        return _trace(member, load, patterns, data_size)
+    return _trace_once(member, load, patterns, data_size)
+
+
+def _has_hash(load: Any) -> bool:
+    try:
+        hash(load)
+    except TypeError:
+        return False
+    return True
+
+
+def _trace(member: Load[Any], load: Any, patterns: Patterns, data_size: int) -> TracedLoad:
+    """The kernel of a load whose values have these names and stored entries."""
     section = Section(
         position=ca.SX.sym("position", 3),
         rotation=ca.SX.sym("rotation", 3, 3),
         data=ca.SX.sym("data", data_size),
     )
     # Entries that are zero for good have no symbol, so that what they would make is structurally zero too.
-    symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
+    symbols = {name: ca.SX.sym(name, ca.Sparsity.compressed(pattern)) for name, pattern in patterns}
     written = load
     if expressions_in(load):
         written = with_expressions(load, symbols)
@@ -121,6 +145,9 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
     kernel = _kernel(section, stored(symbols), force, moment, energy)
     moving = _moving_kernel(member, written, section, symbols)
     return TracedLoad(member, load, kernel, moving, columns, pose_free, fixed)
+
+
+_trace_once = lru_cache(maxsize=REMEMBERED)(_trace)
 
 
 def _moving_kernel(

@@ -9,7 +9,7 @@ member, kept as the oracle. See docs/theory.md section 4.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 
 import casadi as ca
 
@@ -238,17 +238,21 @@ def section_quaternions(
     pattern = interval_kernels(rod).increment.sparsity_out(0)
     start = ca.project(IDENTITY, pattern)
     count = intervals.quaternion.shape[1]
-    later = _chain(pattern).mapaccum(count)(start, intervals.quaternion)
+    chain = _chain(tuple(pattern.compress()), count)
+    later = chain(start, intervals.quaternion)
     quaternions: Matrix = ca.horzcat(start, later)
     return quaternions
 
 
-def _chain(pattern: ca.Sparsity) -> ca.Function:
-    """One step of the product of quaternions that share a sparsity pattern closed under products."""
+@lru_cache(maxsize=64)
+def _chain(entries: tuple[int, ...], count: int) -> ca.Function:
+    """Products of so many quaternions one after the other, which share a pattern that is closed under products."""
+    pattern = ca.Sparsity.compressed(entries)
     rotation = ca.SX.sym("rotation", pattern)
     increment = ca.SX.sym("increment", pattern)
     product = ca.project(quaternion_product(rotation, increment), pattern)
-    return ca.Function("chain", [rotation, increment], [product])
+    step = ca.Function("chain", [rotation, increment], [product])
+    return step.mapaccum(count)
 
 
 def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:

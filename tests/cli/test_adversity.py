@@ -22,8 +22,6 @@ from cosserat_casadi.cli.terminal import HANDLER, prepare_streams
 from tests.commands import WIRE
 from tests.families import mostly_slow
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 SCENE = (
     """
 schema = 1
@@ -172,8 +170,8 @@ READING = ("check", "check_time", "docs")
 UNTITLED = ("docs", "export_fmu", "tune", "inverse_table", "new", "examples", "bench")
 """Those that do not print the title of a scene."""
 
-WRITING = mostly_slow([name for name in COMMANDS if name not in READING], quick=["solve", "sweep", "export"])
-"""Commands that write files: one that draws, one that goes on where it was stopped, one that writes a folder."""
+WRITERS = [name for name in COMMANDS if name not in READING]
+"""Commands that write files."""
 
 VIEW = ["view", "wire.toml", "--no-browser"]
 """The command that goes on until it is ended."""
@@ -233,7 +231,7 @@ def test_every_command_is_called() -> None:
     assert called | {VIEW[0]} == set(get_command(app).commands)
 
 
-@pytest.mark.parametrize("command", [*mostly_slow(READING, quick=["check"]), *WRITING])
+@pytest.mark.parametrize("command", mostly_slow(COMMANDS, quick=["check", "solve"]))
 def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
     code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
     # The target lies beside the curve that the tip can move on.
@@ -270,8 +268,9 @@ def fill_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (SMALLEST_FILE, SMALLEST_FILE))
 
 
-@pytest.mark.parametrize("command", WRITING)
+@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve", "sweep", "export"]))
 def test_full_disk(folder: Path, command: str) -> None:
+    # One that draws, one that goes on where it was stopped and one that writes a folder are run every time.
     code, _, said = ended(start(COMMANDS[command], folder, limit=fill_disk))
     assert code == NOT_WRITTEN, said
     assert "could not be written:" in " ".join(said.split())
@@ -301,7 +300,7 @@ def test_a_reader_that_has_seen_enough(folder: Path) -> None:
     assert "Exception ignored" not in said
 
 
-@pytest.mark.parametrize("command", WRITING)
+@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve"]))
 def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
     """/proc takes no file, even from a user who may write anywhere."""
     arguments = [f"/proc/{word}" if word.startswith("out") else word for word in COMMANDS[command]]

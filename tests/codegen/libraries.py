@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import ctypes
-import fcntl
 import hashlib
 import json
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +18,7 @@ import numpy as np
 
 from cosserat_casadi import Compiled, Model, Scene, Solution, build, discretise, export, solve
 from cosserat_casadi.codegen.names import Names, scene_names
+from tests.once import once
 from tests.scenes import WEIGHT, push, rod, scene, three_cables
 
 HARNESS = Path(__file__).parent / "harness"
@@ -218,24 +217,6 @@ def _compile(source: Path, log: Path, target: Path, *flags: str) -> None:
     done = attempt("gcc", *GENERATED, *flags, "-c", source, "-o", target)
     assert done.returncode == 0, done.stderr
     log.write_text(done.stderr)
-
-
-def once(target: Path, make: Callable[..., Any], *arguments: Any) -> None:
-    """Make a file or a folder, unless another test or another process has."""
-    with _locked(target.with_name(f"{target.name}.lock")):
-        if not target.exists():
-            unfinished = target.with_name(f"{target.name}.part{target.suffix}")
-            if unfinished.is_dir():
-                shutil.rmtree(unfinished)
-            make(*arguments, unfinished)
-            unfinished.replace(target)
-
-
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    with path.open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
 
 
 def _digest(words: Sequence[str]) -> str:

@@ -25,7 +25,8 @@ EXACT = StepOptions(tolerance=1e-14, iterations=20)
 """Newton's method to rounding of positions; those of cables that pull hard have a few more."""
 
 
-COARSER = {"fixed joint": {"modes": 1, "nodes": 3}}
+FEWEST = {"modes": 1, "nodes": 3}
+COARSER = {"kirchhoff": FEWEST, "fixed joint": FEWEST}
 """What the compiler would take longest for is exported with fewer unknowns."""
 
 

@@ -22,8 +22,6 @@ from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
 from tests.commands import cosserat
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 SCENE = """
 schema = 1
 inputs = ["push.force", "flexor.tension", "finger.base.position"]

@@ -70,7 +70,7 @@ def model() -> Model:
 
 
 @pytest.fixture(scope="module")
-def fmu(model: Model, quick_compiler: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def fmu(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_fmu(model, tmp_path_factory.mktemp("fmu") / "finger.fmu", "finger")
 
 

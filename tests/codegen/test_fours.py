@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.operations import operations
@@ -254,13 +254,19 @@ int main(void) {
 """
 
 
-def test_results_that_nobody_asks_for(wire: Path, tmp_path: Path) -> None:
+def test_results_that_nobody_asks_for(tmp_path: Path) -> None:
     """Of three results only the first is given a place."""
     program = tmp_path / "one.c"
     program.write_text(ONE_OF_THREE)
-    size = model_of("reissner", "dead force and couple at the tip").size
-    flags = ["-std=c99", "-O0", "-g", "-fsanitize=address,undefined", f"-DSIZE={size}", f"-I{wire}"]
-    gcc(*flags, program, wire / "wire_kernels.c", "-lm", "-o", tmp_path / "one")
+    model = model_of("reissner", "dead force and couple at the tip")
+    names = scene_names("wire", model.scene)
+    # Sanitizers take the compiler long: it gets the one kernel that is called.
+    (igm,) = [kernel for kernel in kernels.kernels(model, names, None) if kernel.name() == names.kernel("igm")]
+    assert isinstance(igm, InFours)
+    for file, text in kernels.kernel_sources([igm], names).items():
+        (tmp_path / file).write_text(text)
+    flags = ["-std=c99", "-O0", "-g", "-fsanitize=address,undefined", f"-DSIZE={model.size}"]
+    gcc(*flags, program, tmp_path / "wire_kernels.c", "-lm", "-o", tmp_path / "one")
     assert run(tmp_path / "one").split() == ["3", "0"]
 
 

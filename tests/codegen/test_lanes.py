@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -29,14 +28,6 @@ BUDGET = 32_000
 """Bytes of the equations in lanes of a small planar rod with two parameters."""
 
 TENDON = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.01]}
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _quick_compiler() -> Any:
-    """Optimising takes the compiler far longer than running slowly takes the tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiler, "FLAGS", ("-O0", "-std=c99", "-fPIC"))
-        yield
 
 
 @dataclass(frozen=True)

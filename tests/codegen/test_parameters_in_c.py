@@ -367,7 +367,6 @@ def test_names_that_are_one_in_c_are_refused() -> None:
         library_names("robot", parameters=("joints_0.mass", "joints.0.mass"))
 
 
-@pytest.mark.usefixtures("quick_compiler")
 def test_values_by_name_are_judged_by_the_scene(tmp_path: Path) -> None:
     """As in Python; stacked ones are taken as they are."""
     model = RECIPES["ppinned"].model()

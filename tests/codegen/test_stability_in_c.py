@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -73,18 +72,12 @@ class Library:
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Library]:
-    """Libraries with stability by the name of their scene, compiled without optimising."""
+    """Libraries with stability by the name of their scene."""
     folder = tmp_path_factory.mktemp("stability")
-    script = folder / "cc"
-    script.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" -O0\n')
-    script.chmod(0o755)
 
     @cache
     def made(name: str) -> Library:
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setenv("CC", str(script))
-            patch.setenv("COSSERAT_CASADI_CACHE", str(folder / "cache"))
-            return Library(name, folder)
+        return Library(name, folder)
 
     return made
 

@@ -429,7 +429,6 @@ def test_parameters_move_the_rod_and_not_the_table() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("quick_compiler")
 def test_c_presses_and_judges_as_python_does(tmp_path: Path) -> None:
     """A table that is too soft: unknowns are those of Python, and the status says that they are no contact."""
     text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 2, nodes = 6")

@@ -31,7 +31,7 @@ from tests.conftest import ROOT
 
 
 @pytest.fixture(scope="module")
-def stroke(quick_compiler: None) -> Stroke:
+def stroke() -> Stroke:
     model = spring()
     return Stroke(model, compiled_spring(model))
 

@@ -197,7 +197,7 @@ upper = 1.0
 
 
 @pytest.fixture(scope="module")
-def on_slide(quick_compiler):
+def on_slide():
     """A finger whose base slides."""
     scene = 'inputs = ["finger.base.position", "flexor.tension"]\n' + MOVING
     return ReachEnvironment(parse_scene(scene), duration=0.5)

@@ -11,8 +11,6 @@ from cosserat_casadi import Model, build, discretise, scene_from_dict, solve
 from tests.families import mostly_slow
 from tests.scenes import cable_lengths, three_cables
 
-TURNS = 500
-
 
 @pytest.fixture(scope="module")
 def model() -> Model:
@@ -24,10 +22,12 @@ def refuse(*arguments: object) -> None:
     raise AssertionError("a warm solve began again from the unloaded scene")
 
 
-@pytest.mark.parametrize("step", [pytest.param(2e-4, marks=pytest.mark.slow), 6e-4])
+@pytest.mark.parametrize(("step", "turns"), mostly_slow([(2e-4, 500), (6e-4, 500), (6e-4, 120)], [(6e-4, 120)]))
 @pytest.mark.parametrize("kind", mostly_slow(["unknowns", "solution"], quick=["solution"]))
-def test_cables_moved_turn_after_turn(model: Model, step: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    lengths = cable_lengths(step, TURNS)
+def test_cables_moved_turn_after_turn(
+    model: Model, step: float, turns: int, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lengths = cable_lengths(step, turns)
     found = solve(model, model.inputs.unpack(lengths[0]))
     assert found.converged
     monkeypatch.setattr(importlib.import_module("cosserat_casadi.equilibrium.solve"), "load_path", refuse)

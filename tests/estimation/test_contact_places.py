@@ -20,8 +20,6 @@ from cosserat_casadi.results.estimate_file import estimate_result, estimate_tabl
 from cosserat_casadi.scene import Scene
 from tests.scenes import rod
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 SIGMA = 2.5e-5
 """Standard deviation of a coordinate, m. Force and place are told from each other by how a rod bends, little by little:
 where the shape says less the posterior is bent, and its linear model too narrow."""

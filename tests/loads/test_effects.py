@@ -129,7 +129,6 @@ def cosserat(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
     return run(app)
 
 
-@pytest.mark.usefixtures("quick_compiler")
 def test_check_names_them_and_their_prices(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

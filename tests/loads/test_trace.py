@@ -14,6 +14,9 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.loads.trace import has_potential, stored, traced
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.inputs import scene_value
+from cosserat_casadi.model.registry import EFFECTS
+from tests.scenes import push, scene
 
 Wrench = tuple[Matrix, Matrix]
 Kernel = Callable[[Section, Mapping[str, Matrix]], Wrench]
@@ -136,3 +139,32 @@ def test_energy_gives_the_wrench_and_its_derivative() -> None:
     assert trace.kernel.stiffness.nnz_out(0) == 0
     assert trace.kernel.energy is not None
     assert_allclose(float(trace.kernel.energy(*given)), -float(ca.dot(V, ca.DM([0.8, 0.1, 0.3]))), rtol=1e-15, atol=0)
+
+
+def test_a_kernel_is_made_once_for_what_it_depends_on() -> None:
+    member = EFFECTS["tip_wrench"]
+    (world,) = scene(push()).loads
+    (again,) = scene(push()).loads
+    (follower,) = scene(push(frame="body")).loads
+    values = {"force": ca.DM.ones(3), "moment": ca.DM(3, 1)}
+    kernel = traced(member, world, values).kernel
+    assert traced(member, again, {"force": 2 * ca.DM.ones(3), "moment": ca.DM(3, 1)}).kernel is kernel
+    assert traced(member, follower, values).kernel is not kernel
+    assert traced(member, world, {"force": ca.DM.ones(3), "moment": ca.DM.ones(3)}).kernel is not kernel
+    assert traced(member, world, values, 2).kernel is not kernel
+
+
+def test_kernels_of_loads_with_expressions_are_not_kept() -> None:
+    """Expressions belong to a model, and would hold it for good."""
+    magnetised = {"name": "coils", "kind": "magnet", "rod": "rod", "magnetisation": [0, 0, 2.0], "field": [0, 0.02, 0]}
+    (magnet,) = scene(magnetised).loads
+    strength = ca.MX.sym("strength")
+    values = {key: ca.DM(scene_value(magnet, key)) for key in magnet.inputs}
+    found = []
+    for magnetisation in ((0.0, 0.0, 2.0), (0.0, 0.0, strength)):
+        written = magnet.model_copy(update={"magnetisation": magnetisation})
+        first, second = (
+            traced(EFFECTS["magnet"], written, {**values, "magnetisation[2]": strength}, 1) for _ in range(2)
+        )
+        found.append(first.kernel is second.kernel)
+    assert found == [True, False]

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
+import pytest
+
 from cosserat_casadi.page.webassembly import VARIABLE
+from tests.commands import Ended, cosserat
 from tests.conftest import ROOT
 from tests.page.pages_made import EXPORT_COMMAND, wasm_compiler
 
 
-def export(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    program = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()"]
-    command = [*program, *EXPORT_COMMAND.split()[1:], *arguments]
-    everything = {**os.environ, **environment}
-    return subprocess.run(command, env=everything, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+def export(*arguments: str) -> Ended:
+    return cosserat(*EXPORT_COMMAND.split()[1:], *arguments, cwd=ROOT)
 
 
 def test_a_page_is_written_beside_no_folder(tmp_path: Path) -> None:
@@ -31,7 +28,7 @@ def test_a_page_is_written_beside_no_folder(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["strip.html"]
 
 
-def test_what_cannot_be_written_is_refused_before_the_solve(tmp_path: Path) -> None:
+def test_what_cannot_be_written_is_refused_before_the_solve(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     neither = export()
     assert neither.returncode == 2
     assert "--output" in neither.stderr
@@ -39,7 +36,8 @@ def test_what_cannot_be_written_is_refused_before_the_solve(tmp_path: Path) -> N
     nowhere = export("--page", str(tmp_path / "none" / "strip.html"))
     assert nowhere.returncode == 2
     assert "does not exist" in nowhere.stderr
-    without = export("--page", str(tmp_path / "strip.html"), **{VARIABLE: "no-such-clang"})
+    monkeypatch.setenv(VARIABLE, "no-such-clang")
+    without = export("--page", str(tmp_path / "strip.html"))
     assert without.returncode == 2
     assert "apt install clang lld wasi-libc" in " ".join(without.stderr.split())
     assert not list(tmp_path.iterdir())

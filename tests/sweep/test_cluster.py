@@ -22,7 +22,7 @@ from tests.sweep.conftest import PLANAR
 distributed = pytest.importorskip("distributed")
 
 pytestmark = [
-    pytest.mark.usefixtures("quick_compiler", "few_checked"),
+    pytest.mark.usefixtures("few_checked"),
     # What dask leaves open when its processes are killed is not ours.
     pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
@@ -30,7 +30,7 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def cluster(quick_compiler: None) -> Iterator[Any]:
+def cluster() -> Iterator[Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         # What thousands of tests have left behind takes the collector seconds, in which no thread of dask begins.

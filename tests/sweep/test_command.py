@@ -77,7 +77,6 @@ def test_a_body_named_as_a_rod_is_refused() -> None:
         sweep_scene(given, {"rod.length": [0.5]})
 
 
-@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("command", ["sweep", "solve"])
 def test_an_interrupt_that_is_lost_stops_the_command(
     command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

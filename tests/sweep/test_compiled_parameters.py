@@ -13,7 +13,7 @@ from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.sweep.variants import variants_of
 from tests.scenes import push, rod, scene
 
-pytestmark = pytest.mark.usefixtures("quick_compiler", "few_checked")
+pytestmark = pytest.mark.usefixtures("few_checked")
 
 LENGTH, MOMENT = 0.8, 0.7
 STEEL = {"youngs_modulus": 2e9, "poisson_ratio": 0.3}

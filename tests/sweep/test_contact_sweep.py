@@ -56,11 +56,9 @@ def test_rows_with_obstacles_are_not_compiled() -> None:
     assert not any(chunk.compiled for chunk in chunks(inputs_alone))
 
 
-@pytest.mark.usefixtures("quick_compiler")
 def test_compiled_rows_of_smooth_contact_are_those_of_python() -> None:
     """The same columns, and in them the same numbers: none for contact, and stability in its own."""
-    text = SCENE.replace("modes = 4", "modes = 2, nodes = 6") if "modes = 4, " in SCENE else SCENE
-    scene = parse_scene(text + "width = 0.02\n")
+    scene = parse_scene(SCENE + "width = 0.02\n")
     model = build(scene)
     columns = row_results(scene, stability=True)
     assert not any(".bar." in column for column in columns)

@@ -18,8 +18,6 @@ from tests.commands import cosserat
 from tests.conftest import ROOT
 from tests.pages import run_python
 
-pytestmark = pytest.mark.usefixtures("quick_compiler")
-
 PAGE = (ROOT / "docs" / "sweeps.md").read_text()
 WIRE = ROOT / "examples" / "nitinol_wire.toml"
 

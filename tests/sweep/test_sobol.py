@@ -99,7 +99,7 @@ def test_a_result_that_does_not_vary_has_no_indices() -> None:
     assert np.isnan(found.total_interval).all()
 
 
-@pytest.mark.usefixtures("quick_compiler", "few_checked")
+@pytest.mark.usefixtures("few_checked")
 def test_linear_rod_vs_beam_theory(tmp_path: Path) -> None:
     """Tip x = F L³/3EI + M L²/2EI while it bends little: shares are squares of these slopes times the variances."""
     grid = "samples = 400\nseed = 5\npush.force.x = { normal = [0.0, 1e-3] }\n"

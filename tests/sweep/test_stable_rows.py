@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cosserat_casadi import read_sweep, sweep_scene
 from tests.scenes import push, rod, scene
 
-pytestmark = pytest.mark.usefixtures("quick_compiler", "few_checked")
+pytestmark = pytest.mark.usefixtures("few_checked")
 
 COLUMN = {"name": "rod", "length": 1.0, "stiffness": {"bending_y": 1.0}}
 FIXED = {"modes": 6, "nodes": 12, "tolerance": 1e-4}

@@ -24,7 +24,7 @@ from cosserat_casadi.sweep.table import table_of
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.sweep.conftest import PLANAR
 
-pytestmark = pytest.mark.usefixtures("quick_compiler", "few_checked")
+pytestmark = pytest.mark.usefixtures("few_checked")
 
 TENDON = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
 CHAMBER = {"name": "gas", "kind": "chamber", "rod": "rod", "pressure": 500.0, "area": 1e-4, "offset": [0.0, 0.02]}

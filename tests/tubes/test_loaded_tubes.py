@@ -407,7 +407,6 @@ PLAIN = {"residual": 297, "jacobian": 347, "tips": 505, "tip_jacobian": 681}
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("quick_compiler")
 def test_loaded_functions_in_c(tmp_path: Path) -> None:
     robot = robot_of(parse_scene(TWO + PUSH))
     found = solve_at(LoadedTubeModel(robot, 1), robot.inputs)

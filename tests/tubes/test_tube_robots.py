@@ -218,7 +218,6 @@ def test_equilibrium_is_an_expression() -> None:
     assert np.isnan(float(missed))
 
 
-@pytest.mark.usefixtures("quick_compiler")
 def test_functions_in_c(tmp_path: Path) -> None:
     found = solve_tubes(parse_scene(TWO))
     generator = ca.CodeGenerator("tubes.c")
