@@ -135,7 +135,7 @@ static void continue_newton(row *own, real norm_of_x) {
 }
 
 static int step_serves(const row *own, const lanes_room *room, int lane) {
-  return room->finite[lane] && serves(1, room->norms[lane], own->newton.norm);
+  return isfinite(room->squares[lane]) && serves(1, room->norms[lane], own->newton.norm);
 }
 
 static void after_step(row *own, const lanes_room *room, int lane) {
@@ -367,7 +367,7 @@ static void take_steps(row *const *rows, lanes_room *room) {
   gather_lanes(steps, N, room->steps);
   gather_lanes(x, N, room->x);
   substitute_in_lanes(N, room->factors, room->steps);
-  complete_steps_in_lanes(N, &updates, room->earlier_steps[0], room->steps, room->finite);
+  complete_steps_in_lanes(N, &updates, room->earlier_steps[0], room->steps);
   add_in_lanes(N, room->steps, room->x);
   squares_in_lanes(N, room->steps, room->squares);
   squares_in_lanes(N, room->x, room->norms_of_x);

@@ -46,9 +46,8 @@ typedef struct {
 } updates_in_lanes;
 
 /* Quasi-Newton steps from minus the inverse of the Jacobian times the residual, as apply_updates and complete_step of
-   solver_newton.c. earlier: room for two arrays of lanes. Gives whether each is finite. */
-IN_LIBRARY void complete_steps_in_lanes(int size, const updates_in_lanes *updates, double *earlier, double *steps,
-                                        int *finite);
+   solver_newton.c. earlier: room for two arrays of lanes. */
+IN_LIBRARY void complete_steps_in_lanes(int size, const updates_in_lanes *updates, double *earlier, double *steps);
 
 /* Adds an array of lanes to another. */
 IN_LIBRARY void add_in_lanes(int size, const double *added, double *sums);

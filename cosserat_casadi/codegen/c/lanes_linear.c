@@ -212,14 +212,10 @@ static void updated_in_lanes(int size, const updates_in_lanes *updates, int long
   for (int i = 0; i < size; i++) result[i] *= factor;
 }
 
-void complete_steps_in_lanes(int size, const updates_in_lanes *updates, double *earlier, double *steps, int *finite) {
-  lanes *result = (lanes *)steps;
+void complete_steps_in_lanes(int size, const updates_in_lanes *updates, double *earlier, double *steps) {
   int longest = 0;
   for (int lane = 1; lane < LANES; lane++) {
     if (updates->counts[lane] > updates->counts[longest]) longest = lane;
   }
-  if (updates->counts[longest] > 0) updated_in_lanes(size, updates, longest, earlier, result);
-  lanes zero = IN_ALL(0);
-  for (int i = 0; i < size; i++) zero += result[i] * 0;
-  for (int lane = 0; lane < LANES; lane++) finite[lane] = zero[lane] == 0;
+  if (updates->counts[longest] > 0) updated_in_lanes(size, updates, longest, earlier, (lanes *)steps);
 }

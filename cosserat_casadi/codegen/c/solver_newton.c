@@ -25,22 +25,23 @@ static void apply_inverse(const updated_jacobian *jacobian, const real *vector, 
   apply_updates(jacobian, result);
 }
 
-/* The quasi-Newton step at an iterate from minus the inverse times the residual there; zero where it is not finite. The
-   update is C. G. Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley,
-   Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
-static int complete_step(const updated_jacobian *jacobian, real *step) {
+/* The quasi-Newton step at an iterate from minus the inverse times the residual there. The update is C. G. Broyden's
+   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for Linear
+   and Nonlinear Equations, SIAM 1995, section 7.3. */
+static void complete_step(const updated_jacobian *jacobian, real *step) {
   if (jacobian->count > 0) {
     const int last = jacobian->count - 1;
     const real share = 1 - dot(jacobian->steps[last], step) / jacobian->squares[last];
     const real factor = 1 / share;
     for (int i = 0; i < N; i++) step[i] *= factor;
   }
-  return all_finite(step, N);
 }
 
-static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
+/* Returns the square of the step's length, which is not finite where the step is not. */
+static real newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
   apply_inverse(jacobian, residual, step, work);
-  return complete_step(jacobian, step);
+  complete_step(jacobian, step);
+  return dot(step, step);
 }
 
 /* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
@@ -48,7 +49,7 @@ static int newton_step(const updated_jacobian *jacobian, const real *residual, r
 static int response(const updated_jacobian *jacobian, const real *residual, const real *vector, real *result,
                     workspace *work) {
   apply_inverse(jacobian, vector, result, work);
-  if (jacobian->count > 0 && newton_step(jacobian, residual, work->next_step, work)) {
+  if (jacobian->count > 0 && isfinite(newton_step(jacobian, residual, work->next_step, work))) {
     const int last = jacobian->count - 1;
     const real share = dot(jacobian->steps[last], result) / jacobian->squares[last];
     for (int i = 0; i < N; i++) result[i] += work->next_step[i] * share;
@@ -163,12 +164,13 @@ static newton_result newton(const loads *at, const newton_limits *limits, real *
     real *step = place_of_step(jacobian);
     real norm = state.norm;
     real share = 0;
-    if (newton_step(jacobian, residual, step, work)) {
+    const real square = newton_step(jacobian, residual, step, work);
+    if (isfinite(square)) {
       /* A step of an old Jacobian is not halved: a new Jacobian is worth more. */
       const int max_halvings = state.reuse_jacobian ? 0 : limits->max_halvings;
       share = line_search(at, step, max_halvings, x, residual, &norm, work);
     }
-    if (!weigh_step(&state, limits, dot(step, step), share, norm, jacobian)) break;
+    if (!weigh_step(&state, limits, square, share, norm, jacobian)) break;
   }
   return state.result;
 }
