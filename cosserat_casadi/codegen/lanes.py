@@ -158,6 +158,7 @@ def _with_lanes(source: str) -> str:
     source = re.sub(r"^(\s+(?:if .*\) )?res\[\d+\]\[\d+\]=)({NUMBER});", r"\1IN_ALL(\2);", source, flags=re.M)
     source = re.sub(r"(\*[xy]\+\+ = )(0\.?);", r"\1IN_ALL(\2);", source)
     source = re.sub(rf"(?<!\w)({'|'.join(LANEWISE)})\(", r"lanes_\1(", source)
+    source = source.replace("static casadi_real casadi_sq(", "IN_PLACE casadi_real casadi_sq(")
     # CasADi has routines of its own around these.
     body = r"(static casadi_real casadi_(fmax|fabs)\(casadi_real x(, casadi_real y)?\) \{\n).*?^\}"
     source = re.sub(body, _routine, source, flags=re.M | re.S)

@@ -132,7 +132,6 @@ typedef struct {
   follower_reissner_real path_inputs[6];
   follower_reissner_real inputs_rate[6];
   follower_reissner_real rate[FOLLOWER_REISSNER_UNKNOWNS];
-  follower_reissner_real step[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real next_step[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real trial[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real trial_residual[FOLLOWER_REISSNER_UNKNOWNS];

@@ -3,12 +3,20 @@
    Uses of the equations: residual_at, jacobian_at, rate_at. Gives: linearise, back_substitute, input_jacobian_at,
    dense_jacobian_at. */
 
+static real larger_of(real one, real other) { return one > other ? one : other; }
+
+/* Size of the largest of some entries. Four candidates, none of which waits for the others. */
 static real largest_entry(const real *a, int count) {
-  real largest = 0;
-  for (int i = 0; i < count; i++) {
-    if (ABSOLUTE(a[i]) > largest) largest = ABSOLUTE(a[i]);
+  real largest[4] = {0, 0, 0, 0};
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    largest[0] = larger_of(ABSOLUTE(a[i]), largest[0]);
+    largest[1] = larger_of(ABSOLUTE(a[i + 1]), largest[1]);
+    largest[2] = larger_of(ABSOLUTE(a[i + 2]), largest[2]);
+    largest[3] = larger_of(ABSOLUTE(a[i + 3]), largest[3]);
   }
-  return largest;
+  for (; i < count; i++) largest[0] = larger_of(ABSOLUTE(a[i]), largest[0]);
+  return larger_of(larger_of(largest[0], largest[1]), larger_of(largest[2], largest[3]));
 }
 
 static void swap_rows(real *a, int k, int m) {
@@ -19,13 +27,12 @@ static void swap_rows(real *a, int k, int m) {
   }
 }
 
-/* Row of the largest entry on or below the diagonal of column k. */
+/* Row of the largest entry on or below the diagonal of column k: the first of equal ones. */
 static int pivot_row(const real *column, int k) {
-  int best = k;
-  for (int i = k + 1; i < N; i++) {
-    if (ABSOLUTE(column[i]) > ABSOLUTE(column[best])) best = i;
-  }
-  return best;
+  const real largest = largest_entry(column + k, N - k);
+  int row = k;
+  while (row < N - 1 && ABSOLUTE(column[row]) != largest) row++;
+  return row;
 }
 
 /* Gaussian elimination with partial pivoting, in place, column after column: G. H. Golub, C. F. Van Loan, Matrix
@@ -64,18 +71,73 @@ static void permute(const int *pivots, real *b) {
   }
 }
 
+/* What is left of four neighbouring rows of a right-hand side: less the known unknowns, from one to another by a step of
+   1 or -1, with the factors in these rows. */
+static void subtract_known(const real *rows, const real *known, int from, int to, int step, real *left) {
+  real a = left[0];
+  real b = left[1];
+  real c = left[2];
+  real d = left[3];
+  for (int k = from; k != to; k += step) {
+    const real *factors = rows + k * N;
+    const real value = known[k];
+    a -= factors[0] * value;
+    b -= factors[1] * value;
+    c -= factors[2] * value;
+    d -= factors[3] * value;
+  }
+  left[0] = a;
+  left[1] = b;
+  left[2] = c;
+  left[3] = d;
+}
+
+enum { ROWS_BEFORE_FOURS = N % 4 };
+
+/* Substitutes forward with the unit lower triangle. */
+static void substitute_forward(const real *a, real *b) {
+  for (int i = 0; i < ROWS_BEFORE_FOURS; i++) {
+    for (int k = 0; k < i; k++) b[i] -= a[k * N + i] * b[k];
+  }
+  for (int i = ROWS_BEFORE_FOURS; i < N; i += 4) {
+    const real *triangle = a + i * N + i;
+    real *left = b + i;
+    subtract_known(a + i, b, 0, i, 1, left);
+    const real first = left[0];
+    const real second = left[1] - triangle[1] * first;
+    const real third = left[2] - triangle[2] * first - triangle[N + 2] * second;
+    left[1] = second;
+    left[2] = third;
+    left[3] = left[3] - triangle[3] * first - triangle[N + 3] * second - triangle[2 * N + 3] * third;
+  }
+}
+
+/* Substitutes backward with the upper triangle, whose diagonal holds inverse pivots. */
+static void substitute_backward(const real *a, real *b) {
+  for (int i = N - 4; i >= ROWS_BEFORE_FOURS; i -= 4) {
+    const real *triangle = a + i * N + i;
+    real *left = b + i;
+    subtract_known(a + i, b, N - 1, i + 3, -1, left);
+    const real fourth = left[3] * triangle[3 * N + 3];
+    const real third = (left[2] - triangle[3 * N + 2] * fourth) * triangle[2 * N + 2];
+    const real second = (left[1] - triangle[3 * N + 1] * fourth - triangle[2 * N + 1] * third) * triangle[N + 1];
+    left[0] = (left[0] - triangle[3 * N] * fourth - triangle[2 * N] * third - triangle[N] * second) * triangle[0];
+    left[1] = second;
+    left[2] = third;
+    left[3] = fourth;
+  }
+  for (int i = ROWS_BEFORE_FOURS - 1; i >= 0; i--) {
+    for (int k = N - 1; k > i; k--) b[i] -= a[k * N + i] * b[k];
+    b[i] *= a[i * N + i];
+  }
+}
+
 /* Solves with the factors, in place; an unknown without a pivot is left at zero. */
 static void back_substitute(const jacobian_factors *jacobian, real *b, workspace *work) {
-  const real *a = jacobian->factors;
   (void)work;
   permute(jacobian->pivots, b);
-  for (int k = 0; k < N; k++) {
-    for (int i = k + 1; i < N; i++) b[i] -= a[k * N + i] * b[k];
-  }
-  for (int k = N - 1; k >= 0; k--) {
-    b[k] *= a[k * N + k];
-    for (int i = 0; i < k; i++) b[i] -= a[k * N + i] * b[k];
-  }
+  substitute_forward(jacobian->factors, b);
+  substitute_backward(jacobian->factors, b);
 }
 
 /* Factorised Jacobian at x; zero where it is not finite. */

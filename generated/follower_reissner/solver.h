@@ -60,11 +60,18 @@ static real dot(const real *a, const real *b) {
 
 static real norm_of(const real *a) { return SQUARE_ROOT(dot(a, a)); }
 
+/* Zero times what is not finite is no number. Four sums, as above. */
 static int all_finite(const real *a, int count) {
-  for (int i = 0; i < count; i++) {
-    if (!isfinite(a[i])) return 0;
+  real sums[4] = {0, 0, 0, 0};
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    sums[0] += a[i] * 0;
+    sums[1] += a[i + 1] * 0;
+    sums[2] += a[i + 2] * 0;
+    sums[3] += a[i + 3] * 0;
   }
-  return 1;
+  for (; i < count; i++) sums[0] += a[i] * 0;
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]) == 0;
 }
 
 /* ---- Newton ---- */

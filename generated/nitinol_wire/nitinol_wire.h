@@ -129,7 +129,6 @@ typedef struct {
   nitinol_wire_real path_inputs[6];
   nitinol_wire_real inputs_rate[6];
   nitinol_wire_real rate[NITINOL_WIRE_UNKNOWNS];
-  nitinol_wire_real step[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real next_step[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real trial[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real trial_residual[NITINOL_WIRE_UNKNOWNS];

@@ -127,7 +127,6 @@ typedef struct {
   planar_strip_real path_inputs[6];
   planar_strip_real inputs_rate[6];
   planar_strip_real rate[PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real step[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real next_step[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real trial[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real trial_residual[PLANAR_STRIP_UNKNOWNS];

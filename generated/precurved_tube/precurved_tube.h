@@ -129,7 +129,6 @@ typedef struct {
   precurved_tube_real path_inputs[6];
   precurved_tube_real inputs_rate[6];
   precurved_tube_real rate[PRECURVED_TUBE_UNKNOWNS];
-  precurved_tube_real step[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real next_step[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real trial[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real trial_residual[PRECURVED_TUBE_UNKNOWNS];

@@ -199,7 +199,6 @@ typedef struct {
   six_rod_platform_real path_inputs[12];
   six_rod_platform_real inputs_rate[12];
   six_rod_platform_real rate[SIX_ROD_PLATFORM_UNKNOWNS];
-  six_rod_platform_real step[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real next_step[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real trial[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real trial_residual[SIX_ROD_PLATFORM_UNKNOWNS];

@@ -25,21 +25,23 @@ static void apply_inverse(const updated_jacobian *jacobian, const real *vector, 
   apply_updates(jacobian, result);
 }
 
-/* The quasi-Newton step at an iterate from minus the inverse times the residual there; zero where it is not finite. The
-   update is C. G. Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley,
-   Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
-static int complete_step(const updated_jacobian *jacobian, real *step) {
+/* The quasi-Newton step at an iterate from minus the inverse times the residual there. The update is C. G. Broyden's
+   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for Linear
+   and Nonlinear Equations, SIAM 1995, section 7.3. */
+static void complete_step(const updated_jacobian *jacobian, real *step) {
   if (jacobian->count > 0) {
     const int last = jacobian->count - 1;
     const real share = 1 - dot(jacobian->steps[last], step) / jacobian->squares[last];
-    for (int i = 0; i < N; i++) step[i] /= share;
+    const real factor = 1 / share;
+    for (int i = 0; i < N; i++) step[i] *= factor;
   }
-  return all_finite(step, N);
 }
 
-static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
+/* Returns the square of the step's length, which is not finite where the step is not. */
+static real newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
   apply_inverse(jacobian, residual, step, work);
-  return complete_step(jacobian, step);
+  complete_step(jacobian, step);
+  return dot(step, step);
 }
 
 /* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
@@ -47,7 +49,7 @@ static int newton_step(const updated_jacobian *jacobian, const real *residual, r
 static int response(const updated_jacobian *jacobian, const real *residual, const real *vector, real *result,
                     workspace *work) {
   apply_inverse(jacobian, vector, result, work);
-  if (jacobian->count > 0 && newton_step(jacobian, residual, work->next_step, work)) {
+  if (jacobian->count > 0 && isfinite(newton_step(jacobian, residual, work->next_step, work))) {
     const int last = jacobian->count - 1;
     const real share = dot(jacobian->steps[last], result) / jacobian->squares[last];
     for (int i = 0; i < N; i++) result[i] += work->next_step[i] * share;
@@ -81,13 +83,13 @@ static real line_search(const loads *at, const real *step, int max_halvings, rea
   return 0;
 }
 
-/* Remembers a full step for the updates. Returns its length. */
-static real append_step(updated_jacobian *jacobian, const real *step) {
-  const real square = dot(step, step);
-  memcpy(jacobian->steps[jacobian->count], step, N * sizeof *step);
+/* Where the next step belongs: behind those that the updates are made of. */
+static real *place_of_step(updated_jacobian *jacobian) { return jacobian->steps[jacobian->count]; }
+
+/* Takes the step at that place, whose length has this square, into the updates. */
+static void append_step(updated_jacobian *jacobian, real square) {
   jacobian->squares[jacobian->count] = square;
   jacobian->count++;
-  return SQUARE_ROOT(square);
 }
 
 static newton_state begin_newton(const newton_limits *limits, const real *residual) {
@@ -99,10 +101,10 @@ static newton_state begin_newton(const newton_limits *limits, const real *residu
   return state;
 }
 
-/* Whether Newton ends at x, by what its result says. */
-static int newton_ends(newton_state *state, const newton_limits *limits, const real *x) {
+/* Whether Newton ends at unknowns of this norm, by what its result says. */
+static int newton_ends(newton_state *state, const newton_limits *limits, real norm_of_x) {
   newton_result *result = &state->result;
-  const real size = 1 + norm_of(x);
+  const real size = 1 + norm_of_x;
   result->residual_norm = state->norm / size;
   /* Beside unknowns whose norm overflows any residual would be small. */
   if (!isfinite(state->norm) || !isfinite(size)) {
@@ -120,13 +122,13 @@ static void expect_jacobian(newton_state *state, updated_jacobian *jacobian) {
   jacobian->count = 0;
 }
 
-/* What follows from a step of this length that has left the residual with this norm; of length zero where none served.
-   Returns zero where Newton ends. */
-static int weigh_step(newton_state *state, const newton_limits *limits, const real *step, real length, real norm,
+/* What follows from a share of the step, zero where none served, that has left the residual with this norm; the whole
+   step has a length of this square. Returns zero where Newton ends. */
+static int weigh_step(newton_state *state, const newton_limits *limits, real square, real share, real norm,
                       updated_jacobian *jacobian) {
   const real previous_norm = state->norm;
   state->norm = norm;
-  if (length == 0) {
+  if (share == 0) {
     if (!state->reuse_jacobian) {
       state->result.status = SOLVER_SINGULAR;
       return 0;
@@ -134,13 +136,14 @@ static int weigh_step(newton_state *state, const newton_limits *limits, const re
     state->reuse_jacobian = 0;
     return 1;
   }
-  if (length < 1) {
+  if (share < 1) {
     state->result.damped = 1;
     state->reuse_jacobian = 0;
     return 1;
   }
   /* The step to come is about as much shorter than this one as the residual has fallen. */
-  if (append_step(jacobian, step) * norm < limits->inexact * previous_norm) state->result.status = SOLVER_CONVERGED;
+  if (SQUARE_ROOT(square) * norm < limits->inexact * previous_norm) state->result.status = SOLVER_CONVERGED;
+  append_step(jacobian, square);
   state->reuse_jacobian = norm <= REUSE_DECREASE * previous_norm && jacobian->count < MAX_REUSES;
   return 1;
 }
@@ -149,7 +152,7 @@ static int weigh_step(newton_state *state, const newton_limits *limits, const re
 static newton_result newton(const loads *at, const newton_limits *limits, real *x, real *residual,
                             updated_jacobian *jacobian, workspace *work) {
   newton_state state = begin_newton(limits, residual);
-  while (!newton_ends(&state, limits, x)) {
+  while (!newton_ends(&state, limits, norm_of(x))) {
     if (!state.reuse_jacobian) {
       expect_jacobian(&state, jacobian);
       if (!linearise(x, at, &jacobian->factors, work)) {
@@ -158,14 +161,16 @@ static newton_result newton(const loads *at, const newton_limits *limits, real *
       }
     }
     state.result.iterations++;
+    real *step = place_of_step(jacobian);
     real norm = state.norm;
-    real length = 0;
-    if (newton_step(jacobian, residual, work->step, work)) {
+    real share = 0;
+    const real square = newton_step(jacobian, residual, step, work);
+    if (isfinite(square)) {
       /* A step of an old Jacobian is not halved: a new Jacobian is worth more. */
       const int max_halvings = state.reuse_jacobian ? 0 : limits->max_halvings;
-      length = line_search(at, work->step, max_halvings, x, residual, &norm, work);
+      share = line_search(at, step, max_halvings, x, residual, &norm, work);
     }
-    if (!weigh_step(&state, limits, work->step, length, norm, jacobian)) break;
+    if (!weigh_step(&state, limits, square, share, norm, jacobian)) break;
   }
   return state.result;
 }

@@ -149,7 +149,6 @@ typedef struct {
   tendon_robot_real path_inputs[10];
   tendon_robot_real inputs_rate[10];
   tendon_robot_real rate[TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real step[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real next_step[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real trial[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real trial_residual[TENDON_ROBOT_UNKNOWNS];

@@ -21,8 +21,7 @@ typedef enum {
   WAITS_FOR_FIRST_TANGENT,
   WAITS_FOR_PREDICTED_RESIDUAL,
   WAITS_FOR_NEWTON_MATRIX,
-  WAITS_FOR_STEP,
-  WAITS_FOR_TRIAL_RESIDUAL,
+  WAITS_FOR_STEP, /* and for the residual behind it */
   WAITS_FOR_RATE,
   WAITS_FOR_TANGENT_MATRIX,
   WAITS_FOR_RESOLUTION
@@ -115,43 +114,43 @@ static void end_correction(row *own) {
   }
 }
 
-static void continue_newton(row *own);
-
-static void weigh_newton_step(row *own, real length, real norm) {
-  if (weigh_step(&own->newton, &own->limits, own->work->step, length, norm, own->now.spare)) {
-    continue_newton(own);
-  } else {
-    end_correction(own);
-  }
-}
-
+/* Leaves minus the residual, in the order of the pivots, where the step belongs. */
 static void begin_newton_step(row *own) {
-  real *step = own->work->step;
+  real *step = place_of_step(own->now.spare);
   own->newton.result.iterations++;
   for (int i = 0; i < N; i++) step[i] = -own->now.next->residual[i];
   permute(own->now.spare->factors.pivots, step);
   own->state = WAITS_FOR_STEP;
 }
 
-static void after_step(row *own) {
-  workspace *work = own->work;
-  apply_updates(own->now.spare, work->step);
-  if (!complete_step(own->now.spare, work->step)) {
-    weigh_newton_step(own, 0, own->newton.norm);
-    return;
-  }
-  for (int i = 0; i < N; i++) work->trial[i] = own->now.next->x[i] + work->step[i];
-  own->state = WAITS_FOR_TRIAL_RESIDUAL;
-}
-
-static void continue_newton(row *own) {
-  if (newton_ends(&own->newton, &own->limits, own->now.next->x)) {
+static void continue_newton(row *own, real norm_of_x) {
+  if (newton_ends(&own->newton, &own->limits, norm_of_x)) {
     end_correction(own);
   } else if (own->newton.reuse_jacobian) {
     begin_newton_step(own);
   } else {
     expect_jacobian(&own->newton, own->now.spare);
     own->state = WAITS_FOR_NEWTON_MATRIX;
+  }
+}
+
+static int step_serves(const row *own, const lanes_room *room, int lane) {
+  return isfinite(room->squares[lane]) && serves(1, room->norms[lane], own->newton.norm);
+}
+
+static void after_step(row *own, const lanes_room *room, int lane) {
+  real share = 1;
+  real norm = room->norms[lane];
+  real norm_of_x = room->norms_of_x[lane];
+  if (!step_serves(own, room, lane)) {
+    share = 0;
+    norm = own->newton.norm;
+    norm_of_x = norm_of(own->now.next->x);
+  }
+  if (weigh_step(&own->newton, &own->limits, room->squares[lane], share, norm, own->now.spare)) {
+    continue_newton(own, norm_of_x);
+  } else {
+    end_correction(own);
   }
 }
 
@@ -172,19 +171,7 @@ static void after_prediction(row *own) {
   }
   own->limits = corrector_limits(own->now.next, LONG_PATH.max_iterations - own->info.iterations);
   own->newton = begin_newton(&own->limits, own->now.next->residual);
-  continue_newton(own);
-}
-
-static void after_trial(row *own) {
-  path_point *next = own->now.next;
-  const real norm = norm_of(own->work->trial_residual);
-  if (!serves(1, norm, own->newton.norm)) {
-    weigh_newton_step(own, 0, own->newton.norm);
-    return;
-  }
-  memcpy(next->x, own->work->trial, sizeof next->x);
-  memcpy(next->residual, own->work->trial_residual, sizeof next->residual);
-  weigh_newton_step(own, 1, norm);
+  continue_newton(own, norm_of(own->now.next->x));
 }
 
 static void after_newton_matrix(row *own, int finite) {
@@ -224,7 +211,6 @@ static void after_resolution(row *own) {
 
 /* The unknowns at which a row waits to be evaluated. */
 static const real *unknowns_of(const row *own) {
-  if (own->state == WAITS_FOR_TRIAL_RESIDUAL) return own->work->trial;
   if (own->state == WAITS_FOR_RESOLUTION) return own->now.point->x;
   return own->now.next->x;
 }
@@ -261,15 +247,11 @@ static real *wanted_by(row *own, int *count) {
     case WAITS_FOR_TANGENT_MATRIX:
       *count = N * N;
       return own->now.spare->factors.factors;
-    case WAITS_FOR_STEP:
-      return own->work->step;
     case WAITS_FOR_RATE:
       return own->work->rate;
-    case WAITS_FOR_RESOLUTION:
+    default:
       *count = 1;
       return &own->resolution;
-    default:
-      return own->work->trial_residual;
   }
 }
 
@@ -293,10 +275,7 @@ static void resume(row *own, const lanes_room *room, int lane) {
       after_newton_matrix(own, take_pivots(room, lane, &own->now.spare->factors));
       break;
     case WAITS_FOR_STEP:
-      after_step(own);
-      break;
-    case WAITS_FOR_TRIAL_RESIDUAL:
-      after_trial(own);
+      after_step(own, room, lane);
       break;
     case WAITS_FOR_RATE:
       after_rate(own);
@@ -325,49 +304,97 @@ static waiting most_awaited(const row *rows) {
   return most;
 }
 
-/* Evaluates the equations for some rows; lanes that are left over repeat the first. */
-static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
-  const real *x[LANES];
+/* The inputs of rows, and how much of their loads acts. */
+static void gather_loads(row *const *rows, lanes_room *room) {
   const real *inputs[LANES];
   for (int lane = 0; lane < LANES; lane++) {
-    x[lane] = unknowns_of(rows[lane]);
     inputs[lane] = rows[lane]->inputs;
     room->load_factor[lane] = rows[lane]->now.next->t;
   }
-  gather_lanes(x, N, room->x);
   gather_lanes(inputs, INPUTS, room->inputs);
+}
+
+/* Evaluates the equations for some rows; lanes that are left over repeat the first. */
+static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
+  const real *x[LANES];
+  for (int lane = 0; lane < LANES; lane++) x[lane] = unknowns_of(rows[lane]);
+  gather_lanes(x, N, room->x);
+  gather_loads(rows, room);
   evaluate_in_lanes(state, room);
 }
 
-static void substitute_rows(row *const *rows, lanes_room *room) {
+/* Hands out results; lanes that are left over write once more what the first has. */
+static void scatter_results(row *const *rows, const lanes_room *room) {
+  real *wanted[LANES];
+  int numbers = 0;
+  for (int lane = 0; lane < LANES; lane++) wanted[lane] = wanted_by(rows[lane], &numbers);
+  scatter_lanes(room->results, numbers, wanted);
+}
+
+/* Hands out steps, and where they serve what is behind them. */
+static void scatter_steps(row *const *rows, const lanes_room *room) {
+  real *steps[LANES];
+  real *x[LANES];
+  real *residuals[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    row *own = rows[lane];
+    const int moves = step_serves(own, room, lane);
+    steps[lane] = place_of_step(own->now.spare);
+    x[lane] = moves ? own->now.next->x : own->work->trial;
+    residuals[lane] = moves ? own->now.next->residual : own->work->trial_residual;
+  }
+  scatter_lanes(room->steps, N, steps);
+  scatter_lanes(room->x, N, x);
+  scatter_lanes(room->results, N, residuals);
+}
+
+/* Takes quasi-Newton steps from where rows are. */
+static void take_steps(row *const *rows, lanes_room *room) {
   const real *factors[LANES];
   const real *steps[LANES];
+  const real *x[LANES];
+  updates_in_lanes updates;
   for (int lane = 0; lane < LANES; lane++) {
-    factors[lane] = rows[lane]->now.spare->factors.factors;
-    steps[lane] = rows[lane]->work->step;
+    updated_jacobian *jacobian = rows[lane]->now.spare;
+    factors[lane] = jacobian->factors.factors;
+    steps[lane] = place_of_step(jacobian);
+    x[lane] = rows[lane]->now.next->x;
+    updates.counts[lane] = jacobian->count;
+    updates.steps[lane] = jacobian->steps[0];
+    updates.squares[lane] = jacobian->squares;
   }
   gather_lanes(factors, N * N, room->factors);
-  gather_lanes(steps, N, room->results);
-  substitute_in_lanes(N, room->factors, room->results);
+  gather_lanes(steps, N, room->steps);
+  gather_lanes(x, N, room->x);
+  substitute_in_lanes(N, room->factors, room->steps);
+  complete_steps_in_lanes(N, &updates, room->earlier_steps[0], room->steps);
+  add_in_lanes(N, room->steps, room->x);
+  squares_in_lanes(N, room->steps, room->squares);
+  squares_in_lanes(N, room->x, room->norms_of_x);
+  gather_loads(rows, room);
+  residual_in_lanes(room);
+  squares_in_lanes(N, room->results, room->norms);
+  for (int lane = 0; lane < LANES; lane++) {
+    room->norms_of_x[lane] = SQUARE_ROOT(room->norms_of_x[lane]);
+    room->norms[lane] = SQUARE_ROOT(room->norms[lane]);
+  }
+  scatter_steps(rows, room);
 }
 
 /* Gives rows that wait for the same what they wait for. */
 static void serve(row *rows, waiting state, lanes_room *room) {
   row *served[LANES];
-  real *wanted[LANES];
   int count = 0;
-  int numbers = 0;
   for (int k = 0; k < ROWS && count < LANES; k++) {
     if (rows[k].state == state) served[count++] = rows + k;
   }
   for (int lane = count; lane < LANES; lane++) served[lane] = served[0];
   if (state == WAITS_FOR_STEP) {
-    substitute_rows(served, room);
+    take_steps(served, room);
   } else {
     evaluate_rows(served, state, room);
+    scatter_results(served, room);
   }
-  for (int lane = 0; lane < count; lane++) wanted[lane] = wanted_by(served[lane], &numbers);
-  scatter_lanes(room->results, numbers, count, wanted);
   for (int lane = 0; lane < count; lane++) resume(served[lane], room, lane);
 }
 

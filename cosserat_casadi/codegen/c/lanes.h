@@ -37,6 +37,24 @@ IN_LIBRARY void permute_in_lanes(int size, const int *pivots, double *right_side
 /* Solves with such factors, in place; the right sides are in the order of the pivots. */
 IN_LIBRARY void substitute_in_lanes(int size, const double *factors, double *right_sides);
 
-/* Arrays of each row into an array of lanes, and of the lanes in use out of it. */
+/* What the updates of a Jacobian in lanes are made of: of each lane how many steps, these one after the other, and the
+   squares of their lengths. */
+typedef struct {
+  int counts[LANES ? LANES : 1];
+  const double *steps[LANES ? LANES : 1];
+  const double *squares[LANES ? LANES : 1];
+} updates_in_lanes;
+
+/* Quasi-Newton steps from minus the inverse of the Jacobian times the residual, as apply_updates and complete_step of
+   solver_newton.c. earlier: room for two arrays of lanes. */
+IN_LIBRARY void complete_steps_in_lanes(int size, const updates_in_lanes *updates, double *earlier, double *steps);
+
+/* Adds an array of lanes to another. */
+IN_LIBRARY void add_in_lanes(int size, const double *added, double *sums);
+
+/* Sums of squares: of each lane a number. */
+IN_LIBRARY void squares_in_lanes(int size, const double *in_lanes, double *squares);
+
+/* Arrays of each row into an array of lanes, and out of it. */
 IN_LIBRARY void gather_lanes(const double *const *sources, int count, double *in_lanes);
-IN_LIBRARY void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets);
+IN_LIBRARY void scatter_lanes(const double *in_lanes, int count, double *const *targets);

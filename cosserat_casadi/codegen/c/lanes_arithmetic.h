@@ -27,18 +27,26 @@ typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8), may_alia
 #define ALIKE(number) ALIKE_4(number)
 #define IN_ALL(number) ((lanes)ALIKE(number))
 
-#define LANE_AFTER_LANE(function)                    \
-  static lanes lanes_##function(lanes x) {           \
-    lanes y;                                         \
+/* Also into functions that are compiled with other options: a call would store all registers. */
+#define IN_PLACE static inline __attribute__((always_inline))
+
+#define LANE_AFTER_LANE(function)                          \
+  IN_PLACE lanes lanes_##function(lanes x) {               \
+    lanes y;                                               \
     for (int i = 0; i < LANES; i++) y[i] = function(x[i]); \
-    return y;                                        \
+    return y;                                              \
   }
-LANE_AFTER_LANE(sqrt)
 LANE_AFTER_LANE(exp)
 LANE_AFTER_LANE(fabs)
 
+#if defined(__x86_64__) && !defined(__clang__)
+IN_PLACE lanes lanes_sqrt(lanes x) { return (lanes)__builtin_ia32_sqrtpd256(x); }
+#else
+LANE_AFTER_LANE(sqrt)
+#endif
+
 /* As fmax does, a number beside what is none. */
-static lanes lanes_fmax(lanes x, lanes y) {
+IN_PLACE lanes lanes_fmax(lanes x, lanes y) {
   lanes larger;
   for (int i = 0; i < LANES; i++) larger[i] = x[i] > y[i] || y[i] != y[i] ? x[i] : y[i];
   return larger;
