@@ -230,9 +230,14 @@ class _Writing:
         pool = []
         places = np.empty(len(numbers), dtype=np.int64)
         size = 0
+        in_runs = LONG_PIECES * len(starts) <= len(numbers)
         for k in np.unique(columns):
             own = columns == k
-            distinct, place = np.unique(numbers[own], return_inverse=True)
+            if k == 0 and in_runs:
+                # A zero for each place: whole runs of them are moved at once.
+                distinct, place = numbers[own], np.arange(np.count_nonzero(own))
+            else:
+                distinct, place = np.unique(numbers[own], return_inverse=True)
             pool.append(self._piece(distinct))
             places[own] = size + place
             size += len(distinct)
