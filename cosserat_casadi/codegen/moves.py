@@ -37,15 +37,14 @@ SHORTEST = 8
 
 RUNS = """static void casadi_runs(const casadi_real* x, const casadi_int* begin, casadi_int count, casadi_int length,
     casadi_real* y) {
-  casadi_int i;
-  for (; count > 0; --count, ++begin, y += length) {
-    const casadi_real* run = x + *begin;
-    for (i = 0; i < length; ++i) y[i] = run[i];
-  }
+  for (; count > 0; --count, ++begin, y += length) memcpy(y, x + *begin, length * sizeof(casadi_real));
 }
 
 """
 """Moves runs of one length, each from its place, behind each other."""
+
+MATHS = "#include <math.h>\n"
+"""What every source of CasADi's includes."""
 
 ALONE = "_alone"
 """What the name of a routine for products ends with that adds to nothing."""
@@ -61,6 +60,7 @@ def with_fewer_moves(source: str) -> str:
         # Before the function stands a comment that belongs to it.
         begin = written.rfind("\n\n", 0, first.start()) + 2
         written = written[:begin] + "".join(moves.tables) + RUNS + written[begin:]
+        written = written.replace(MATHS, f"{MATHS}#include <string.h>\n", 1)
     return _without_unused(written)
 
 

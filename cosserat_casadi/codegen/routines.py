@@ -18,6 +18,7 @@ from __future__ import annotations
 import re
 
 from cosserat_casadi.codegen.moves import ALONE, with_fewer_moves
+from cosserat_casadi.codegen.running_sums import with_loops
 
 ROWS_AT_ONCE = 16
 """Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
@@ -103,7 +104,7 @@ def improved(source: str) -> str:
 
     It has fewer moves and fast products, no checks in functions called TOGETHER, and long functions are marked.
     """
-    return _with_marks(_without_checks(_with_fast_products(with_fewer_moves(source))))
+    return _with_marks(_without_checks(_with_fast_products(with_fewer_moves(with_loops(source)))))
 
 
 def _with_marks(source: str) -> str:
