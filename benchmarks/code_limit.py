@@ -50,10 +50,10 @@ WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "bo
 
 RODS = {
     "Kirchhoff, short, force per length that follows": ("kirchhoff", 6, 15, True),
-    "Kirchhoff, force per length that follows": ("kirchhoff", 10, 42, True),
-    "Reissner, force per length that follows": ("reissner", 10, 36, True),
-    "Kirchhoff, dead force": ("kirchhoff", 18, 72, False),
-    "Reissner, dead force": ("reissner", 14, 66, False),
+    "Kirchhoff, force per length that follows": ("kirchhoff", 10, 40, True),
+    "Reissner, force per length that follows": ("reissner", 10, 33, True),
+    "Kirchhoff, dead force": ("kirchhoff", 18, 56, False),
+    "Reissner, dead force": ("reissner", 14, 46, False),
 }
 """Strain model, modes of each strain, intervals, and whether a force per length follows, by what the table says."""
 

@@ -4,8 +4,8 @@ Counting the operations of a model takes longer than solving it, compiling it fa
 the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
 a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
 the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
-factors to compiled rods of every strain model, section and load, and tells how far they are off. Those of loops were
-set by six rods near the limit of code by columns: benchmarks/code_limit.py prints what they foresee.
+factors to compiled rods of every strain model, section and load, and tells how far they are off. Those of loops are
+fitted to the rods of benchmarks/code_limit.py, which prints what they foresee.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ STRAIGHT = 25_000
 Functions of one interval are called: each call is one instruction.
 """
 
-MOST_IN_COLUMNS = 60_000
+MOST_IN_COLUMNS = 50_000
 """Statements up to which a Jacobian is written by columns, four at a time; a longer one is written in loops.
 
-Loops take up to two thirds longer there (benchmarks/code_limit.py), compilers some 20 s for what stands beside as well.
+Loops take up to a third longer there (benchmarks/code_limit.py), compilers some 20 s with what stands beside
+on a loaded machine.
 """
 
 TOGETHER = 4
@@ -104,7 +105,7 @@ TIME_IN_COLUMNS = AffineLaw(
 )
 """µs of residual and Jacobian by columns."""
 
-TIME_IN_LOOPS = LoopsLaw(intervals=0.406, structure=0.163e-3, loads=0.0190e-3)
+TIME_IN_LOOPS = LoopsLaw(intervals=0.157, structure=0.167e-3, loads=0.0538e-3)
 """µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py)."""
 
 

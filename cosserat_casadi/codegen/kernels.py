@@ -6,7 +6,6 @@ import errno
 import os
 import re
 import tempfile
-from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -22,6 +21,7 @@ from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.motion_parts import MotionInC
+from cosserat_casadi.codegen.moves import without_unused_tables
 from cosserat_casadi.codegen.names import QUERIES, Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
@@ -199,7 +199,7 @@ def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = N
     functions = [kernel for kernel in kernels if isinstance(kernel, ca.Function)]
     own = [kernel for kernel in kernels if isinstance(kernel, InFours)]
     generated = sources(functions, stem, "int")
-    source = _without_unused_patterns(_without_queries(generated[f"{stem}.c"]))
+    source = without_unused_tables(_without_queries(generated[f"{stem}.c"]))
     prototypes = re.sub(rf"^[^#\n]*_({_queries()})\(.*\);\n", "", generated[f"{stem}.h"], flags=re.M)
     files = {f"{stem}.c": PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
     if own:
@@ -218,16 +218,3 @@ def _without_queries(source: str) -> str:
     """A source without the functions that describe functions: on one line each, or up to a brace at its beginning."""
     head = rf"^CASADI_SYMBOL_EXPORT [^\n]*_(?:{_queries()})\([^\n]*\) \{{"
     return re.sub(rf"{head}(?:[^\n]*\}}|\n(?:[^}}\n][^\n]*\n)*\}})\n+", "", source, flags=re.M)
-
-
-def _without_unused_patterns(source: str) -> str:
-    """A source without the sparsity patterns that no function reads."""
-    used = Counter(re.findall(r"\bcasadi_s\d+\b", source))
-    defined = re.findall(r"^static const casadi_int (casadi_s\d+)\[", source, re.M)
-    # Once as a macro, once as an array.
-    unused = {pattern for pattern in defined if used[pattern] == 2}
-
-    def kept(line: re.Match[str]) -> str:
-        return "" if line[1] in unused else line[0]
-
-    return re.sub(r"^(?:#define |static const casadi_int )(casadi_s\d+)[ \[].*\n", kept, source, flags=re.M)

@@ -18,6 +18,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.numbered import Argument, Numbers, Program, Step, Value
 from cosserat_casadi.codegen.routines import TOGETHER
+from cosserat_casadi.codegen.running_sums import in_running_sums
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 
 FEW_PIECES = 8
@@ -115,7 +116,7 @@ class _Writing:
         layer_of = defaultdict[int, int](int)
         large_in = set[int]()
         layers: list[tuple[list[Step], list[Step]]] = []
-        for step in self.program.steps:
+        for step in in_running_sums(self.program.steps, self.origins):
             layer = 0
             for owner in self._needed(step):
                 after_large = step.small and owner in large_in
@@ -136,8 +137,9 @@ class _Writing:
         return [int(owner) for owner in np.unique(owners) if owner]
 
     def _made(self, step: Step) -> list[int]:
-        first = [result.numbers[:1] for result in step.results]
-        return [int(owner) for owner in self.origins.owners(np.concatenate(first))]
+        numbers = [result.numbers for result in step.results]
+        owners = self.origins.owners(np.concatenate(numbers))
+        return [int(owner) for owner in dict.fromkeys(owners.tolist())]
 
     def _write_each(self, steps: Sequence[Step]) -> None:
         for step in steps:
@@ -230,9 +232,14 @@ class _Writing:
         pool = []
         places = np.empty(len(numbers), dtype=np.int64)
         size = 0
+        in_runs = LONG_PIECES * len(starts) <= len(numbers)
         for k in np.unique(columns):
             own = columns == k
-            distinct, place = np.unique(numbers[own], return_inverse=True)
+            if k == 0 and in_runs:
+                # A zero for each place: whole runs of them are moved at once.
+                distinct, place = numbers[own], np.arange(np.count_nonzero(own))
+            else:
+                distinct, place = np.unique(numbers[own], return_inverse=True)
             pool.append(self._piece(distinct))
             places[own] = size + place
             size += len(distinct)

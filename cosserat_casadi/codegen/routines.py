@@ -1,4 +1,4 @@
-"""What is changed in the C code that CasADi writes: products of matrices, checks that never fail, long functions.
+"""What is changed in the C code that CasADi writes: moves (moves.py), products, checks that never fail, long functions.
 
 CasADi adds column after column to a column in memory, entry by entry. Here some rows of a column stay in registers
 until all their products are summed, four in each register where the processor can. Sums and their order are the same.
@@ -16,6 +16,9 @@ takes a sixth of its time.
 from __future__ import annotations
 
 import re
+
+from cosserat_casadi.codegen.moves import ALONE, with_fewer_moves
+from cosserat_casadi.codegen.running_sums import with_loops
 
 ROWS_AT_ONCE = 16
 """Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
@@ -42,7 +45,7 @@ TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) &&
 """
 """What makes a routine of its sums, for any processor and for the wider vectors of newer ones."""
 
-SPARSE = """SUMS casadi_mtimes_dense_sparse_{rows}_sums(const casadi_real* x,
+SPARSE = """SUMS casadi_mtimes_dense_sparse{alone}_{rows}_sums(const casadi_real* x,
     const casadi_real* y, const casadi_int* sp_y, casadi_real* z) {{
   const casadi_int columns = sp_y[1], *colind = sp_y + 2, *row = colind + columns + 1;
   casadi_int c, k, r;
@@ -51,11 +54,11 @@ SPARSE = """SUMS casadi_mtimes_dense_sparse_{rows}_sums(const casadi_real* x,
 {sums}
   }}
 }}
-PRODUCT(casadi_mtimes_dense_sparse_{rows}, (const casadi_real* x, const casadi_real* y,
+PRODUCT(casadi_mtimes_dense_sparse{alone}_{rows}, (const casadi_real* x, const casadi_real* y,
     const casadi_int* sp_y, casadi_real* z), (x, y, sp_y, z))
 """
 
-DENSE = """SUMS casadi_mtimes_dense_{rows}_sums(const casadi_real* x, casadi_int inner,
+DENSE = """SUMS casadi_mtimes_dense{alone}_{rows}_sums(const casadi_real* x, casadi_int inner,
     const casadi_real* y, casadi_int columns, casadi_real* z) {{
   casadi_int c, k, r;
   for (c = 0; c < columns; ++c, y += inner, z += {rows}) {{
@@ -63,7 +66,7 @@ DENSE = """SUMS casadi_mtimes_dense_{rows}_sums(const casadi_real* x, casadi_int
 {sums}
   }}
 }}
-PRODUCT(casadi_mtimes_dense_{rows}, (const casadi_real* x, casadi_int inner, const casadi_real* y,
+PRODUCT(casadi_mtimes_dense{alone}_{rows}, (const casadi_real* x, casadi_int inner, const casadi_real* y,
     casadi_int columns, casadi_real* z), (x, inner, y, columns, z))
 """
 
@@ -97,8 +100,11 @@ FUNCTION = re.compile(r"^(/\* [^\n]* \*/\n)?(static int )(\w+\([^\n]*\) \{\n.*?^
 
 
 def improved(source: str) -> str:
-    """A source of CasADi's with fast products, without checks in functions called TOGETHER, long functions marked."""
-    return _with_marks(_without_checks(_with_fast_products(source)))
+    """A source of CasADi's as it is compiled.
+
+    It has fewer moves and fast products, no checks in functions called TOGETHER, and long functions are marked.
+    """
+    return _with_marks(_without_checks(_with_fast_products(with_fewer_moves(with_loops(source)))))
 
 
 def _with_marks(source: str) -> str:
@@ -136,23 +142,26 @@ def _with_fast_products(source: str) -> str:
     ):
         # CasADi's last argument of a dense product says that x is transposed, which it never is.
         end = r", 0\);" if routine is DENSE else r"\);"
-        pattern = rf"\b{name}\(([^,\n]+), (\d+), (.*){end}"
-        rows = sorted({int(found[2]) for found in re.finditer(pattern, source)})
-        made = "".join(routine.format(rows=count, sums=_sums(count, column)) for count in rows)
+        pattern = rf"\b{name}({ALONE}|)\(([^,\n]+), (\d+), (.*){end}"
+        wanted = sorted({(int(found[3]), found[1]) for found in re.finditer(pattern, source)})
+        made = ""
+        for rows, alone in wanted:
+            made += routine.format(rows=rows, alone=alone, sums=_sums(rows, column, bool(alone)))
         source = re.sub(rf"^static void {name}\(.*?^\}}\n", made, source, flags=re.M | re.S)
-        source = re.sub(pattern, rf"{name}_\2(\1, \3);", source)
+        source = re.sub(pattern, rf"{name}\1_\3(\2, \4);", source)
     begin = source.find("SUMS ")
     if begin < 0:
         return source
     return source[:begin] + TWICE + source[begin:]
 
 
-def _sums(rows: int, column: str) -> str:
+def _sums(rows: int, column: str, alone: bool) -> str:
     """The sums of the rows of one column of the result, in bunches of one size and what is left.
 
     Args:
         rows: their number.
         column: the column of x that meets y[k].
+        alone: whether they begin at zero; else they are added to z.
     """
     bunches = -(-rows // ROWS_AT_ONCE)
     in_each = -(-rows // bunches)
@@ -161,18 +170,19 @@ def _sums(rows: int, column: str) -> str:
     parts = []
     for first, last, count in ((0, middle, size), (middle, rows, rows - middle)):
         if first < last:
-            parts.append(_sum(rows, first, last, count, column))
+            parts.append(_sum(rows, first, last, count, column, alone))
     return "\n".join(parts)
 
 
-def _sum(rows: int, first: int, last: int, count: int, column: str) -> str:
+def _sum(rows: int, first: int, last: int, count: int, column: str, alone: bool) -> str:
+    begun = ["0" if alone else f"z[r + {i}]" for i in range(count)]
     return BUNCHES.format(
         rows=rows,
         first=first,
         last=last,
         count=count,
         column=column,
-        begun=", ".join(f"a{i} = z[r + {i}]" for i in range(count)),
+        begun=", ".join(f"a{i} = {first_value}" for i, first_value in enumerate(begun)),
         added=" ".join(f"a{i} += f * s[{i}];" for i in range(count)),
         stored=" ".join(f"z[r + {i}] = a{i};" for i in range(count)),
     )

@@ -81,6 +81,13 @@ def sum_of_products(*factors: tuple[Matrix, Matrix]) -> Matrix:
     return total
 
 
+def with_product(total: Matrix, left: Matrix, right: Matrix) -> Matrix:
+    """A sum and a product left right more, added while it is formed."""
+    pattern = total.sparsity() + ca.mtimes(left.sparsity(), right.sparsity())
+    added: Matrix = ca.mac(left, right, ca.project(total, pattern))
+    return added
+
+
 def cumulative_sum(columns: AnyMatrix, points: int) -> AnyMatrix:
     """Running sums over the points of stacked fields, one field a column."""
     # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.

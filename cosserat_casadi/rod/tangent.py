@@ -37,6 +37,7 @@ from cosserat_casadi.maths.blocks import (
     cumulative_sum,
     hat_operator,
     reversed_places,
+    with_product,
 )
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
@@ -341,8 +342,8 @@ class Tangent:
         """Angular rows, n_a×n_a."""
         turning, stiffness, second = self.interval_operators
         # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
-        passing = self._moment_variation() + stiffness @ self.interval_variation
-        pulled = turning.T @ passing + second @ self._turns
+        passing = with_product(self._moment_variation(), stiffness, self.interval_variation)
+        pulled = with_product(turning.T @ passing, second, self._turns)
         unit = self.rod.energy_unit
         if self.in_loops:
             # The constants are those of rods of any stiffness, that may share code.

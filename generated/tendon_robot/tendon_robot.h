@@ -156,7 +156,7 @@ typedef struct {
   tendon_robot_real correction[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real d_x_d_inputs[TENDON_ROBOT_UNKNOWNS * 10];
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real kernel_reals[2240];
+  tendon_robot_real kernel_reals[2232];
   int kernel_integers[1];
 } tendon_robot_workspace;
 
