@@ -92,7 +92,7 @@ typedef struct {
   follower_reissner_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  follower_reissner_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  follower_reissner_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   follower_reissner_real load_factor;     /* share of the load that x carries; 1 where converged */
 } follower_reissner_info;
 

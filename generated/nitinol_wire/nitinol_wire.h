@@ -89,7 +89,7 @@ typedef struct {
   nitinol_wire_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  nitinol_wire_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  nitinol_wire_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   nitinol_wire_real load_factor;     /* share of the load that x carries; 1 where converged */
 } nitinol_wire_info;
 

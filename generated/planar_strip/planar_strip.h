@@ -87,7 +87,7 @@ typedef struct {
   planar_strip_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  planar_strip_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  planar_strip_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   planar_strip_real load_factor;     /* share of the load that x carries; 1 where converged */
 } planar_strip_info;
 

@@ -89,7 +89,7 @@ typedef struct {
   precurved_tube_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  precurved_tube_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  precurved_tube_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   precurved_tube_real load_factor;     /* share of the load that x carries; 1 where converged */
 } precurved_tube_info;
 

@@ -159,7 +159,7 @@ typedef struct {
   six_rod_platform_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  six_rod_platform_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  six_rod_platform_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   six_rod_platform_real load_factor;     /* share of the load that x carries; 1 where converged */
 } six_rod_platform_info;
 

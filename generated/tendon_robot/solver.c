@@ -44,9 +44,19 @@ static solver_info no_result(void) {
   return none;
 }
 
+/* What stands against x as a result where it is none: the residual at the inputs asked for, wherever the path ended. */
+static real residual_left(const real *x, const real *inputs, workspace *work) {
+  real *residual = work->points[0].residual;
+  const loads at = full_load(inputs);
+  residual_at(x, &at, residual, work);
+  return norm_of(residual) / (1 + norm_of(x));
+}
+
 /* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
 static solver_status finish(const real *x, const real *inputs, solver_info *found, solver_info *info, workspace *work) {
   if (found->status == SOLVER_CONVERGED && !(resolution_index(x, inputs, work) <= 1)) found->status = SOLVER_UNRESOLVED;
+  const int solved = found->status == SOLVER_CONVERGED || found->status == SOLVER_UNRESOLVED;
+  if (!solved) found->residual_norm = residual_left(x, inputs, work);
   if (info) *info = *found;
   return found->status;
 }

@@ -109,7 +109,7 @@ typedef struct {
   tendon_robot_status status;
   int iterations;               /* Newton steps tried */
   int jacobians;                /* Jacobians factorised */
-  tendon_robot_real residual_norm;   /* 2-norm of the residual over 1 + 2-norm of x, at load_factor */
+  tendon_robot_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   tendon_robot_real load_factor;     /* share of the load that x carries; 1 where converged */
 } tendon_robot_info;
 
