@@ -71,6 +71,9 @@ def _plain_letters(error: UnicodeError) -> tuple[str, int]:
         written = "".join(_plain_letter(letter) for letter in run)
         # 10⁶ must not become 106.
         plain += f"^{written}" if raised else written
+    # Nor 10½ 101/2.
+    if plain[:1].isdigit() and error.object[: error.start][-1:].isdigit():
+        plain = f" {plain}"
     return plain, error.end
 
 

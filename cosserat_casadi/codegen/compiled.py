@@ -25,7 +25,7 @@ from cosserat_casadi.codegen.compiled_results import (
     solution_of,
 )
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
-from cosserat_casadi.codegen.input_values import InputValues
+from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
@@ -39,7 +39,7 @@ from cosserat_casadi.codegen.manifest import (
     read_manifest,
 )
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
-from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
+from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.errors import ExportError, Problem
@@ -124,10 +124,10 @@ class Compiled(LoadedLibrary, CompiledMotion):
 
     def solve(
         self,
-        inputs: InputValues = None,
+        inputs: ArgumentValues = None,
         start: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
     ) -> CompiledSolution:
         """Equilibrium by the solver in C.
 
@@ -149,12 +149,12 @@ class Compiled(LoadedLibrary, CompiledMotion):
 
     def follow(
         self,
-        before: InputValues,
-        inputs: InputValues,
+        before: ArgumentValues,
+        inputs: ArgumentValues,
         start: npt.ArrayLike,
         *,
-        parameters_before: ParameterValues = None,
-        parameters: ParameterValues = None,
+        parameters_before: ArgumentValues = None,
+        parameters: ArgumentValues = None,
     ) -> CompiledSolution:
         """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
 
@@ -179,7 +179,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         self._function("follow")(pointer(old), *old_p, pointer(given), *p, pointer(x), work, ctypes.byref(info))
         return solution_of(x, info)
 
-    def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ParameterValues = None) -> list[CompiledSolution]:
+    def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledSolution]:
         """Equilibria of many load cases.
 
         Args:
@@ -208,7 +208,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return [solution_of(row, info) for row, info in zip(x, infos, strict=True)]
 
     def sensitivity(
-        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> tuple[FloatArray, dict[str, FloatArray]] | None:
         """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
 
@@ -220,7 +220,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return None if found is None else (found[0].x, found[0].tips)
 
     def body_sensitivity(
-        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
 
@@ -232,7 +232,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return None if found is None else found[0].bodies
 
     def stability(
-        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> CompiledStability | None:
         """Whether an equilibrium is stable, for loads with a potential; None where x is no equilibrium.
 
@@ -260,7 +260,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return CompiledStability(info.smallest_eigenvalue, info.negative, info.zero, VERDICTS[info.verdict])
 
     def parameter_sensitivity(
-        self, inputs: InputValues, x: npt.ArrayLike, *, parameters: ParameterValues = None
+        self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> Sensitivity | None:
         """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium.
 
@@ -277,7 +277,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return None if found is None else found[1]
 
     def _sensitivities(
-        self, inputs: InputValues, x: npt.ArrayLike, parameters: ParameterValues
+        self, inputs: ArgumentValues, x: npt.ArrayLike, parameters: ArgumentValues
     ) -> tuple[Sensitivity, Sensitivity] | None:
         """Derivatives with inputs and with parameters, which have no column where there are none."""
         given = self.inputs.stacked(inputs)

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.input_values import InputValues, ListedInputs
+from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
-from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues
+from cosserat_casadi.codegen.parameter_values import ListedParameters
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -137,10 +137,10 @@ class StepMemory:
 class _Given:
     """What a step is given: inputs at its start, their rates and accelerations, parameters."""
 
-    inputs: InputValues
+    inputs: ArgumentValues
     inputs_rate: npt.ArrayLike | None
     inputs_acceleration: npt.ArrayLike | None
-    parameters: ParameterValues
+    parameters: ArgumentValues
 
 
 @dataclass(frozen=True)
@@ -220,10 +220,10 @@ class CompiledMotion(ABC):
 
     def rest(
         self,
-        inputs: InputValues = None,
+        inputs: ArgumentValues = None,
         x: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
     ) -> StepState | None:
         """A state at rest; None where supports, joints or cables are not closed there.
 
@@ -243,11 +243,11 @@ class CompiledMotion(ABC):
         self,
         state: StepState,
         dt: float,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> CompiledStep:
@@ -272,11 +272,11 @@ class CompiledMotion(ABC):
         self,
         state: StepState,
         dt: float,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
@@ -300,16 +300,21 @@ class CompiledMotion(ABC):
     def inverse_dynamics(
         self,
         state: StepState,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
     ) -> FloatArray:
         """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
         residual = np.zeros(self.size)
         p = self.parameters.passed(parameters)
-        given = [pointer(self.inputs.stacked(inputs)), *p, self._rates(inputs_rate), self._rates(inputs_acceleration)]
+        given = [
+            pointer(self.inputs.stacked(inputs)),
+            *p,
+            self._changing(inputs_rate),
+            self._changing(inputs_acceleration, "inputs_acceleration"),
+        ]
         # A slice of a table is no vector in memory: C reads what lies side by side.
         named = {"x": state.x, "v": state.v, "a": state.a}
         arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
@@ -319,17 +324,22 @@ class CompiledMotion(ABC):
     def linearise(
         self,
         state: StepState,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         inputs_rate: npt.ArrayLike | None = None,
         *,
-        parameters: ParameterValues = None,
+        parameters: ArgumentValues = None,
     ) -> LinearMotion:
         """Derivatives of the equations of motion at a state."""
         stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
         columns = self._columns(self.size)
         results = [stiffness, damping, mass, *columns.in_order]
         p = self.parameters.passed(parameters)
-        arguments = [pointer(self._packed(state)), pointer(self.inputs.stacked(inputs)), *p, self._rates(inputs_rate)]
+        arguments = [
+            pointer(self._packed(state)),
+            pointer(self.inputs.stacked(inputs)),
+            *p,
+            self._changing(inputs_rate),
+        ]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
         return LinearMotion(stiffness.T, damping.T, mass.T, **columns.as_matrices)
 
@@ -346,7 +356,7 @@ class CompiledMotion(ABC):
         """A step by one of the two functions in C, and what it returned."""
         chosen = options or StepOptions()
         # It must outlive the call: the struct alone does not keep it.
-        acceleration = self._rates(given.inputs_acceleration)
+        acceleration = self._changing(given.inputs_acceleration, "inputs_acceleration")
         budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts, acceleration)
         packed = self._packed(state)
         info = _Info()
@@ -354,7 +364,7 @@ class CompiledMotion(ABC):
         status = self._motion_function(word)(
             pointer(self.inputs.stacked(given.inputs)),
             *self.parameters.passed(given.parameters),
-            self._rates(given.inputs_rate),
+            self._changing(given.inputs_rate),
             ctypes.c_double(dt),
             pointer(packed),
             room.kept,
@@ -374,9 +384,9 @@ class CompiledMotion(ABC):
         )
         return end, STATUSES[status]
 
-    def _rates(self, rates: npt.ArrayLike | None) -> Any:
+    def _changing(self, rates: npt.ArrayLike | None, name: str = "inputs_rate") -> Any:
         """Rates or accelerations of the inputs as an argument in C, which is null for zero."""
-        return None if rates is None else pointer(vector(rates, self.inputs.size, "rates of inputs"))
+        return None if rates is None else pointer(vector(rates, self.inputs.size, name))
 
     def _packed(self, state: StepState) -> FloatArray:
         """A state as its struct in C."""

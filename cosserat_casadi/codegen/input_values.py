@@ -15,7 +15,7 @@ from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.stacked import StackedLayout
 
-InputValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
+ArgumentValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
 
 
@@ -48,7 +48,7 @@ class ListedInputs(StackedLayout[ListedValue]):
     what = "an input"
     several = "inputs"
 
-    def stacked(self, values: InputValues = None, name: str = "inputs") -> FloatArray:
+    def stacked(self, values: ArgumentValues = None, name: str = "inputs") -> FloatArray:
         """All inputs as one vector, shape (size,).
 
         Args:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-FUNCTION = re.compile(r"^static int casadi_f\d+\([^\n]*\) \{\n(?:[^}\n][^\n]*\n)*\}\n", flags=re.M)
+WRITTEN_FUNCTION = re.compile(r"^static int casadi_f\d+\([^\n]*\) \{\n(?:[^}\n][^\n]*\n)*\}\n", flags=re.M)
 """A function of a source that CasADi has written."""
 
 COMMENT = re.compile(r"^  /\* #\d+: [^\n]*\n", flags=re.M)
@@ -22,7 +22,7 @@ DECLARATION = re.compile(r"^  ((?:const )?casadi_(?:real|int)) (.*);\n", flags=r
 LAST = "  return 0;\n}\n"
 """What a function ends with."""
 
-NAME = re.compile(r"\bw\d+\b")
+COLUMN_NAME = re.compile(r"\bw\d+\b")
 """Name of a column."""
 
 PLACE = re.compile(r"\*(w\d+)=w(?:\+(\d+))?(?=[,;])")
@@ -42,11 +42,11 @@ PIECE = rf"  for \(i=0, cs=({COLUMN}); i<(\d+); \+\+i\) \*rr\+\+ = \*cs\+\+;"
 CLEAR = r"  casadi_clear\((?P<to>w\d+), \d+\);"
 DENSE_PRODUCT = r"  (?P<routine>casadi_mtimes_dense(?:_sparse)?)\([^;]*, (?P<to>w\d+)(?:, 0)?\);"
 
-RUNS = rf"  casadi_runs\((?:w|{COLUMN}), casadi_r\d+, \d+, \d+, (?P<to>w\d+)\);"
+RUNS_CALL = rf"  casadi_runs\((?:w|{COLUMN}), casadi_r\d+, \d+, \d+, (?P<to>w\d+)\);"
 """Not CasADi's own: moves.py writes it."""
 
 MAKE = [
-    RUNS,
+    RUNS_CALL,
     SLICE,
     COPY,
     GATHER,
@@ -106,7 +106,7 @@ class Instruction:
     anew: bool = field(init=False)
 
     def __post_init__(self) -> None:
-        self.reads = set(NAME.findall(self.code))
+        self.reads = set(COLUMN_NAME.findall(self.code))
         # Of code that is like nothing above: all that it names.
         self.makes = self.reads
         self.anew = False
@@ -114,7 +114,7 @@ class Instruction:
         changed = matched(CHANGE, self.code)
         if made is not None:
             without = self.code[: made.start("to")] + self.code[made.end("to") :]
-            self.reads = set(NAME.findall(without))
+            self.reads = set(COLUMN_NAME.findall(without))
             self.makes = {made["to"]}
             self.anew = True
         elif changed is not None:

@@ -19,23 +19,24 @@ from math import gcd
 
 from cosserat_casadi.codegen.instructions_in_c import (
     CLEAR,
+    COLUMN_NAME,
     COPY,
     DENSE_PRODUCT,
-    FUNCTION,
     GATHER,
-    NAME,
     PIECE,
     SLICE,
     STACK,
+    WRITTEN_FUNCTION,
     Instruction,
     Instructions,
     matched,
 )
 
-SHORTEST = 8
+SHORTEST_RUN = 8
 """Entries of a run from which on it is moved at once."""
 
-RUNS = """static void casadi_runs(const casadi_real* x, const casadi_int* begin, casadi_int count, casadi_int length,
+RUNS_ROUTINE = """\
+static void casadi_runs(const casadi_real* x, const casadi_int* begin, casadi_int count, casadi_int length,
     casadi_real* y) {
   for (; count > 0; --count, ++begin, y += length) memcpy(y, x + *begin, length * sizeof(casadi_real));
 }
@@ -53,13 +54,13 @@ ALONE = "_alone"
 def with_fewer_moves(source: str) -> str:
     """A source of CasADi's with fewer moves in its functions."""
     moves = _Moves(source)
-    written = FUNCTION.sub(lambda function: moves.fewer(function[0]), source)
+    written = WRITTEN_FUNCTION.sub(lambda function: moves.fewer(function[0]), source)
     if moves.tables:
-        first = FUNCTION.search(written)
+        first = WRITTEN_FUNCTION.search(written)
         assert first is not None, "tables are those of functions"
         # Before the function stands a comment that belongs to it.
         begin = written.rfind("\n\n", 0, first.start()) + 2
-        written = written[:begin] + "".join(moves.tables) + RUNS + written[begin:]
+        written = written[:begin] + "".join(moves.tables) + RUNS_ROUTINE + written[begin:]
         written = written.replace(MATHS, f"{MATHS}#include <string.h>\n", 1)
     return _without_unused(written)
 
@@ -95,20 +96,22 @@ class _Moves:
                 continue
             numbers = _numbers(self.source, found["table"])
             length = _run_length(numbers)
-            if length < SHORTEST:
+            if length < SHORTEST_RUN:
                 continue
             begins = numbers[::length]
             of = found["of"]
             pieces = _pieces_there(listed, k)
             if pieces is not None:
-                in_pieces = _begins_in_pieces(begins, length, pieces, instructions.places)
+                _, behind = _place(of)
+                in_stack = [behind + begin for begin in begins]
+                in_pieces = _begins_in_pieces(in_stack, length, pieces, instructions.places)
                 if in_pieces is not None:
                     begins = in_pieces
                     of = "w"
             code = f"  casadi_runs({of}, {self._table(begins)}, {len(begins)}, {length}, {found['to']});"
             moved = Instruction(instruction.comment, code)
             if of == "w" and pieces is not None:
-                moved.reads = {name for piece, _ in pieces for name in NAME.findall(piece)}
+                moved.reads = {name for piece, _ in pieces for name in COLUMN_NAME.findall(piece)}
             listed[k] = moved
 
     def _table(self, begins: Sequence[int]) -> str:
@@ -133,17 +136,20 @@ def _read_where_they_lie(listed: list[Instruction]) -> None:
 
 def _behind(found: re.Match[str]) -> str:
     """What the copy is of, as an expression."""
-    of = found["of"]
-    (column,) = NAME.findall(of)
-    further = int(found.groupdict().get("begin") or 0)
-    if of != column:
-        further += int(of.strip("()").split("+")[1])
-    return f"({column}+{further})" if further else column
+    column, behind = _place(found["of"])
+    behind += int(found.groupdict().get("begin") or 0)
+    return f"({column}+{behind})" if behind else column
+
+
+def _place(of: str) -> tuple[str, int]:
+    """Column, and how many entries behind its beginning, of what an instruction names."""
+    column, _, behind = of.strip("()").partition("+")
+    return column, int(behind or 0)
 
 
 def _is_read_elsewhere(listed: list[Instruction], k: int, copy: str, original: str) -> bool:
     """Let what reads a copy that instruction k makes read the original, if that can be; else change nothing."""
-    (column,) = NAME.findall(original)
+    (column,) = COLUMN_NAME.findall(original)
     if column == copy:
         return False
     changed = False
@@ -215,10 +221,10 @@ def _begins_in_pieces(
     ends = list[int]()
     end = 0
     for piece, count in pieces:
-        column, _, further = piece.strip("()").partition("+")
+        column, behind = _place(piece)
         if column not in places:
             return None
-        shifts.append(places[column] + int(further or 0) - end)
+        shifts.append(places[column] + behind - end)
         end += count
         ends.append(end)
     found = []
@@ -258,7 +264,7 @@ def _form_alone(listed: list[Instruction]) -> None:
             named = [j for j in range(k) if to in listed[j].makes | listed[j].reads]
             # A factor that is the column itself has been read of zeros.
             clear = matched([CLEAR], listed[named[-1]].code) if named else None
-            if clear is not None and NAME.findall(listed[k].code).count(to) == 1:
+            if clear is not None and COLUMN_NAME.findall(listed[k].code).count(to) == 1:
                 routine = product["routine"]
                 listed[k].code = listed[k].code.replace(f"{routine}(", f"{routine}{ALONE}(")
                 listed[k].anew = True

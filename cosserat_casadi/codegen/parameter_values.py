@@ -10,16 +10,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.input_values import ListedValue, listed_values
+from cosserat_casadi.codegen.input_values import ArgumentValues, ListedValue, listed_values
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene import Scene, parse_scene
-
-ParameterValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
-"""By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ class ListedParameters(StackedLayout[ListedValue]):
             return None
         return scene, parameter_layout(scene)
 
-    def stacked(self, values: ParameterValues = None) -> FloatArray:
+    def stacked(self, values: ArgumentValues = None) -> FloatArray:
         """All parameters as one vector, shape (size,).
 
         Raises:
@@ -82,9 +79,11 @@ class ListedParameters(StackedLayout[ListedValue]):
 
     @cached_property
     def _scene_values(self) -> FloatArray:
-        return self.pack()
+        values = self.pack()
+        values.setflags(write=False)
+        return values
 
-    def passed(self, values: ParameterValues = None) -> list[Any]:
+    def passed(self, values: ArgumentValues = None) -> list[Any]:
         """The argument of functions in C; none where the scene has no parameters.
 
         Raises:
@@ -93,7 +92,7 @@ class ListedParameters(StackedLayout[ListedValue]):
         vector = self.stacked(values)
         return [pointer(vector)] if self.size else []
 
-    def rows(self, values: ParameterValues = None) -> FloatArray:
+    def rows(self, values: ArgumentValues = None) -> FloatArray:
         """One row, or those that are given, shape (rows, size).
 
         Raises:

@@ -94,7 +94,7 @@ class TracedLoad:
 
 
 def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
-    """The kernel of a load, made once for each load: it differs neither with its inputs nor with the discretisation.
+    """The kernel of a load, made once for each load, stored entries of its values and size of its data.
 
     Args:
         member: the kind of load.

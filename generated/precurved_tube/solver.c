@@ -77,7 +77,6 @@ solver_status solver_follow(const real *from, const real *inputs, real *x, solve
     const newton_result start = start_path(&path, &DAMPED_NEWTON, x, work);
     count_work(&found, &start);
     found.status = start.status;
-    found.residual_norm = start.residual_norm;
     if (start.status == SOLVER_CONVERGED) follow_to_the_end(&path, 1, x, work, &found);
   }
   return finish(x, inputs, &found, info, work);

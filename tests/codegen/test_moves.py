@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
-from cosserat_casadi.codegen.moves import ALONE, SHORTEST, with_fewer_moves
+from cosserat_casadi.codegen.moves import ALONE, SHORTEST_RUN, with_fewer_moves
 
 ROWS = 12
 """Rows of the matrices of random functions; entries of a column are runs of this length."""
@@ -36,7 +36,7 @@ def changed(x: ca.MX, rng: np.random.Generator, pool: list[ca.MX]) -> ca.MX:
     """A matrix of ROWS rows out of some that there are: moved, changed, multiplied or put together."""
     y = pool[rng.integers(len(pool))]
     count = y.shape[1]
-    kind = rng.integers(7)
+    kind = rng.integers(8)
     if kind == 0:
         begin = int(rng.integers(count))
         return y[:, begin : begin + 1 + int(rng.integers(count - begin))]
@@ -52,6 +52,11 @@ def changed(x: ca.MX, rng: np.random.Generator, pool: list[ca.MX]) -> ca.MX:
     if kind == 5:
         constant = rng.uniform(-0.5, 0.5, (count, 4)) * (rng.uniform(size=(count, 4)) < 0.5)
         return y @ ca.sparsify(ca.DM(constant))
+    if kind == 6:
+        # Columns of another division of the entries: a gather behind a slice of a stack.
+        entries = ca.vec(ca.horzcat(x, y))[int(rng.integers(1, ROWS)) : -ROWS]
+        columns = entries.numel() // ROWS
+        return ca.reshape(entries[: ROWS * columns], ROWS, columns)[:, rng.permutation(columns).tolist()]
     return ca.mac(y, ca.DM(rng.uniform(-0.5, 0.5, (count, x.shape[1]))), x)
 
 
@@ -89,13 +94,18 @@ def test_pieces_are_read_where_they_lie() -> None:
 
 
 HEAD = "static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {\n"
-VARIABLES = "  casadi_int i;\n  casadi_real *rr, *w0=w, *w1=w+20, *w2=w+40;\n  const casadi_real *cs;\n"
+VARIABLES = "  casadi_int i;\n  casadi_real *rr, *w0=w, *w1=w+20, *w2=w+40, *w3=w+80;\n  const casadi_real *cs;\n"
+
+
+def function_of(*codes: str) -> str:
+    """A function of these instructions."""
+    body = "".join(f"  /* #{k}: */\n  {code}\n" for k, code in enumerate(codes))
+    return f"{HEAD}{VARIABLES}{body}  return 0;\n}}\n"
 
 
 def written(*codes: str) -> str:
     """A function of these instructions, with fewer moves."""
-    body = "".join(f"  /* #{k}: */\n  {code}\n" for k, code in enumerate(codes))
-    return with_fewer_moves(f"{HEAD}{VARIABLES}{body}  return 0;\n}}\n")
+    return with_fewer_moves(function_of(*codes))
 
 
 PIECE = "for (rr=w1, cs=w0+4; cs!=w0+14; cs+=1) *rr++ = *cs;"
@@ -144,11 +154,11 @@ def test_products_alone() -> None:
 def test_entries_in_short_runs_are_taken_one_by_one() -> None:
     x = ca.MX.sym("x", 9, 9)
     product = ca.vec(x @ x)
-    long_runs = [*range(40, 40 + SHORTEST), *range(SHORTEST), *range(20, 20 + SHORTEST)]
+    long_runs = [*range(40, 40 + SHORTEST_RUN), *range(SHORTEST_RUN), *range(20, 20 + SHORTEST_RUN)]
     short_runs = [*range(40, 43), *range(3), *range(21, 24)]
     function = ca.Function("runs", [x], [product.nz[long_runs], product.nz[short_runs]])
     text, (compiled,) = in_c([function], "runs")
-    assert re.search(rf" casadi_runs\(w\d+, casadi_r0, 3, {SHORTEST}, w\d+\);", text)
+    assert re.search(rf" casadi_runs\(w\d+, casadi_r0, 3, {SHORTEST_RUN}, w\d+\);", text)
     assert len(re.findall(r"\bcii=casadi_s\d+", text)) == 1
     assert_same(compiled, function)
 
@@ -162,6 +172,23 @@ def test_runs_out_of_two_pieces_of_a_stack() -> None:
     function = ca.Function("stacks", [x], [in_one_piece, over_an_end])
     _, (compiled,) = in_c([function], "stacks")
     assert_same(compiled, function)
+
+
+def test_runs_behind_a_slice_of_a_stack() -> None:
+    x, y = ca.MX.sym("x", 20), ca.MX.sym("y", 20)
+    stack = ca.vertcat(ca.sin(x), ca.cos(y))
+    behind = ca.reshape(stack[10:40], 10, 3)[:, [1, 0, 2]]
+    function = ca.Function("behind", [x, y], [ca.vec(behind) * 2])
+    _, (compiled,) = in_c([function], "behind")
+    assert_same(compiled, function)
+    stacked = "rr=w2;\n  for (i=0, cs=w0; i<20; ++i) *rr++ = *cs++;\n  for (i=0, cs=w1; i<20; ++i) *rr++ = *cs++;"
+    gathered = "for (cii=casadi_s0, rr=w3, cs=(w2+10); cii!=casadi_s0+16; ++cii) *rr++ = cs[*cii];"
+    numbers = ", ".join(map(str, [*range(10, 18), *range(8)]))
+    source = f"static const casadi_int casadi_s0[16] = {{{numbers}}};\n\n/* behind */\n"
+    runs = with_fewer_moves(source + function_of(stacked, gathered))
+    # Twenty entries of w0, of which ten are left out, then w1, which lies behind it.
+    assert "casadi_r0[2] =\n  {20, 10};" in runs
+    assert "rr=w2;" not in runs
 
 
 def test_nothing_is_left_that_nothing_names() -> None:

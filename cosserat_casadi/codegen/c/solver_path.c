@@ -192,7 +192,6 @@ static void follow_to_the_end(const load_path *path, int has_jacobian, real *x, 
   const newton_result result = newton(&at, &DAMPED_NEWTON, x, end.point->residual, end.spare, work);
   count_work(info, &result);
   info->status = SOLVER_LOAD_STALLED;
-  info->residual_norm = result.residual_norm;
 }
 
 static void solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {

@@ -42,6 +42,7 @@ static int solve_with_care(const real *inputs, real *x, workspace *work, solver_
   updated_jacobian *jacobian = work->updated_jacobians;
   real *trial = work->points[1].x;
   real step = (real)0.25;
+  real residual_norm = 0;
   memset(point, 0, sizeof *point);
   for (int k = 0; k < MAX_STEPS && point->t < 1 && step >= MIN_STEP; k++) {
     const real end = point->t + step > 1 ? 1 : point->t + step;
@@ -57,12 +58,13 @@ static int solve_with_care(const real *inputs, real *x, workspace *work, solver_
     }
     memcpy(point->x, trial, sizeof point->x);
     point->t = end;
-    info->residual_norm = result.residual_norm;
+    residual_norm = result.residual_norm;
     step *= 2;
   }
   if (point->t < 1) return 0;
   memcpy(x, point->x, sizeof point->x);
   info->status = SOLVER_CONVERGED;
+  info->residual_norm = residual_norm;
   info->load_factor = 1;
   return 1;
 }
@@ -127,6 +129,7 @@ solver_status tubes_track(const real *inputs, real *x, solver_memory *memory, co
       memcpy(x, kept, sizeof kept);
       *memory = work->memory;
       found.status = SOLVER_LOST_TRACK;
+      found.residual_norm = residual_left(x, inputs, work);
       found.load_factor = 0;
       end = SOLVER_LOST_TRACK;
     } else {

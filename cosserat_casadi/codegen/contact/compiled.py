@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
-from cosserat_casadi.codegen.input_values import InputValues
+from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, check_folder, input_count, is_sound, read_manifest
@@ -128,7 +128,7 @@ class CompiledContact(LoadedLibrary):
         return self._answer(Outcome.CONVERGED, state, info, None)
 
     def solve(
-        self, inputs: InputValues = None, start: CompiledContactSolution | None = None
+        self, inputs: ArgumentValues = None, start: CompiledContactSolution | None = None
     ) -> CompiledContactSolution:
         """Equilibrium by the solver in C.
 
@@ -149,7 +149,7 @@ class CompiledContact(LoadedLibrary):
 
     def track(
         self,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         start: CompiledContactSolution,
         *,
         max_iterations: int | None = None,

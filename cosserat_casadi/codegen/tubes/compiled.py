@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
-from cosserat_casadi.codegen.input_values import InputValues
+from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
 from cosserat_casadi.codegen.plain import pointer, vector
@@ -50,7 +50,7 @@ class CompiledTubesSolution:
         determinant: 1 of tubes that do not twist, 0 where the robot snaps, negative where it cannot stay.
         iterations: Newton steps.
         jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual.
+        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
         load_factor: share of the way that x has come; 1 where it converged.
         derivatives: of the tip of each tube with the inputs, shape (7, m), where they were asked for.
         memory: what the next turn begins with.
@@ -98,7 +98,7 @@ class CompiledTubes(LoadedLibrary):
         """Number of unknowns."""
         return int(self.manifest["unknowns"])
 
-    def solve(self, inputs: InputValues = None, start: CompiledTubesSolution | None = None) -> CompiledTubesSolution:
+    def solve(self, inputs: ArgumentValues = None, start: CompiledTubesSolution | None = None) -> CompiledTubesSolution:
         """Equilibrium by the solver in C.
 
         Args:
@@ -116,7 +116,7 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         return self._answer(STATUSES[status], given, x, info)
 
-    def follow(self, start: CompiledTubesSolution, inputs: InputValues) -> CompiledTubesSolution:
+    def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
 
         Args:
@@ -136,7 +136,7 @@ class CompiledTubes(LoadedLibrary):
 
     def track(
         self,
-        inputs: InputValues,
+        inputs: ArgumentValues,
         start: CompiledTubesSolution,
         *,
         derivatives: bool = True,
@@ -177,7 +177,7 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("solve_sensitivity")(*arguments)
         return None if status != 0 else by_tip(self.tubes, columns)
 
-    def residual(self, x: npt.ArrayLike, inputs: InputValues) -> FloatArray:
+    def residual(self, x: npt.ArrayLike, inputs: ArgumentValues) -> FloatArray:
         """The residual, shape (unknowns,)."""
         given = self.inputs.stacked(inputs)
         result = np.zeros(self.unknowns)
