@@ -95,7 +95,7 @@ static void subtract_known(const real *rows, const real *known, int from, int to
 enum { ROWS_BEFORE_FOURS = N % 4 };
 
 /* Substitutes forward with the unit lower triangle. */
-static void substitute_forward(const real *a, real *b) {
+static void solve_lower_triangle(const real *a, real *b) {
   for (int i = 0; i < ROWS_BEFORE_FOURS; i++) {
     for (int k = 0; k < i; k++) b[i] -= a[k * N + i] * b[k];
   }
@@ -113,7 +113,7 @@ static void substitute_forward(const real *a, real *b) {
 }
 
 /* Substitutes backward with the upper triangle, whose diagonal holds inverse pivots. */
-static void substitute_backward(const real *a, real *b) {
+static void solve_upper_triangle(const real *a, real *b) {
   for (int i = N - 4; i >= ROWS_BEFORE_FOURS; i -= 4) {
     const real *triangle = a + i * N + i;
     real *left = b + i;
@@ -136,8 +136,8 @@ static void substitute_backward(const real *a, real *b) {
 static void back_substitute(const jacobian_factors *jacobian, real *b, workspace *work) {
   (void)work;
   permute(jacobian->pivots, b);
-  substitute_forward(jacobian->factors, b);
-  substitute_backward(jacobian->factors, b);
+  solve_lower_triangle(jacobian->factors, b);
+  solve_upper_triangle(jacobian->factors, b);
 }
 
 /* Factorised Jacobian at x; zero where it is not finite. */
