@@ -33,7 +33,7 @@ static real distance(const real *a, const real *b, int n) {
 /* Broyden's update: B += r s^T / (s^T s) for a full step s that leaves the residual r. The inverse that is applied from
    the steps alone is that of the matrix updated step by step. */
 static int test_broyden(workspace *work) {
-  static real updated[N * N], residual[N], step[N], back[N];
+  static real updated[N * N], residual[N], other[N], back[N];
   updated_jacobian *jacobian = work->updated_jacobians;
   const real inputs[INPUTS] = SOLVER_DEFAULTS;
   const loads at = full_load(inputs);
@@ -45,23 +45,24 @@ static int test_broyden(workspace *work) {
   jacobian->count = 0;
   for (int i = 0; i < N; i++) residual[i] = 0.1 * uniform();
   for (int k = 0; k < 4; k++) {
-    CHECK(newton_step(jacobian, residual, step, work));
+    real *step = place_of_step(jacobian);
+    const real square = newton_step(jacobian, residual, step, work);
+    CHECK(fabs(square - dot(step, step)) <= 1e-14 * square);
     product(updated, step, back, N);
     for (int i = 0; i < N; i++) back[i] = -back[i];
     CHECK(distance(back, residual, N) < 1e-9 * (1 + norm_of(step)));
-    append_step(jacobian, step);
+    append_step(jacobian, square);
     for (int i = 0; i < N; i++) residual[i] = 0.05 * uniform();
-    const real square = dot(step, step);
     for (int j = 0; j < N; j++) {
       for (int i = 0; i < N; i++) updated[j * N + i] += residual[i] * step[j] / square;
     }
     /* Any vector, not the residual alone. */
     real vector[N];
     for (int i = 0; i < N; i++) vector[i] = uniform();
-    CHECK(response(jacobian, residual, vector, step, work));
-    product(updated, step, back, N);
+    CHECK(response(jacobian, residual, vector, other, work));
+    product(updated, other, back, N);
     for (int i = 0; i < N; i++) back[i] = -back[i];
-    CHECK(distance(back, vector, N) < 1e-8 * (1 + norm_of(step)));
+    CHECK(distance(back, vector, N) < 1e-8 * (1 + norm_of(other)));
   }
   return 0;
 }
