@@ -213,6 +213,7 @@ section = { shape = "circle", radius = 5e-3 }
     assert 0.6 < motion.events[4].place < 0.7
 
 
+@pytest.mark.slow
 def test_a_place_that_slides_fast_along_the_rod_is_not_taken_for_one_that_jumps() -> None:
     """Taken for a jump, the rod would be held at a section that moves: that took 4e-3 of the energy unseen."""
     motion = simulate(build(read_scene("examples/rod_hits_floor.toml").with_motion_inputs(), moving=True))

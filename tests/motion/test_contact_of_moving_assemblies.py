@@ -372,6 +372,7 @@ bodies = ["head"]
 """
 
 
+@pytest.mark.slow
 def test_a_head_that_is_shaken_off_the_floor_by_its_handle_does_not_leave_and_touch_without_end() -> None:
     """The handle strikes while the head is on the floor: flights of nanoseconds, and dips of less than the error."""
     motion = simulate(moving(CLUB))

@@ -56,6 +56,7 @@ def test_rows_with_obstacles_are_not_compiled() -> None:
     assert not any(chunk.compiled for chunk in chunks(inputs_alone))
 
 
+@pytest.mark.slow
 def test_compiled_rows_of_smooth_contact_are_those_of_python() -> None:
     """The same columns, and in them the same numbers: none for contact, and stability in its own."""
     scene = parse_scene(SCENE + "width = 0.02\n")
