@@ -183,4 +183,8 @@ def test_estimates_of_one_rod_bound_its_errors(kind: str, first: int) -> None:
 @pytest.mark.parametrize("seed", mostly_slow(range(60), quick=[1]))
 def test_estimates_of_assemblies_bound_their_errors(seed: int, tendons: bool) -> None:
     solution = solve_scene(with_tolerance(assembled_scene(seed, tendons=tendons), drawn_tolerance(seed)))
+    if not solution.converged:
+        # What is not found claims nothing: no estimate stands beside it.
+        assert solution.error_estimate is None
+        pytest.skip(solution.message)
     check(solution, by_finer_model(solution))
