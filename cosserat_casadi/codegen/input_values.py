@@ -41,8 +41,20 @@ class ListedValue:
             yield Problem(self.name, f"must be finite, got {value.tolist()}")
 
 
+class ListedValues(StackedLayout[ListedValue]):
+    """Inputs or parameters of an exported folder, stacked into one vector."""
+
+    @cached_property
+    def _scene_values(self) -> FloatArray:
+        """The scene's own, shape (size,)."""
+        values = self.pack()
+        # Solutions keep what they were found for: nobody may change it under them.
+        values.setflags(write=False)
+        return values
+
+
 @dataclass(frozen=True)
-class ListedInputs(StackedLayout[ListedValue]):
+class ListedInputs(ListedValues):
     """The inputs of an exported folder, stacked into one vector."""
 
     what = "an input"
@@ -64,13 +76,6 @@ class ListedInputs(StackedLayout[ListedValue]):
         if isinstance(values, Mapping):
             return self.pack(values)
         return vector(values, self.size, name)
-
-    @cached_property
-    def _scene_values(self) -> FloatArray:
-        values = self.pack()
-        # Solutions keep what they were found for: nobody may change it under them.
-        values.setflags(write=False)
-        return values
 
 
 def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ...]:

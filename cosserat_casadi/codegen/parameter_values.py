@@ -10,17 +10,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.input_values import ArgumentValues, ListedValue, listed_values
+from cosserat_casadi.codegen.input_values import ArgumentValues, ListedValues, listed_values
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
-from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene import Scene, parse_scene
 
 
 @dataclass(frozen=True)
-class ListedParameters(StackedLayout[ListedValue]):
+class ListedParameters(ListedValues):
     """The parameters of an exported folder, stacked into one vector p.
 
     Attributes:
@@ -76,12 +75,6 @@ class ListedParameters(StackedLayout[ListedValue]):
         if vector.size != self.size:
             self.split(vector)
         return vector
-
-    @cached_property
-    def _scene_values(self) -> FloatArray:
-        values = self.pack()
-        values.setflags(write=False)
-        return values
 
     def passed(self, values: ArgumentValues = None) -> list[Any]:
         """The argument of functions in C; none where the scene has no parameters.

@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.codegen.numbered import Numbers, Origins, Step, column
 
 FEWEST = 4
-"""Sums in a row from which on they are a running sum."""
+"""Sums of a chain from which on it is a running sum."""
 
 SHORTEST = 6
 """Entries of a column from which on they are worth a loop."""
@@ -45,7 +45,7 @@ LOOP = """/* {name} of {columns} columns of {size} entries. */
 
 
 @dataclass
-class _Row:
+class _Chain:
     """Steps each of which adds to the result of the one before.
 
     Attributes:
@@ -65,7 +65,7 @@ class _Row:
 
 
 def in_running_sums(steps: Sequence[Step], origins: Origins) -> list[Step]:
-    """The same steps; of those that add to the result of another in a row one is made.
+    """The same steps, with one in place of each chain that adds on to its own results.
 
     Args:
         steps: a program's.
@@ -76,34 +76,34 @@ def in_running_sums(steps: Sequence[Step], origins: Origins) -> list[Step]:
         for result in step.results:
             if len(result.numbers):
                 made_by[int(origins.owners(result.numbers[:1])[0])] = k
-    rows = _rows(steps, origins, made_by)
-    in_a_row = {k for row in rows for k in row.steps[1:]}
-    functions = {size: _function(*size) for size in dict.fromkeys(row.size for row in rows)}
-    sums = {row.steps[0]: _running_sum(row, steps, functions[row.size]) for row in rows}
-    return [sums.get(k, step) for k, step in enumerate(steps) if k not in in_a_row]
+    chains = _chains(steps, origins, made_by)
+    in_a_chain = {k for chain in chains for k in chain.steps[1:]}
+    functions = {size: _function(*size) for size in dict.fromkeys(chain.size for chain in chains)}
+    sums = {chain.steps[0]: _running_sum(chain, steps, functions[chain.size]) for chain in chains}
+    return [sums.get(k, step) for k, step in enumerate(steps) if k not in in_a_chain]
 
 
-def _rows(steps: Sequence[Step], origins: Origins, made_by: dict[int, int]) -> list[_Row]:
-    """Steps that add in a row."""
-    rows: list[_Row] = []
-    row_of: dict[bytes, _Row] = {}
+def _chains(steps: Sequence[Step], origins: Origins, made_by: dict[int, int]) -> list[_Chain]:
+    """Chains of steps, each of which adds to the result of the one before."""
+    chains: list[_Chain] = []
+    chain_of: dict[bytes, _Chain] = {}
     for k, step in enumerate(steps):
         if not _adds(step):
             continue
         first, second = (operand.numbers for operand in step.operands)
-        row = row_of.pop(first.tobytes(), None)
+        chain = chain_of.pop(first.tobytes(), None)
         added = second
-        if row is None:
-            row = row_of.pop(second.tobytes(), None)
+        if chain is None:
+            chain = chain_of.pop(second.tobytes(), None)
             added = first
-        if row is None or _latest(added, origins, made_by) >= row.steps[0]:
-            row = _Row(first)
-            rows.append(row)
+        if chain is None or _latest(added, origins, made_by) >= chain.steps[0]:
+            chain = _Chain(first)
+            chains.append(chain)
             added = second
-        row.steps.append(k)
-        row.added.append(added)
-        row_of[step.results[0].numbers.tobytes()] = row
-    return [row for row in rows if len(row.steps) >= FEWEST and _is_computed(row.first, origins)]
+        chain.steps.append(k)
+        chain.added.append(added)
+        chain_of[step.results[0].numbers.tobytes()] = chain
+    return [chain for chain in chains if len(chain.steps) >= FEWEST and _is_computed(chain.first, origins)]
 
 
 def _adds(step: Step) -> bool:
@@ -124,13 +124,13 @@ def _is_computed(numbers: Numbers, origins: Origins) -> bool:
     return not bool(np.any(origins.is_constant(numbers)))
 
 
-def _running_sum(row: _Row, steps: Sequence[Step], function: ca.Function) -> Step:
-    """Steps in a row as one, whose result begins with the column that they add to."""
-    sums = [steps[k].results[0].numbers for k in row.steps]
+def _running_sum(chain: _Chain, steps: Sequence[Step], function: ca.Function) -> Step:
+    """A chain as one step, whose result begins with the column that it adds to."""
+    sums = [steps[k].results[0].numbers for k in chain.steps]
     return Step(
         function=function,
-        operands=[column(row.first), column(np.concatenate(row.added))],
-        results=[column(np.concatenate([row.first, *sums]))],
+        operands=[column(chain.first), column(np.concatenate(chain.added))],
+        results=[column(np.concatenate([chain.first, *sums]))],
         instructions=np.inf,
         called=True,
     )
