@@ -27,12 +27,12 @@ from rows import append, read
 
 from cosserat_casadi import Solution, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
-from cosserat_casadi.accuracy.metrics import largest_turn, prolong
-from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
+from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.pose_errors import pose_error

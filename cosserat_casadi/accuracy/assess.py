@@ -17,10 +17,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
-from cosserat_casadi.accuracy.metrics import largest_turn
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.numerics.outcome import Outcome
 

@@ -16,8 +16,8 @@ from math import ceil
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
-from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Modes, Preview
+from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
 

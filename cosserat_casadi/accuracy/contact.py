@@ -9,16 +9,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.metrics import SAFETY, largest_turn, with_estimate
+from cosserat_casadi.equilibrium.contact.answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.solve import solve_contact
-from cosserat_casadi.equilibrium.solution import Contact, Solution
-from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.equilibrium.metrics import largest_turn
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise
+from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 
@@ -59,8 +60,8 @@ def solve_contact_scene(
                 return fine
             continue
         fine = replace(fine, iterations=coarse.iterations + fine.iterations)
-        if coarse.converged and fine.converged and _same_contacts(coarse, fine):
-            judged = _with_contact_error(coarse, fine)
+        if coarse.converged and fine.converged and same_contacts(coarse, fine):
+            judged = with_contact_error(coarse, fine)
             assert judged.error_estimate is not None
             if scene.accuracy.fixed or judged.error_estimate <= tolerance:
                 return replace(judged, iterations=fine.iterations)
@@ -86,43 +87,3 @@ def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
 
 def _most(modes: int | tuple[int, ...]) -> int:
     return modes if isinstance(modes, int) else max(modes)
-
-
-def _same_contacts(first: Solution, second: Solution) -> bool:
-    """Whether the same rods touch the same obstacles in the same way."""
-    names = [
-        [(touch.owner, touch.obstacle, touch.kind, touch.of_body) for touch in solution.contacts]
-        for solution in (first, second)
-    ]
-    return names[0] == names[1]
-
-
-def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
-    """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
-
-    Forces count relative to EI/ℓ² or to the largest one, whichever is more.
-    """
-    judged = with_estimate(coarse, fine)
-    discrete = coarse.model.discrete
-    units = [discrete.contact_unit(contact.owner, of_body=contact.of_body) for contact in coarse.contacts]
-    largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
-    distances = [0.0]
-    for first, second in zip(coarse.contacts, fine.contacts, strict=True):
-        distances += [abs(first.start - second.start), abs(first.end - second.end)]
-        forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
-        distances.append(float(np.abs(forces).max()) / largest)
-        distances += [distance / largest for distance in _between_sections(first, second)]
-    contact_error = SAFETY * max(distances)
-    assert judged.error_estimate is not None
-    assert judged.shape_error_estimate is not None
-    return replace(
-        judged,
-        error_estimate=max(judged.error_estimate, contact_error),
-        shape_error_estimate=max(judged.shape_error_estimate, contact_error),
-    )
-
-
-def _between_sections(first: Contact, second: Contact) -> list[float]:
-    """Differences of the forces at sections inside two lines, N."""
-    one, other = ({section.at: section.force for section in contact.inside} for contact in (first, second))
-    return [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]

@@ -6,8 +6,7 @@ in a subspace, and that on another grid is one correction with the residual of t
 the square of what is neglected, so the superconvergence of the tip is in them: an error estimated from the tail of
 the strain alone would be far too large.
 
-What is compared are the tips. The tip of a rod that a support holds is where it is held, however coarse the model:
-such a rod is watched at sections between its ends too, and where a scene asks for the whole shape every rod is.
+What is compared is what a tolerance binds: model/watched.py.
 """
 
 from __future__ import annotations
@@ -20,15 +19,14 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.pose_change import rotation_vectors
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
+from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
 from cosserat_casadi.model.equations import Equations
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -39,50 +37,13 @@ Modes = Mapping[str, tuple[int, ...]]
 CORRECTIONS = 2
 """Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
 
-BETWEEN = (0.25, 0.5, 0.75, 1.0)
-"""Sections at which a held rod is watched."""
-
-SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
-"""Sections at which a whole shape is watched or compared: several for each wave of the error of 60 modes."""
-
-
-def watched(model: Model, rod: str) -> FloatArray:
-    """Abscissae of the sections whose poses must be right to the tolerance, shape (k,)."""
-    scene = model.scene
-    if scene.accuracy.shape:
-        return SAMPLES[1:]
-    holders = (*scene.supports, *scene.joints)
-    held = any(holder.rod == rod for holder in holders)
-    if held:
-        return np.array(BETWEEN)
-    return np.array([1.0])
-
-
-def watched_cables(model: Model) -> dict[str, float]:
-    """Cables whose lengths must be right to the tolerance, with the lengths of their rods that it is relative to, m."""
-    cables = {}
-    for actuator in model.scene.actuators:
-        if EFFECTS[actuator.kind].drawn_as == "cable":
-            rod = model.discrete.rods[actuator.rod]
-            cables[actuator.name] = rod.length
-    return cables
-
-
-def relative_cable_lengths(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
-    """Lengths of the cables over those of their rods, shape (cables,)."""
-    lengths = []
-    for name, rod_length in watched_cables(model).items():
-        _, cable_length, _ = model.actuator[name](x, inputs)
-        lengths.append(float(cable_length) / rod_length)
-    return np.array(lengths)
-
 
 @dataclass(frozen=True)
-class Watched:
-    """What is watched of an equilibrium.
+class WatchedNumbers:
+    """What is watched of an equilibrium, in numbers.
 
     Attributes:
-        positions: of the watched sections of all rods, over the lengths of their rods, shape (k, 3).
+        positions: of sections and bodies over lengths, shape (k, 3).
         quaternions: world_Q_section, shape (k, 4).
         cables: lengths of cables over those of their rods, shape (c,).
     """
@@ -91,8 +52,13 @@ class Watched:
     quaternions: FloatArray
     cables: FloatArray
 
-    def change_from(self, before: Watched) -> FloatArray:
-        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.accuracy.pose_change`."""
+    @classmethod
+    def of(cls, positions: Matrix, quaternions: Matrix, cables: Matrix) -> WatchedNumbers:
+        """From positions 3×k, quaternions 4×k and lengths 1×c of CasADi."""
+        return cls(_numbers(positions).T, _numbers(quaternions).T, _numbers(cables).reshape(-1))
+
+    def change_from(self, before: WatchedNumbers) -> FloatArray:
+        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.maths.pose_change`."""
         displacements = self.positions - before.positions
         rotations = rotation_vectors(before.quaternions, self.quaternions)
         lengthening = np.zeros((len(self.cables), 3))
@@ -102,7 +68,7 @@ class Watched:
 
 @dataclass(frozen=True)
 class FinerShift:
-    """Changes by modes that a reference lacks, as in :mod:`cosserat_casadi.accuracy.pose_change`.
+    """Changes by modes that a reference lacks, as in :mod:`cosserat_casadi.maths.pose_change`.
 
     Attributes:
         tips: of what is watched, shape (2k + c, 3).
@@ -147,7 +113,7 @@ class Preview:
         return np.asarray(self.jacobian + added)
 
     @cached_property
-    def tips(self) -> Watched:
+    def tips(self) -> WatchedNumbers:
         """What is watched of the reference."""
         return self._tips(self.reference.x)
 
@@ -218,7 +184,7 @@ class Preview:
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
         # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
         tips = self._tips(x)
-        by_grid = self._tips_of(regridded).change_from(tips)
+        by_grid = _tips_of(regridded).change_from(tips)
         by_unknowns = self._tips(corrected).change_from(tips)
         return by_grid + by_unknowns
 
@@ -235,29 +201,30 @@ class Preview:
                 follows, which tells shapes but not tips.
         """
         model = self.model
-        discrete = discrete_scene(model.scene, model.inputs, dict(grids))
-        known = _known_unknowns(model.discrete, discrete)
-        stiffness = _stiffness(discrete)[np.ix_(~known, ~known)]
+        richer = Richer(model.discrete, discrete_scene(model.scene, model.inputs, dict(grids)))
         inverse = _inverse(self._regular_jacobian)
 
-        def system(x: FloatArray) -> System:
-            return System(discrete, Arguments(ca.DM(x), ca.DM(self._inputs)))
+        def system(known: FloatArray, missing: FloatArray) -> System:
+            unknowns = richer.joined(ca.DM(known), ca.DM(missing))
+            return System(richer.discrete, Arguments(unknowns, ca.DM(self._inputs)))
 
-        x = np.zeros(discrete.unknowns.size)
-        x[known] = self.reference.x
-        current = system(x)
+        known: FloatArray = self.reference.x
+        missing: FloatArray = np.zeros(richer.missing_size)
+        current = system(known, missing)
         # Of the tips the modes alone: what the grid does to them is a look of its own.
-        tips = self._tips_of(current)
+        tips = _tips_of(current)
         for _ in range(max(sweeps, 1)):
-            residual = _numbers(Equations(current).residual)[:, 0]
-            x[~known] -= np.linalg.solve(stiffness, residual[~known])
+            _, lacking = richer.split(_as_numbers(Equations(current).residual))
+            step, missing_step = richer.split(richer.elastic_step(lacking))
+            known = known + _column(step)
+            missing = missing + _column(missing_step)
             if sweeps > 0:
-                residual = _numbers(Equations(system(x)).residual)[:, 0]
-                x[known] -= inverse @ residual[known]
-            current = system(x)
+                residual, _ = richer.split(_as_numbers(Equations(system(known, missing)).residual))
+                known = known - inverse @ _column(residual)
+            current = system(known, missing)
         return FinerShift(
-            tips=self._tips_of(current).change_from(tips),
-            shapes=self._shapes_of(current).change_from(self._shapes),
+            tips=_tips_of(current).change_from(tips),
+            shapes=_shapes_of(current).change_from(self._shapes),
         )
 
     @property
@@ -279,27 +246,12 @@ class Preview:
         arguments = Arguments(ca.DM(x), ca.DM(self._inputs))
         return System(discrete, arguments)
 
-    def _tips(self, x: FloatArray) -> Watched:
+    def _tips(self, x: FloatArray) -> WatchedNumbers:
         """What is watched, on the reference's grid, by the model's functions."""
-        positions = []
-        quaternions = []
-        for name, discrete_rod in self.model.discrete.rods.items():
-            X = watched(self.model, name)
-            # The tip alone costs a fraction of all fields.
-            if len(X) == 1:
-                position, quaternion, _ = self.model.tip[name](x, self._inputs)
-            else:
-                fields = self.model.fields[name](x, self._inputs)
-                interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
-                position = fields[0] @ interpolation
-                quaternion = fields[1] @ interpolation
-            positions.append(_numbers(position).T / discrete_rod.properties.length)
-            quaternions.append(_unit(quaternion))
-        cables = relative_cable_lengths(self.model, x, self._inputs)
-        return Watched(np.concatenate(positions), np.concatenate(quaternions), cables)
+        return WatchedNumbers.of(*self.model.watched(x, self._inputs))
 
     @cached_property
-    def _shapes(self) -> Watched:
+    def _shapes(self) -> WatchedNumbers:
         """Sections all along the rods of the reference, as its solution tells them."""
         positions = []
         quaternions = []
@@ -307,74 +259,24 @@ class Preview:
             pose = self.reference.pose(SAMPLES, name)
             positions.append(pose.position / discrete_rod.properties.length)
             quaternions.append(pose.quaternion)
-        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
-
-    def _shapes_of(self, system: System) -> Watched:
-        """Sections all along the rods of a system that has numbers for its arguments."""
-        poses = [_poses_of(system, name, SAMPLES) for name in system.discrete.rods]
-        positions, quaternions = zip(*poses, strict=True)
-        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
-
-    def _tips_of(self, system: System) -> Watched:
-        """What is watched of a system that has numbers for its arguments."""
-        poses = [_poses_of(system, name, watched(self.model, name)) for name in system.discrete.rods]
-        positions, quaternions = zip(*poses, strict=True)
-        cables = []
-        for name, rod_length in watched_cables(self.model).items():
-            _, cable_length, _ = system.actuators.state(name)
-            cables.append(float(_numbers(cable_length)[0, 0]) / rod_length)
-        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.array(cables))
+        return WatchedNumbers(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
 
 
-def _poses_of(system: System, rod: str, X: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Positions over the length and quaternions of k sections, shapes (k, 3) and (k, 4)."""
-    discrete_rod = system.discrete.rods[rod]
-    shape = system.shapes[rod]
-    if len(X) == 1:
-        # One section watched is the tip, which is a node.
-        position = shape.position_at(-1)
-        quaternion = shape.quaternion[:, -1]
-    else:
-        interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
-        position = shape.position @ interpolation
-        quaternion = shape.quaternion @ interpolation
-    # The shape is that in the frame of the base section (docs/theory.md, section 1).
-    base = system.base(rod)
-    base_position = ca.repmat(base.position, 1, len(X))
-    base_quaternion = ca.repmat(base.quaternion, 1, len(X))
-    world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
-    world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
-    return _numbers(world_position).T / discrete_rod.properties.length, _unit(world_quaternion)
+def _shapes_of(system: System) -> WatchedNumbers:
+    """Sections all along the rods of a system that has numbers for its arguments."""
+    positions = []
+    quaternions = []
+    for name, discrete_rod in system.discrete.rods.items():
+        rod_positions, rod_quaternions = section_poses(system, name, SAMPLES)
+        positions.append(rod_positions / discrete_rod.properties.length)
+        quaternions.append(rod_quaternions)
+    return WatchedNumbers.of(ca.horzcat(*positions), ca.horzcat(*quaternions), ca.DM(1, 0))
 
 
-def _known_unknowns(coarse: DiscreteScene, fine: DiscreteScene) -> Mask:
-    """Which unknowns of a finer discretisation a coarser one has too: all but the strains of higher degree."""
-    known = np.ones(fine.unknowns.size, dtype=bool)
-    for name, fine_rod in fine.rods.items():
-        first = fine.unknowns.strain(name).start
-        counts = zip(fine_rod.columns.items(), coarse.rods[name].discretisation.modes, strict=True)
-        for (component, columns), modes in counts:
-            own = slice(first + columns.start, first + columns.stop)
-            known[own] = fine_rod.degrees(component) < modes
-    return known
-
-
-def _stiffness(discrete: DiscreteScene) -> FloatArray:
-    """Stiffness of all rods among all unknowns, zero for those that are no strains, shape (n, n)."""
-    size = discrete.unknowns.size
-    stiffness = np.zeros((size, size))
-    for name, discrete_rod in discrete.rods.items():
-        own = discrete.unknowns.strain(name)
-        stiffness[own, own] = discrete_rod.stiffness
-    return stiffness
-
-
-def _unit(quaternion: Matrix) -> FloatArray:
-    """Quaternions of k sections, from 4×k, shape (k, 4)."""
-    quaternions = _numbers(quaternion).T
-    # Interpolated quaternions are not of unit length.
-    unit: FloatArray = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
-    return unit
+def _tips_of(system: System) -> WatchedNumbers:
+    """What is watched of a system that has numbers for its arguments."""
+    tips = watched(system)
+    return WatchedNumbers.of(tips.positions, tips.quaternions, tips.cables)
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:
@@ -390,3 +292,13 @@ def _numbers(matrix: Matrix) -> FloatArray:
     """Values of a matrix without symbols: what supports add is wrapped as an expression."""
     values: FloatArray = ca.evalf(ca.MX(matrix)).full()
     return values
+
+
+def _column(vector: Matrix) -> FloatArray:
+    """Values of a vector without symbols, shape (n,)."""
+    return _numbers(vector).reshape(-1)
+
+
+def _as_numbers(matrix: Matrix) -> ca.DM:
+    """A matrix without symbols: what supports add is wrapped as an expression."""
+    return ca.DM(_numbers(matrix))

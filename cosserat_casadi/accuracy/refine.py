@@ -33,15 +33,17 @@ from cosserat_casadi.accuracy.assess import (
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
-from cosserat_casadi.accuracy.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
+from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise
+from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
@@ -311,7 +313,7 @@ def _with_fixed(solver: SceneSolver) -> Solution:
     shape_error = judged.shape_error_estimate
     # Written so that an estimate which is not a number counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
-        return judged
+        return with_tolerance_note(judged)
     return _unresolved(judged)
 
 

@@ -19,8 +19,8 @@ from math import ceil, log
 
 import numpy as np
 
-from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
+from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0

@@ -13,10 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.metrics import prolong
-from cosserat_casadi.accuracy.preview import SAMPLES
-from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve, stabilised
@@ -25,6 +23,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.signals import signal_modes
+from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -119,7 +119,7 @@ class SceneSolver:
             if corrected is not None:
                 self.iterations += corrected.iterations
                 return corrected
-        solution = solve(model, self.values, progress=self.progress)
+        solution = solve(model, self.values, progress=self.progress, estimate_error=False)
         self.iterations += solution.iterations
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:

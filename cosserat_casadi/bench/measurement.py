@@ -184,14 +184,14 @@ class Trial:
             "vm_cold_us": nan,
         }
         if self.solution.converged:
-            times["vm_cold_us"] = best_time(lambda: solve(self.solution.model))
+            times["vm_cold_us"] = best_time(lambda: solve(self.solution.model, estimate_error=False))
         return times
 
 
 def _solved(candidate: Candidate, scene: scenes.Scene) -> Solution:
     if candidate.tolerance is not None:
         return solve_scene(with_tolerance(scene, candidate.tolerance))
-    return solve(build(scene, candidate.discretisation(scene)))
+    return solve(build(scene, candidate.discretisation(scene)), estimate_error=False)
 
 
 def _built(scene: scenes.Scene, discretisation: dict[str, Discretisation]) -> tuple[Model, float]:

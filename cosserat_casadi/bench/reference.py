@@ -8,16 +8,16 @@ from math import asin
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.metrics import prolong
-from cosserat_casadi.accuracy.preview import watched
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
+from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.model.watched import watched_sections
 
 FINEST = 1e-10
 """Tolerance of the solution that the finest discretisation is derived from."""
@@ -103,7 +103,7 @@ def states(solution: Solution) -> dict[str, RodState]:
     """What is compared of a solution."""
     rods = {}
     for name, discrete_rod in solution.model.discrete.rods.items():
-        sections = watched(solution.model, name)
+        sections = watched_sections(solution.model.scene, name)
         pose = solution.pose(sections, name)
         clamp = solution.base_wrench(name)
         rods[name] = RodState(
@@ -162,7 +162,7 @@ def _finest(scene: scenes.Scene) -> Solution:
     modes = max(max(d.modes) for d in chosen) + MORE_MODES
     nodes = 3 * max(d.nodes for d in chosen) // 2 + MORE_NODES
     model = build(plain, discretise(plain, modes, nodes, "magnus8"))
-    finest = solve(model, start=prolong(near, model))
+    finest = solve(model, start=prolong(near, model), estimate_error=False)
     if not finest.converged:
         raise NoReferenceError(f"no reference was found: {finest.message}")
     return finest
@@ -173,7 +173,7 @@ def _shot(finest: Solution, fine: dict[str, RodState]) -> dict[str, RodState]:
     values = load_values(model.scene, model.inputs, finest.inputs)
     rods = {}
     for name, discrete_rod in model.discrete.rods.items():
-        sections = list(watched(model, name))
+        sections = list(watched_sections(model.scene, name))
         # Shooting starts from the clamp's wrench, and so stays on the branch.
         start = fine[name].base_wrench
         rods[name] = shoot(model.scene, discrete_rod.properties, values, sections, start)

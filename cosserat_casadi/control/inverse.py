@@ -67,7 +67,7 @@ def check_targets(targets: tuple[scenes.Target, ...]) -> None:
 def first_solution(model: Model) -> Solution:
     """The equilibrium at the scene's own inputs, brought into bounds: where a search starts."""
     first_inputs = decision_variables(model).clipped(model.pack())
-    return solve(model, model.inputs.unpack(first_inputs))
+    return solve(model, model.inputs.unpack(first_inputs), estimate_error=False)
 
 
 def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
@@ -85,7 +85,7 @@ def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -
         if _satisfies(result, stable):
             break
         inputs = problem.inputs(change)
-        begun = solve(model, model.inputs.unpack(inputs))
+        begun = solve(model, model.inputs.unpack(inputs), estimate_error=False)
         again = _from_start(problem, begun, change, stable)
         rounds = result.rounds + again.rounds
         best = min(result, again, key=lambda candidate: _rank(candidate, stable))
@@ -137,7 +137,7 @@ def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
 
 def _from_relaxed(problem: LiftedProblem, result: Inverse) -> Inverse:
     """The search once more, from where the rod relaxes to; the first result where that leads to nothing stable."""
-    relaxed = solve(problem.model, result.values, start=result.solution, stable=True)
+    relaxed = solve(problem.model, result.values, start=result.solution, stable=True, estimate_error=False)
     if not relaxed.stable:
         return result
     # Damped about the relaxed inputs now, so that the search stays near the stable branch.

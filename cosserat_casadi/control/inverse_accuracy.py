@@ -9,16 +9,16 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
-from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
-from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, wanted_poses
+from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.pose import POSE_SIZE
+from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -108,7 +108,7 @@ def inverse_rows(
         starts = {}
         for row, result in list(pending.items()):
             # One solve at the same inputs tells what the modes leave, and is where a next search would start.
-            reference = solve(finer, result.values, start=prolong(result.solution, finer))
+            reference = solve(finer, result.values, start=prolong(result.solution, finer), estimate_error=False)
             judged = _with_estimate(result, reference)
             if accuracy.fixed:
                 settled[row] = _fixed_verdict(judged, stable)

@@ -150,7 +150,7 @@ class LiftedProblem:
         """
         inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
-        solution = solve(self.model, values, start=x)
+        solution = solve(self.model, values, start=x, estimate_error=False)
         gaps = target_errors(solution, self.targets)
         result = Inverse(solution, self.targets, gaps, False, rounds, at_bounds=self._at_bounds(inputs))
         return replace(result, met=meets_all(result))

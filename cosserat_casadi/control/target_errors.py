@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose import POSE_SIZE
+from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model

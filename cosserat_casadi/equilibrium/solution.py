@@ -107,6 +107,8 @@ class Solution:
             and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
             estimated.
         shape_error_estimate: the same over all sections, those between nodes included.
+        wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
+            that are unknown; None if not estimated.
         contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
     """
 
@@ -122,12 +124,31 @@ class Solution:
     stable: bool | None = None
     error_estimate: float | None = None
     shape_error_estimate: float | None = None
+    wrench_error_estimate: float | None = None
     contacts: tuple[Contact, ...] = ()
 
     @property
     def converged(self) -> bool:
         """Whether x is an equilibrium to the solver's tolerance."""
         return self.outcome is Outcome.CONVERGED
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning.
+
+        A tolerance that nobody has written asks for nothing of modes and nodes that the scene fixes. What did not
+        converge is not within any tolerance.
+        """
+        accuracy = self.model.scene.accuracy
+        if not accuracy.binds:
+            return None
+        if not self.converged:
+            return False
+        error = self.shape_error_estimate if accuracy.shape else self.error_estimate
+        if error is None:
+            return None
+        # Written so that an estimate which is not a number counts as too large.
+        return error <= accuracy.tolerance
 
     def tip(self, rod: str | None = None) -> Pose:
         """Pose of a rod's tip."""

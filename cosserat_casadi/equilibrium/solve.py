@@ -12,6 +12,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.answer_error import with_error_estimate
+from cosserat_casadi.equilibrium.contact.answer_error import with_error_in_contact
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.solve import solve_contact
 from cosserat_casadi.equilibrium.contact.state import without_contacts
@@ -99,8 +101,9 @@ def solve(
     settings: ContinuationSettings | None = None,
     progress: Progress | None = None,
     raise_on_failure: bool = False,
+    estimate_error: bool = True,
 ) -> Solution:
-    """Equilibrium of a model.
+    """Equilibrium of a model, with the estimate of its error at these inputs.
 
     Args:
         model: what to solve.
@@ -119,6 +122,8 @@ def solve(
         settings: limits of the continuation.
         progress: receives the share of the path that is done.
         raise_on_failure: raise instead of returning what did not converge.
+        estimate_error: whether the error that modes and nodes leave is estimated; it costs about a Newton step. The
+            message says so where the estimate is above the scene's tolerance.
 
     Raises:
         SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
@@ -129,7 +134,10 @@ def solve(
     model = model.at(parameters)
     limits = settings or continuation_limits(model)
     if model.scene.touches_exactly:
+        values = _values_in_contact(model, values)
         solution = _in_contact(model, values, start, method, limits, progress)
+        if estimate_error:
+            solution = with_error_in_contact(solution, values, limits.newton)
         if stable:
             check_potential(solution.model, solution.inputs)
             solution = noted_unstable(solution)
@@ -158,6 +166,8 @@ def solve(
     )
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
+    if estimate_error:
+        solution = with_error_estimate(solution)
     if raise_on_failure and not solution.converged:
         raise SolveError(solution.message)
     return solution
@@ -165,7 +175,7 @@ def solve(
 
 def _in_contact(
     model: Model,
-    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None,
+    values: Mapping[str, npt.ArrayLike] | None,
     start: Start,
     method: str,
     limits: ContinuationSettings,
@@ -182,14 +192,20 @@ def _in_contact(
         raise ValueError(f"contact is found by continuation, not by {method!r}")
     if start is not None and not isinstance(start, Solution):
         raise ValueError("contact is found from a solution, or from the unloaded scene: unknowns name no contacts")
-    if values is not None and not isinstance(values, Mapping):
-        by_name = model.inputs.split(values)
-        # The forces of contacts that a solution has found are not given but sought.
-        given = set(input_layout(without_contacts(model.scene)).names)
-        values = {name: value for name, value in by_name.items() if name in given}
     return solve_contact(
         model.scene, Grids(model.discretisation), values, start=start, newton=limits.newton, progress=progress
     )
+
+
+def _values_in_contact(
+    model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
+) -> Mapping[str, npt.ArrayLike] | None:
+    """Inputs by name, without the forces of contacts that a solution holds: they are not given but sought."""
+    if values is None or isinstance(values, Mapping):
+        return values
+    by_name = model.inputs.split(values)
+    given = set(input_layout(without_contacts(model.scene)).names)
+    return {name: value for name, value in by_name.items() if name in given}
 
 
 def noted_unstable(solution: Solution) -> Solution:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -97,6 +98,11 @@ class Model(ModelFunctions, MotionFunctions):
         if bound.discrete.scaling is None:
             return nominal
         return Model(with_numbers(nominal.discrete, change(bound.scene)))
+
+    @cached_property
+    def richer(self) -> Model:
+        """The model with modes and intervals added, on which the error of an answer shows (docs/theory.md, 10)."""
+        return Model(self.discrete.richer.discrete)
 
     @property
     def inputs(self) -> InputLayout:

@@ -12,12 +12,15 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.maths.numbers import any_symbolic, known
+from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.enrichment import enriched
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
@@ -25,6 +28,7 @@ from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
 from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.signals import signal_modes
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -268,12 +272,113 @@ class DiscreteScene:
         """The frame of a body, in units of the stiffest and the longest rod that holds it."""
         return self.frames[FrameName("body", body)]
 
+    @cached_property
+    def richer(self) -> Richer:
+        """The same scene with modes and intervals added, on which the error of an answer shows."""
+        nominal = self.nominal
+        modes = signal_modes(nominal.scene)
+        discretisation = {name: enriched(rod.discretisation, modes) for name, rod in self.rods.items()}
+        discrete = discrete_scene(nominal.scene, self.layout, discretisation)
+        if self.scaling is not None:
+            discrete = with_numbers(discrete, self.scene, self.parameters)
+        return Richer(self, discrete)
+
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """What forces of contact on a rod, or on a body, are counted in, N."""
         if not of_body:
             return self.tension_unit(name)
         frame = self.body_frame(name)
         return frame.unit / frame.length
+
+
+@dataclass(frozen=True)
+class Richer:
+    """A scene with modes and intervals added to those of another, and how their unknowns correspond.
+
+    Attributes:
+        coarse: the scene whose answers are judged.
+        discrete: the same scene with modes and intervals added.
+    """
+
+    coarse: DiscreteScene
+    discrete: DiscreteScene
+
+    @cached_property
+    def known(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns the coarse scene has too: all but the strains of higher degree; shape (richer size,)."""
+        known = np.ones(self.discrete.size, dtype=bool)
+        for name, rich_rod in self.discrete.rods.items():
+            first = self.discrete.unknowns.strain(name).start
+            counts = zip(rich_rod.columns.items(), self.coarse.rods[name].discretisation.modes, strict=True)
+            for (component, columns), modes in counts:
+                entries = slice(first + columns.start, first + columns.stop)
+                known[entries] = rich_rod.degrees(component) < modes
+        return known
+
+    @property
+    def missing_size(self) -> int:
+        """Number of strain coordinates that the coarse scene lacks."""
+        return self.discrete.size - self.coarse.size
+
+    @cached_property
+    def is_among_last(self) -> npt.NDArray[np.bool_]:
+        """Whether each missing coordinate is of one of the two highest degrees of its strain, shape (missing,)."""
+        last = np.zeros(self.discrete.size, dtype=bool)
+        for name, rich_rod in self.discrete.rods.items():
+            first = self.discrete.unknowns.strain(name).start
+            for component, columns in rich_rod.columns.items():
+                degrees = rich_rod.degrees(component)
+                last[first + columns.start : first + columns.stop] = degrees > degrees.max() - 2
+        return last[~self.known]
+
+    def joined(self, x: Matrix, missing: Matrix) -> Matrix:
+        """Unknowns of the richer scene from those that the coarse one has and those that it lacks."""
+        places = np.empty(self.discrete.size, dtype=int)
+        places[self.known] = np.arange(self.coarse.size)
+        places[~self.known] = self.coarse.size + np.arange(self.missing_size)
+        return ca.vertcat(x, missing)[places.tolist()]
+
+    def split(self, richer: Matrix) -> tuple[Matrix, Matrix]:
+        """The entries of a vector of the richer scene that the coarse one has, and those that it lacks."""
+        known = np.flatnonzero(self.known).tolist()
+        missing = np.flatnonzero(~self.known).tolist()
+        return richer[known], richer[missing]
+
+    def elastic_step(self, residual: Matrix) -> Matrix:
+        """Step by which elasticity alone would take up what the balance lacks in the missing coordinates.
+
+        The step −K⁻¹ r of all strains, K the stiffness of the richer rods. With parameters K is scaled by its diagonal.
+
+        Args:
+            residual: of the richer scene in the missing coordinates, missing×1.
+
+        Returns:
+            step of all unknowns of the richer scene, zero for those that are no strains.
+        """
+        lacking = self.joined(ca.DM(self.coarse.size, 1), residual)
+        units = [self._stiffness_unit(name) for name in self.discrete.rods]
+        rest = self.discrete.size - sum(rod.size for rod in self.discrete.rods.values())
+        unit = ca.vertcat(*units, ca.DM.ones(rest, 1))
+        return -(ca.DM(ca.sparsify(self._nominal_flexibility)) @ (lacking / unit)) / unit
+
+    @cached_property
+    def _nominal_flexibility(self) -> ca.DM:
+        """K⁻¹ of all rods by the numbers that scale the equations, zero for unknowns that are no strains."""
+        size = self.discrete.size
+        flexibility = np.zeros((size, size))
+        nominal = self.discrete.nominal
+        for name, rod in nominal.rods.items():
+            strains = nominal.unknowns.strain(name)
+            flexibility[strains, strains] = np.linalg.inv(known(rod.stiffness))
+        return ca.DM(flexibility)
+
+    def _stiffness_unit(self, rod: str) -> Matrix:
+        """Square root of how much each diagonal entry of K differs from that of the nominal scene, n×1."""
+        stiffness = self.discrete.rods[rod].stiffness
+        nominal = np.diag(known(self.discrete.nominal.rods[rod].stiffness))
+        if is_symbolic(stiffness):
+            return ca.sqrt(ca.diag(as_matrix(stiffness)) / ca.DM(nominal))
+        return ca.DM(np.sqrt(np.diag(known(stiffness)) / nominal))
 
 
 def discrete_scene(

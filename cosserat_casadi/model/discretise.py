@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -14,11 +15,6 @@ DEFAULT_MODES = 6
 
 DEFAULT_TRANSPORT = "magnus6"
 """Integration method of the rotation where neither the scene nor the caller gives one."""
-
-
-def nodes_for(modes: int) -> int:
-    """Chebyshev intervals that resolve the shape of a rod whose strain has so many modes."""
-    return 2 * modes + 2
 
 
 def discretise(

@@ -233,7 +233,10 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
         "inputs_acceleration": discrete.layout.size,
         "base_position": 3,
         "base_quaternion": 4,
+        "correction": discrete.size,
     }
+    if name == "missing":
+        return discrete.richer.missing_size
     return sizes[name]
 
 

@@ -13,7 +13,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.contact_depth import contact_depths
-from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import (
@@ -29,6 +29,7 @@ from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
+from cosserat_casadi.model.watched import watched
 from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.statics import Statics
@@ -45,6 +46,9 @@ RESOLVED_NORM = 1e-2
 
 PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
+
+CORRECTED = ("x", "correction", "missing", "inputs")
+"""Arguments of the functions that judge an answer x by modes and intervals that it lacks."""
 
 POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
 
@@ -141,6 +145,36 @@ class ModelFunctions:
         """(x, inputs) ↦ how deep nodes and bodies are inside obstacles, in widths; None without smooth contact."""
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
+
+    @scene_function(Output("step"), Output("missing_step"), Output("residual"), arguments=CORRECTED)
+    def richer_balance(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ what the balance with modes and intervals added lacks at an answer.
+
+        Elastic steps of the unknowns and of the coordinates of the missing modes, and the residual in the unknowns, at
+        x + correction and the missing coordinates; docs/theory.md, section 10.
+        """
+        richer, system = _enriched(written)
+        residual, lacking = richer.split(Equations(system).residual)
+        step, missing_step = richer.split(richer.elastic_step(lacking))
+        return [step, missing_step, residual]
+
+    @scene_function(Output("positions"), Output("quaternions"), Output("cables"))
+    def watched(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ what must be right to the tolerance: positions over lengths, quaternions, relative lengths.
+
+        Of sections and bodies, 3×k and 4×k, and of cables, 1×c; see model/watched.py.
+        """
+        poses = watched(written.system)
+        return [ca.densify(ca.MX(poses.positions)), ca.densify(ca.MX(poses.quaternions)), poses.cables]
+
+    @scene_function(Output("change"), arguments=CORRECTED)
+    def richer_change(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ change of what is watched by a correction with modes and intervals added.
+
+        The largest displacement over the length, rotation angle (rad), and lengthening of a cable over the length.
+        """
+        _, system = _enriched(written)
+        return [watched(system).largest_change(watched(written.system))]
 
     @owned_functions(
         Owner.ROD,
@@ -292,6 +326,13 @@ class ModelFunctions:
         """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
         potential = written.system.potential()
         return None if potential is None else [potential]
+
+
+def _enriched(written: Expressions) -> tuple[Richer, System]:
+    """The scene with modes and intervals added, and its equations at the corrected answer."""
+    richer = written.discrete.richer
+    unknowns = richer.joined(written["x"] + written["correction"], written["missing"])
+    return richer, System(richer.discrete, Arguments(unknowns, written["inputs"]))
 
 
 def resolution_index(written: Expressions) -> Matrix:

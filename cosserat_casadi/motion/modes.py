@@ -16,11 +16,10 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.metrics import largest_turn, prolong
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve_scene
 from cosserat_casadi.accuracy.scene_solver import TIGHT
-from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -28,6 +27,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.signals import signal_modes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
@@ -336,7 +336,7 @@ def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Sol
     newton = ContinuationSettings().newton
     corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
     if corrected is None:
-        return solve(model, model.inputs.unpack(coarser.inputs))
+        return solve(model, model.inputs.unpack(coarser.inputs), estimate_error=False)
     solution = judge(model, coarser.inputs, corrected.x, corrected.outcome, corrected.iterations, 1.0, newton.tolerance)
     # What is known of the coarser solution holds for the finer one all the more.
     return replace(

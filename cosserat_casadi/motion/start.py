@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.metrics import prolong
 from cosserat_casadi.equilibrium.contact.projection import projected
+from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
@@ -70,7 +70,7 @@ def equilibrium_start(model: Model, inputs: FloatArray) -> Start:
     """
     held = _held(model)
     sentence = EQUILIBRIUM if held.size == model.size else HELD
-    return _started(model, solve(held, held.pack(model.inputs.unpack(inputs))), sentence)
+    return _started(model, solve(held, held.pack(model.inputs.unpack(inputs)), estimate_error=False), sentence)
 
 
 def given_start(model: Model, solution: Solution) -> Start:
@@ -86,7 +86,7 @@ def given_start(model: Model, solution: Solution) -> Start:
     values = {name: value for name, value in given.items() if name in names}
     # Unknowns would name no contacts: a solution does, and they are tried first.
     guess = solution if model.scene.touches_exactly else prolong(solution, held)
-    return _started(model, solve(held, values, start=guess), GIVEN)
+    return _started(model, solve(held, values, start=guess, estimate_error=False), GIVEN)
 
 
 def _held(model: Model) -> Model:

@@ -205,7 +205,7 @@ def follow_path(
         message = _sentence(path.outcome, path.factor) + path.stopped_at
         return replace(path, value=followed.value(), message=message)
     values_at_zero = model.inputs.unpack(followed.base)
-    start = solve(model, values_at_zero)
+    start = solve(model, values_at_zero, estimate_error=False)
     if not start.converged:
         outcome = PathOutcome.NO_START
         empty = Trace([], outcome=outcome)

@@ -35,6 +35,8 @@ def result(solution: Solution) -> dict[str, Any]:
         "residual_norm": solution.residual_norm,
         "error_estimate": solution.error_estimate,
         "shape_error_estimate": solution.shape_error_estimate,
+        "wrench_error_estimate": solution.wrench_error_estimate,
+        "within_tolerance": solution.within_tolerance,
         "stable": solution.stable,
         "smallest_eigenvalue": solution.smallest_eigenvalue,
         "iterations": solution.iterations,

@@ -78,3 +78,8 @@ shape = true
         if self.modes is not None or self.nodes is not None:
             return True
         return self.rotation is not None
+
+    @property
+    def binds(self) -> bool:
+        """Whether the tolerance is asked for: a tolerance that nobody has written asks nothing of fixed modes."""
+        return not self.fixed or "tolerance" in self.model_fields_set

@@ -45,7 +45,7 @@ class RowModel:
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
             # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
-            solution = solve(model, model.inputs.unpack(row), start=near)
+            solution = solve(model, model.inputs.unpack(row), start=near, estimate_error=False)
             if model.scene.touches_exactly and solution.converged:
                 near = solution
             judged = self._counted_in_measure(solution) if self.stability else None
@@ -58,7 +58,7 @@ class RowModel:
         # What rods touch is among the unknowns of a solution in contact: those of the measure are others.
         if measured is None or not solution.converged or solution.model.scene.touches_exactly:
             return solution
-        again = solve(measured, solution.inputs, start=solution.x)
+        again = solve(measured, solution.inputs, start=solution.x, estimate_error=False)
         if not again.converged:
             # Its sign is known, but not how large it is there.
             return replace(solution, smallest_eigenvalue=None)

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.accuracy.pose_change import change_size, rotation_vectors
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
+from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.spelling import closest
 from cosserat_casadi.tubes.functions import TubeFunctions

@@ -79,7 +79,7 @@ class ContactSession:
 
     def _accepted(self, given: FloatArray, start: Solution) -> dict[str, Any]:
         if np.all(np.isfinite(given)):
-            found = solve(self.model, given, start=start)
+            found = solve(self.model, given, start=start, estimate_error=False)
         else:
             found = replace(start, outcome=Outcome.NOT_FINITE, message=Outcome.NOT_FINITE.value)
         self._present = found

@@ -130,7 +130,7 @@ class Session:
         target = scenes.PositionTarget(kind="position", position=tuple(position), **pose)
         problem = self._problem(*pose.items())
         model = problem.model
-        start = solve(model, model.inputs.unpack(self._inputs), start=self._x)
+        start = solve(model, model.inputs.unpack(self._inputs), start=self._x, estimate_error=False)
         origin = problem.variables.clipped(start.inputs)
         asked = replace(problem, targets=(target,), origin=origin)
         found = with_verdict(search(asked, start, stable=False, starts=0), stable=False)

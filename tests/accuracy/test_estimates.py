@@ -11,12 +11,13 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.metrics import cable_distance, largest_turn, pose_distance, prolong
-from cosserat_casadi.accuracy.preview import SAMPLES, Preview
+from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import FURTHER_MODES, HIDDEN_SAFETY, NEGLIGIBLE, Resolution
 from cosserat_casadi.accuracy.scene_solver import corrected_from
 from cosserat_casadi.bench.shooting import shoot
+from cosserat_casadi.equilibrium.metrics import cable_distance, largest_turn, pose_distance, prolong
 from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.model.watched import SAMPLES
 from tests.families import mostly_slow
 from tests.pose_errors import pose_error
 from tests.reference.assembled_scenes import assembled_scene

@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve_scene
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.metrics import largest_turn, pose_distance, prolong
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import FURTHER_MODES, HIDDEN_SAFETY, Resolution
 from cosserat_casadi.accuracy.scene_solver import corrected_from
+from cosserat_casadi.equilibrium.metrics import largest_turn, pose_distance, prolong
 from cosserat_casadi.numerics.broyden import SINGULAR
 from tests.families import mostly_slow
 from tests.reference.held_scenes import held_scene

@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Solution, build, discretise, solve, solve_scene
-from cosserat_casadi.accuracy.metrics import pose_distance
-from cosserat_casadi.accuracy.pose_change import change_size, rotation_angles, rotation_vectors
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.maths.pose_change import change_size, rotation_angles, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.follow import follow_path
 from cosserat_casadi.paths.refine import path_distance

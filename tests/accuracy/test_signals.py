@@ -10,11 +10,11 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, USUAL_MODES, Level
-from cosserat_casadi.accuracy.metrics import cable_distance
-from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import LOADED_SWEEPS, Resolution
-from cosserat_casadi.accuracy.signals import BEYOND, signal_modes
+from cosserat_casadi.equilibrium.metrics import cable_distance
+from cosserat_casadi.maths.pose_change import change_size
+from cosserat_casadi.model.signals import BEYOND, signal_modes
 from tests.scenes import push, scene
 
 ROD: dict[str, Any] = {

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene, tune
-from cosserat_casadi.accuracy.metrics import pose_distance
+from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import push, rod, scene
 

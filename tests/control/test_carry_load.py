@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import solve
-from cosserat_casadi.accuracy.metrics import prolong
+from cosserat_casadi.equilibrium.metrics import prolong
 from examples.carry_load import HOME, LEAST, arch, carry, draw, margins, place_of_load, robot
 from tests.conftest import ROOT
 

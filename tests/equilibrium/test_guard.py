@@ -12,8 +12,8 @@ from scipy.integrate import quad
 from scipy.optimize import root
 
 from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve, solve_scene
-from cosserat_casadi.accuracy.metrics import largest_turn
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
+from cosserat_casadi.equilibrium.metrics import largest_turn
 from tests.initial_value import integrate
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene

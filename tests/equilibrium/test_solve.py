@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import cosserat_casadi
 from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve, solve_scene
-from cosserat_casadi.accuracy.metrics import pose_distance
+from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import Outcome, Solution, scene_from_dict, solve_scene
-from cosserat_casadi.accuracy.metrics import pose_distance
+from cosserat_casadi.equilibrium.metrics import pose_distance
 from tests.reference.held_scenes import held_scene
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)

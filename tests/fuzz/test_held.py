@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import Outcome
-from cosserat_casadi.accuracy.metrics import pose_distance
-from cosserat_casadi.accuracy.preview import watched
 from cosserat_casadi.bench.reference import distance, states
 from cosserat_casadi.bench.shooting import shoot
+from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.model.watched import watched_sections
 from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
 
 BUCKLED = 20
@@ -68,7 +68,7 @@ def test_a_sharply_bent_rod_vs_shooting() -> None:
     (rod,) = solution.model.discrete.rods.values()
     clamp = solution.base_wrench()
     start = np.concatenate([clamp.force, clamp.moment])
-    sections = watched(solution.model, "rod")
+    sections = watched_sections(solution.model.scene, "rod")
     truth = shoot(solution.model.scene, rod.properties, {}, sections, start)
     errors = distance({"rod": truth}, states(solution))
     assert solution.error_estimate is not None

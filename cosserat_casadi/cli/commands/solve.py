@@ -13,7 +13,7 @@ from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progr
 from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
-from cosserat_casadi.cli.reports.solution import print_beyond_tolerance, print_solution, print_unstable
+from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
@@ -37,7 +37,11 @@ def solve(
         typer.Option("--exact-contact", help="Leave the widths of obstacles out: rods touch them exactly."),
     ] = False,
 ) -> None:
-    """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
+    """Find the equilibrium of a scene.
+
+    Exit codes: 0 solved; 2 refused; 3 none found, or with --stable no stable one, or modes that the scene fixes leave an
+    error above the tolerance that it gives.
+    """
     # A file that cannot be written is refused before the solve, not after it.
     problems: list[Problem] = []
     with collect_problems(problems):
@@ -76,9 +80,9 @@ def solve(
     # On standard error, so that --json stays pure; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_unstable(Console(stderr=True))
-    if solution.converged:
-        print_beyond_tolerance(Console(stderr=True), solution)
     # Where stability cannot be judged, --stable has not found what it was asked for.
     found = solution.converged and (solution.stable or not stable)
-    if not found:
+    # Where no tolerance is asked for, None is no miss.
+    missed = solution.within_tolerance is False
+    if not found or missed:
         raise typer.Exit(NOT_FOUND)

@@ -59,25 +59,6 @@ def print_unstable(console: Console) -> None:
     )
 
 
-def print_beyond_tolerance(console: Console, solution: Solution) -> None:
-    """Warn where the modes and nodes that a scene fixes leave a larger error than the tolerance that it gives."""
-    accuracy = solution.model.scene.accuracy
-    # A tolerance that nobody has written asks for nothing.
-    if not accuracy.fixed or "tolerance" not in accuracy.model_fields_set:
-        return
-    error, what = solution.error_estimate, "the tips"
-    if accuracy.shape:
-        error, what = solution.shape_error_estimate, "the shape"
-    if error is None or error <= accuracy.tolerance:
-        return
-    print_plain(
-        console,
-        f"[bold yellow]Warning:[/] the estimated error of {what}, {error:.1e} of the length, is above the tolerance "
-        f"of {accuracy.tolerance:g}: the scene fixes its modes, nodes or rotation. Leave them out to meet it.",
-        soft_wrap=True,
-    )
-
-
 def print_unstable_inverse(console: Console) -> None:
     """Say what to do about inputs that lead to an unstable equilibrium."""
     print_plain(
@@ -127,7 +108,7 @@ def _with_error(gap: float, error: float | None) -> str:
 def _outcome_colour(solution: Solution) -> str:
     if not solution.converged:
         return "red"
-    if solution.stable is False:
+    if solution.stable is False or solution.within_tolerance is False:
         return "yellow"
     return "green"
 
@@ -188,6 +169,8 @@ def _merit_sentence(solution: Solution, work: str) -> str:
         parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
     if solution.shape_error_estimate is not None:
         parts.append(f"over the whole shape {solution.shape_error_estimate:.1e}")
+    if solution.wrench_error_estimate is not None:
+        parts.append(f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative")
     parts += discretisation_sentences(solution.model)
     if solution.converged:
         parts.append(STABILITY[solution.stable])

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from cosserat_casadi.accuracy.pose_change import rotation_angles
-from cosserat_casadi.accuracy.preview import SAMPLES, relative_cable_lengths, watched
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.model.watched import SAMPLES, watched_cables, watched_sections
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SAFETY = 2.0
@@ -50,10 +50,10 @@ def with_estimate(
 
 
 def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None) -> float:
-    """Largest pose error of one solution against the other, over all rods.
+    """Largest pose error of one solution against the other, over all rods and bodies.
 
-    The pose error of a section is the larger of two: the distance of its positions over the length of its rod, and the
-    angle between its orientations, rad.
+    The pose error of a section, or a body, is the larger of two: the distance of its positions over the length of its
+    rod, and the angle between its orientations, rad.
 
     Args:
         first: a solution.
@@ -62,20 +62,25 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
     """
     distances = [0.0]
     for name, discrete_rod in first.model.discrete.rods.items():
-        sections = watched(first.model, name) if X is None else X
+        sections = watched_sections(first.model.scene, name) if X is None else X
         first_pose = first.pose(sections, name)
         second_pose = second.pose(sections, name)
         length = discrete_rod.properties.length
         distances.append(_distance(first_pose, second_pose, length))
+    for name in first.model.discrete.bodies:
+        length = first.model.discrete.body_frame(name).length
+        distances.append(_distance(first.body(name), second.body(name), length))
     return max(distances)
 
 
 def cable_distance(first: Solution, second: Solution) -> float:
     """Largest difference of the lengths of cables, relative to those of their rods."""
-    first_lengths = relative_cable_lengths(first.model, first.x, first.inputs)
-    second_lengths = relative_cable_lengths(second.model, second.x, second.inputs)
-    changes = np.abs(first_lengths - second_lengths)
-    return float(changes.max(initial=0.0))
+    changes = [0.0]
+    for name, rod_length in watched_cables(first.model.discrete).items():
+        _, first_length, _ = first.model.actuator[name](first.x, first.inputs)
+        _, second_length, _ = second.model.actuator[name](second.x, second.inputs)
+        changes.append(abs(float(first_length) - float(second_length)) / rod_length)
+    return max(changes)
 
 
 def has_more_modes(first: Solution, second: Solution) -> bool:

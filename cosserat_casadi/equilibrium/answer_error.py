@@ -1,0 +1,274 @@
+"""The error of an answer at any inputs, from modes and intervals that its model lacks (docs/theory.md, section 10).
+
+High modes are held by elasticity above all. So each missing mode gives way by what the balance of a richer model lacks
+in it, as stiffness alone would have it; the Jacobian of the answer tells how its own unknowns follow. A few such sweeps
+are Newton's corrections with the richer model, and neither a richer Jacobian nor a richer solve is needed. Where sweeps
+do not settle, Newton's steps on the richer model are taken; where these do not settle either, the error is not known,
+and counts as the whole length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.pose_change import rotation_angles
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.model.watched import SAMPLES
+from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.rod.strain import DiscreteRod
+
+SAFETY = 1.3
+"""Factor on the change that a richer model makes, which is not exact either."""
+
+MOST_SWEEPS = 4
+"""Sweeps after which Newton's method on the richer model takes over."""
+
+MOST_STEPS = 6
+"""Newton's steps on the richer model after which the error is not known."""
+
+SETTLED = 0.2
+"""Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
+
+FAR_BELOW = 0.1
+"""Share of the tolerance below which the first change is believed: ten times as much would not matter."""
+
+FASTEST = 0.02
+"""Smallest ratio of the errors with and without two more modes that is believed."""
+
+SLOWEST = 0.7
+"""Largest ratio of the errors with and without two more modes that is believed."""
+
+UNKNOWN = 1.0
+"""Error of an answer that no correction settles near: the whole length."""
+
+ROUNDING = 2e-14
+"""Floor of every estimate."""
+
+NO_WRENCH = 1e-6
+"""Wrench, in units of EI/ℓ, below which one counts as none, and errors are relative to it."""
+
+SMALL_PART = 0.01
+"""Share of a whole wrench, in units of EI/ℓ, below which the error of its force or moment is relative to that share."""
+
+
+@dataclass(frozen=True)
+class AnswerError:
+    """Estimated errors of an answer.
+
+    Attributes:
+        watched: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the lengths of
+            cables over the length; of held rods at sections between the ends too.
+        shape: of the poses of all sections, those between nodes included; no smaller than that of what is watched.
+        wrench: of the forces and moments of bases, supports and joints, and of tensions that are unknown, relative.
+        settled: whether the corrections that it was taken from settled.
+    """
+
+    watched: float
+    shape: float
+    wrench: float
+    settled: bool
+
+
+@dataclass(frozen=True)
+class _Correction:
+    """Where a sweep or a step has led.
+
+    Attributes:
+        known: change of the unknowns of the answer, shape (n,).
+        missing: coordinates of the missing modes, shape (missing,).
+        change: of what is watched.
+    """
+
+    known: FloatArray
+    missing: FloatArray
+    change: float
+
+
+def with_error_estimate(solution: Solution) -> Solution:
+    """A solution with the estimates of its errors; as it is where it is no equilibrium.
+
+    The estimate of a solution that has one stays: it was made with more care.
+    """
+    if not solution.converged or solution.error_estimate is not None:
+        return solution
+    error = answer_error(solution)
+    estimated = replace(
+        solution,
+        error_estimate=error.watched,
+        shape_error_estimate=error.shape,
+        wrench_error_estimate=error.wrench,
+    )
+    return with_tolerance_note(estimated)
+
+
+def with_tolerance_note(solution: Solution) -> Solution:
+    """A solution whose message tells an estimated error above the tolerance."""
+    return replace(solution, message=solution.message + _tolerance_note(solution))
+
+
+def _tolerance_note(solution: Solution) -> str:
+    """What a user must know of an answer whose estimated error is above the tolerance; empty where it is not."""
+    if solution.within_tolerance is not False or not solution.converged:
+        return ""
+    accuracy = solution.model.scene.accuracy
+    error = solution.shape_error_estimate if accuracy.shape else solution.error_estimate
+    remedy = "the modes were chosen for other inputs: choose them for the range of these inputs."
+    if accuracy.fixed:
+        remedy = "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+    if error == UNKNOWN:
+        return f" Its error is not known, and may be as large as the rod; {remedy}"
+    return (
+        f" Its estimated error, {error:.2g} of the length, is above the tolerance of {accuracy.tolerance:g}; {remedy}"
+    )
+
+
+def answer_error(solution: Solution) -> AnswerError:
+    """Estimate the error of an equilibrium of its model.
+
+    Args:
+        solution: a converged one, at any inputs and parameters.
+    """
+    settled, correction = _settled_correction(solution)
+    if not settled or not np.isfinite(correction.change):
+        return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN, settled=False)
+    rest = _rest_of_series(solution, correction)
+    watched = SAFETY * (correction.change + rest) + ROUNDING
+    corrected = _richer_answer(solution, correction)
+    shape = SAFETY * (_shape_change(solution, corrected) + rest) + ROUNDING
+    wrench = SAFETY * _wrench_change(solution, corrected, correction) + ROUNDING
+    return AnswerError(watched, max(shape, watched), wrench, settled=True)
+
+
+def _settled_correction(solution: Solution) -> tuple[bool, _Correction]:
+    """Whether corrections settled, and the last one: by sweeps, else by Newton's steps on the richer model."""
+    enough = FAR_BELOW * solution.model.scene.accuracy.tolerance
+    # Far from an answer the equations overflow: what comes out then is not settled.
+    with np.errstate(all="ignore"):
+        for corrections in (_sweeps(solution), _newton_steps(solution)):
+            before = np.inf
+            for correction in corrections:
+                if not np.isfinite(correction.change):
+                    break
+                near = abs(correction.change - before) <= SETTLED * correction.change
+                if near or correction.change <= max(enough, ROUNDING):
+                    return True, correction
+                before = correction.change
+    return False, correction
+
+
+def _sweeps(solution: Solution) -> Iterator[_Correction]:
+    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow."""
+    model = solution.model
+    inputs = solution.inputs
+    inverse = _regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
+    known = np.zeros(model.size)
+    missing = np.zeros(model.discrete.richer.missing_size)
+    for _ in range(MOST_SWEEPS):
+        step, missing_step, _ = model.richer_balance(solution.x, known, missing, inputs)
+        known = known + column(step)
+        missing = missing + column(missing_step)
+        _, _, residual = model.richer_balance(solution.x, known, missing, inputs)
+        known = known - inverse @ column(residual)
+        yield _corrected(solution, known, missing)
+
+
+def _newton_steps(solution: Solution) -> Iterator[_Correction]:
+    """Corrections by Newton's method on the richer model."""
+    richer = solution.model.discrete.richer
+    model = solution.model.richer
+    unknowns = np.zeros(model.size)
+    unknowns[richer.known] = solution.x
+    for _ in range(MOST_STEPS):
+        residual = column(model.path_residual(unknowns, solution.inputs, 1.0))
+        jacobian = model.path_jacobian(unknowns, solution.inputs, 1.0).full()
+        if not np.all(np.isfinite(jacobian)):
+            return
+        unknowns = unknowns - _regular_inverse(jacobian) @ residual
+        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known])
+
+
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> _Correction:
+    change = solution.model.richer_change(solution.x, known, missing, solution.inputs)
+    return _Correction(known, missing, float(change))
+
+
+def _rest_of_series(solution: Solution, correction: _Correction) -> float:
+    """What modes beyond those of the richer model would add: the rest of a geometric series.
+
+    The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E.
+    """
+    if correction.change <= ROUNDING:
+        return 0.0
+    richer = solution.model.discrete.richer
+    without_last = np.where(richer.is_among_last, 0.0, correction.missing)
+    fewer = _corrected(solution, correction.known, without_last)
+    last = abs(correction.change - fewer.change)
+    ratio = float(np.clip(last / correction.change, FASTEST, SLOWEST))
+    return last * ratio / (1 - ratio)
+
+
+def _richer_answer(solution: Solution, correction: _Correction) -> Solution:
+    """The corrected answer as a solution of the richer model."""
+    richer = solution.model.discrete.richer
+    unknowns = np.zeros(richer.discrete.size)
+    unknowns[richer.known] = solution.x + correction.known
+    unknowns[~richer.known] = correction.missing
+    return replace(solution, model=solution.model.richer, x=unknowns)
+
+
+def _shape_change(solution: Solution, corrected: Solution) -> float:
+    """Largest displacement over the length, or rotation angle (rad), of all sections of all rods."""
+    changes = [0.0]
+    for name, rod in solution.model.discrete.rods.items():
+        before = solution.pose(SAMPLES, name)
+        after = corrected.pose(SAMPLES, name)
+        distances = np.linalg.norm(after.position - before.position, axis=1) / rod.length
+        angles = rotation_angles(before.quaternion, after.quaternion)
+        changes += [float(distances.max()), float(angles.max())]
+    return max(changes)
+
+
+def _wrench_change(solution: Solution, corrected: Solution, correction: _Correction) -> float:
+    """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
+    changes = [0.0]
+    discrete = solution.model.discrete
+    for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION):
+        change = _relative_change(solution.x[entries], correction.known[entries])
+        changes.append(change)
+    for rod in discrete.rods.values():
+        moment, force = _base_wrench_in_units(solution, rod)
+        new_moment, new_force = _base_wrench_in_units(corrected, rod)
+        whole = float(np.linalg.norm([*moment, *force]))
+        # Next to a large force a small moment is not known to all of its digits, and the other way round.
+        least = max(NO_WRENCH, SMALL_PART * whole)
+        changes.append(_relative_change(moment, new_moment - moment, least))
+        changes.append(_relative_change(force, new_force - force, least))
+    return max(changes)
+
+
+def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatArray, FloatArray]:
+    """Moment in EI/ℓ and force in EI/ℓ² of the clamp of a rod, shapes (3,)."""
+    wrench = solution.base_wrench(rod.properties.name)
+    moment = wrench.moment / rod.energy_unit
+    force = wrench.force * rod.length / rod.energy_unit
+    return moment, force
+
+
+def _relative_change(values: FloatArray, difference: FloatArray, least: float = NO_WRENCH) -> float:
+    """Size of a difference relative to that of the values, or to the least size that counts."""
+    size = max(float(np.linalg.norm(values)), least)
+    return float(np.linalg.norm(difference)) / size
+
+
+def _regular_inverse(matrix: FloatArray) -> FloatArray:
+    """The inverse, with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
+    left, singular, right = np.linalg.svd(matrix)
+    largest = float(singular.max(initial=0.0))
+    regular = np.where(singular <= SINGULAR * largest, largest, singular)
+    return np.asarray((right.T / regular) @ left.T)

@@ -1,0 +1,123 @@
+"""What of an equilibrium must be right to the tolerance: poses of sections and bodies, and lengths of cables.
+
+The tip of a rod that a support holds is where it is held, however coarse the model: such a rod is watched at sections
+between its ends too, and where a scene asks for the whole shape every rod is. See docs/theory.md, section 10.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import System
+
+BETWEEN = (0.25, 0.5, 0.75, 1.0)
+"""Sections at which a held rod is watched."""
+
+SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
+"""Sections at which a whole shape is compared: several for each wave of the error of 60 modes."""
+
+EVERY = 4
+"""Of these sections every so many are watched where the whole shape must be right."""
+
+
+@dataclass(frozen=True)
+class Watched:
+    """What is watched of an equilibrium, in symbols or in numbers.
+
+    Attributes:
+        positions: of sections over the lengths of their rods, then of bodies over the lengths of theirs, 3×k.
+        quaternions: world_Q_section of the same, 4×k; of unit length.
+        cables: lengths of cables over those of their rods, 1×c.
+    """
+
+    positions: Matrix
+    quaternions: Matrix
+    cables: Matrix
+
+    def largest_change(self, before: Watched) -> Matrix:
+        """The largest of all displacements, rotation angles (rad) and lengthenings, 1×1; 0 where nothing moves."""
+        displacements = self.positions - before.positions
+        distances = ca.sqrt(ca.sum1(displacements * displacements))
+        relative = quaternion_product(quaternion_conjugate(before.quaternions), self.quaternions)
+        axes = relative[1:, :]
+        sines = ca.sqrt(ca.sum1(axes * axes))
+        # Q and −Q are one rotation; the arc tangent is exact near 0 and near π.
+        angles = 2 * ca.atan2(sines, ca.fabs(relative[0, :]))
+        lengthenings = ca.fabs(self.cables - before.cables)
+        return ca.mmax(ca.horzcat(distances, angles, lengthenings))
+
+
+def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
+    """Abscissae of the sections of a rod whose poses must be right to the tolerance, shape (k,)."""
+    if scene.accuracy.shape:
+        return np.asarray(SAMPLES[EVERY::EVERY])
+    holders = (*scene.supports, *scene.joints)
+    held = any(holder.rod == rod for holder in holders)
+    if held:
+        return np.array(BETWEEN)
+    return np.array([1.0])
+
+
+def watched_cables(discrete: DiscreteScene) -> dict[str, float]:
+    """Cables whose lengths must be right to the tolerance, with the lengths of their rods, m."""
+    cables = {}
+    for actuator in discrete.scene.actuators:
+        if EFFECTS[actuator.kind].drawn_as == "cable":
+            cables[actuator.name] = discrete.rods[actuator.rod].length
+    return cables
+
+
+def watched(system: System) -> Watched:
+    """What is watched of a system."""
+    discrete = system.discrete
+    positions = []
+    quaternions = []
+    for name in discrete.rods:
+        sections = watched_sections(discrete.scene, name)
+        rod_positions, rod_quaternions = section_poses(system, name, sections)
+        positions.append(rod_positions / discrete.rods[name].length)
+        quaternions.append(rod_quaternions)
+    for body in discrete.bodies:
+        pose = system.body(body)
+        positions.append(pose.position / discrete.body_frame(body).length)
+        quaternions.append(pose.quaternion)
+    cables: list[Matrix] = [ca.MX(0, 1)]
+    for name, rod_length in watched_cables(discrete).items():
+        _, cable_length, _ = system.actuators.state(name)
+        cables.append(cable_length / rod_length)
+    return Watched(ca.horzcat(*positions), ca.horzcat(*quaternions), ca.vertcat(*cables).T)
+
+
+def section_poses(system: System, rod: str, X: FloatArray) -> tuple[Matrix, Matrix]:
+    """World positions (m) and unit quaternions of sections of a rod, 3×k and 4×k.
+
+    Args:
+        system: rods and frames in symbols or numbers.
+        rod: name of the rod.
+        X: abscissae, shape (k,).
+    """
+    shape = system.shapes[rod]
+    if len(X) == 1 and X[0] == 1.0:
+        position = shape.position_at(-1)
+        quaternion = ca.densify(shape.quaternion[:, -1])
+    else:
+        interpolation = ca.DM(system.discrete.rods[rod].grid.interpolation_matrix(X)).T
+        position = shape.position @ interpolation
+        quaternion = ca.densify(shape.quaternion @ interpolation)
+        # Between nodes an interpolated quaternion is of unit length to the accuracy of the grid only.
+        lengths = ca.sqrt(ca.sum1(quaternion * quaternion))
+        quaternion = quaternion / ca.repmat(lengths, 4, 1)
+    # The shape is that in the frame of the base section (docs/theory.md, section 1).
+    base = system.base(rod)
+    base_positions = ca.repmat(base.position, 1, len(X))
+    base_quaternions = ca.densify(ca.repmat(base.quaternion, 1, len(X)))
+    world_positions = base_positions + quaternion_to_matrix(base.quaternion) @ position
+    return world_positions, quaternion_product(base_quaternions, quaternion)

@@ -1,0 +1,204 @@
+"""The error of an answer at inputs that its modes were not chosen for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, build, discretise, read_scene, solve, solve_scene
+from cosserat_casadi.bench.shooting import shoot
+from cosserat_casadi.equilibrium import answer_error as estimates
+from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import load_values
+from tests.conftest import CASES, ROOT
+from tests.pose_errors import pose_error
+from tests.scenes import push, scene
+
+AWAY = CASES / "away"
+
+MOST_ABOVE = 3.0
+"""Most that an estimate may be above the true error."""
+
+LEAST = 0.7
+"""Least share of the true error that an estimate may be."""
+
+
+TAPERED = {
+    "name": "rod",
+    "length": 0.4,
+    "strain": "kirchhoff",
+    "material": {"youngs_modulus": 2e9, "poisson_ratio": 0.4, "density": 1000.0},
+    "section": {"shape": "circle", "radius": [3e-3, 2e-3]},
+}
+
+
+def true_error(solution: Solution) -> float:
+    """Distance to the equilibrium on ten modes and as many intervals more, which is converged to rounding beside it."""
+    model = solution.model
+    most = max(max(chosen.modes) for chosen in model.discretisation.values()) + 10
+    nodes = max(chosen.nodes for chosen in model.discretisation.values()) + 20
+    finer = build(model.scene.baked(), discretise(model.scene, most, nodes, "magnus8"))
+    reference = solve(finer, solution.inputs, start=prolong(solution, finer), estimate_error=False)
+    assert reference.converged
+    return max(pose_distance(solution, reference), cable_distance(solution, reference))
+
+
+def assert_estimated(solution: Solution) -> None:
+    assert solution.converged
+    assert solution.error_estimate is not None
+    ratio = solution.error_estimate / true_error(solution)
+    assert LEAST < ratio < MOST_ABOVE, ratio
+
+
+@pytest.fixture(scope="module")
+def tendon_robot() -> Model:
+    read = read_scene(AWAY / "tendon_robot.toml")
+    return build(read, solve_scene(read).model.discretisation)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"north.tension": 9.0, "east.tension": 0.5},
+        {"payload.force": [0.0, 0.5, 0.0]},
+        {"payload.force": [0.0, 2.0, 0.0]},
+    ],
+)
+def test_modes_of_a_planar_load_know_their_error_under_others(tendon_robot: Model, values: dict[str, Any]) -> None:
+    moved = solve(tendon_robot, values)
+    assert_estimated(moved)
+    assert moved.within_tolerance is False
+    assert f"{moved.error_estimate:.2g} of the length" in moved.message
+    assert "0.0001" in moved.message
+
+
+def test_answers_at_the_inputs_of_the_choice_are_within_the_tolerance(tendon_robot: Model) -> None:
+    chosen = solve(tendon_robot)
+    assert_estimated(chosen)
+    assert chosen.within_tolerance is True
+    assert "tolerance of" not in chosen.message
+
+
+def test_a_grip_beside_the_plane_of_the_choice() -> None:
+    read = read_scene(ROOT / "examples" / "tendon_finger.toml")
+    model = build(read, solve_scene(read).model.discretisation)
+    aside = solve(model, {"grip.force": [0.0, 0.025, -0.05]})
+    assert_estimated(aside)
+    assert aside.error_estimate is not None
+    assert aside.error_estimate > 1e3 * read.accuracy.tolerance
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_robot_of_six_tendons(seed: int) -> None:
+    read = read_scene(AWAY / "six_tendons.toml")
+    # Those that the robot takes at its own inputs.
+    model = build(read, discretise(read, (1, 2, 1), 3, "magnus4"))
+    tensions = np.random.default_rng(seed).uniform(0, 8, 6)
+    away = solve(model, {f"t{i + 1}.tension": tension for i, tension in enumerate(tensions)})
+    assert_estimated(away)
+    assert away.within_tolerance is False
+
+
+def test_platform_that_its_modes_lock() -> None:
+    read = read_scene(AWAY / "platform_locks.toml")
+    model = build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
+    pushed = solve(model, {"load.force": [3.0, 2.0, 0.0]})
+    still = solve(model, estimate_error=False)
+    # As many constraints as coordinates that move: it stays where it is.
+    assert_allclose(pushed.body().position, still.body().position, rtol=0, atol=1e-10)
+    assert_estimated(pushed)
+    assert pushed.within_tolerance is False
+
+
+def test_estimate_of_a_rod_beside_shooting() -> None:
+    """Shooting integrates the rod's equations by Runge and Kutta: it has no modes."""
+    pushed = scene(push(force=[3.0, 2.0, -1.0], moment=[0.0, 0.5, 0.3]))
+    for modes in (2, 3, 4, 5):
+        solution = solve(build(pushed, discretise(pushed, modes, 2 * modes + 4)))
+        clamp = solution.base_wrench()
+        start = np.concatenate([clamp.force, clamp.moment])
+        loads = load_values(pushed, solution.model.inputs, solution.inputs)
+        properties = solution.model.discrete.rods["rod"].properties
+        truth = shoot(pushed, properties, loads, [1.0], start)
+        tip = solution.tip()
+        error = pose_error(
+            (tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), properties.length
+        )
+        assert solution.error_estimate is not None
+        assert LEAST * error < solution.error_estimate < MOST_ABOVE * error
+
+
+def test_estimate_falls_as_fast_as_the_error() -> None:
+    pushed = scene(push(force=[3.0, 2.0, -1.0]), rods=[TAPERED])
+    ratios = []
+    for modes in (2, 4, 6, 8):
+        solution = solve(build(pushed, discretise(pushed, modes, 2 * modes + 6)))
+        assert solution.error_estimate is not None
+        ratios.append(solution.error_estimate / true_error(solution))
+    assert max(ratios) < MOST_ABOVE
+    assert min(ratios) > LEAST
+    assert solution.error_estimate < 1e-6
+
+
+def test_wrench_at_the_clamp_knows_its_error() -> None:
+    """A soft foundation lets the moment decay near the clamp: poses are right long before it is."""
+    read = read_scene(CASES / "effects" / "foundation.toml")
+    coarse = solve(build(read, discretise(read, 5, 14)))
+    fine = solve(build(read, discretise(read, 16, 40)), estimate_error=False)
+    wanted = fine.base_wrench()
+    found = coarse.base_wrench()
+    moment_error = np.linalg.norm(found.moment - wanted.moment) / np.linalg.norm(wanted.moment)
+    force_error = np.linalg.norm(found.force - wanted.force) / np.linalg.norm(wanted.force)
+    true = max(moment_error, force_error)
+    assert coarse.wrench_error_estimate is not None
+    assert LEAST * true < coarse.wrench_error_estimate < MOST_ABOVE * true
+
+
+def test_parameters_move_the_stiffness_of_missing_modes() -> None:
+    bent = scene(push(), rods=[TAPERED], parameters=["rod.material.youngs_modulus"])
+    model = build(bent, discretise(bent, 3, 10))
+    softer = solve(model, parameters={"rod.material.youngs_modulus": 0.7e9})
+    assert_estimated(softer)
+
+
+def test_error_that_no_correction_settles_near_counts_as_the_whole_length(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(estimates, "MOST_SWEEPS", 1)
+    monkeypatch.setattr(estimates, "MOST_STEPS", 1)
+    read = read_scene(AWAY / "tendon_robot.toml")
+    model = build(read, discretise(read, (1, 3, 1), 4))
+    away = solve(model, {"payload.force": [0.0, 2.0, 0.0]})
+    assert away.error_estimate == estimates.UNKNOWN
+    assert away.within_tolerance is False
+    assert "Its error is not known" in away.message
+
+
+def test_tolerance_that_nobody_wrote_asks_nothing_of_fixed_modes() -> None:
+    fixed = scene(push(force=[3.0, 2.0, -1.0]), accuracy={"modes": 2, "nodes": 6})
+    solution = solve(build(fixed))
+    assert solution.error_estimate is not None
+    assert solution.error_estimate > fixed.accuracy.tolerance
+    assert solution.within_tolerance is None
+    asked = scene(push(force=[3.0, 2.0, -1.0]), accuracy={"modes": 2, "nodes": 6, "tolerance": 1e-6})
+    assert solve(build(asked)).within_tolerance is False
+
+
+def test_no_estimate_where_none_is_wanted_or_nothing_was_solved() -> None:
+    pushed = scene(push(force=[3.0, 2.0, -1.0]))
+    model = build(pushed, discretise(pushed, 4))
+    assert solve(model, estimate_error=False).error_estimate is None
+    failed = solve(model, {"push.force": [1e9, 0.0, 0.0]})
+    assert not failed.converged
+    assert failed.error_estimate is None
+    assert failed.within_tolerance is False
+
+
+def test_answers_in_exact_contact_know_their_error() -> None:
+    read = read_scene(ROOT / "examples" / "rod_over_bar.toml")
+    coarse = solve(build(read, discretise(read, 3, 10)))
+    reference = solve_scene(read)
+    assert coarse.error_estimate is not None
+    assert coarse.error_estimate > LEAST * pose_distance(coarse, reference)
