@@ -538,9 +538,7 @@ force = [0, 0, -5.0]
         ({"modes": 3, "nodes": 6}, False),
     ],
 )
-def test_fixed_modes_that_miss_the_tolerance_are_told(
-    wire: Path, accuracy: dict[str, float], warned: bool
-) -> None:
+def test_fixed_modes_that_miss_the_tolerance_are_told(wire: Path, accuracy: dict[str, float], warned: bool) -> None:
     changes = [f"accuracy.{key}={value}" for key, value in accuracy.items()]
     options = [word for change in changes for word in ("--set", change)]
     done = cosserat("solve", "wire.toml", *options, cwd=wire)
