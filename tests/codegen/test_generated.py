@@ -38,7 +38,7 @@ from cosserat_casadi import (
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.manifest import MANIFEST
-from tests.conftest import ROOT
+from tests.conftest import ROOT, c_flags
 
 FOLDER = ROOT / "generated"
 
@@ -294,7 +294,7 @@ def test_committed_sources_give_the_tip_of_this_version(folder: Path, generated:
     sources = [str(folder / f"{name}{part}.c") for part in ("_demo", "", "_kernels")]
     program = str(tmp_path / "program")
     assert COMPILER is not None
-    subprocess.run([COMPILER, "-O0", *sources, "-lm", "-o", program], check=True, timeout=300)
+    subprocess.run([COMPILER, *c_flags(), *sources, "-lm", "-o", program], check=True, timeout=300)
     printed = subprocess.run([program, "--repeat", "1"], capture_output=True, text=True, check=True, timeout=60)
     result = json.loads(printed.stdout)
     assert result["status"] == "converged"
