@@ -6,12 +6,14 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow fuzz bench dial lint format schema api docs generated clean
+.PHONY: help demo test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
+	@echo "make test-ROOM  the tests in tests/ROOM: make test-rod, make test-codegen"
+	@echo "make test-arithmetic  the quick numerical tests once more under the rounding of other processors and compilers"
 	@echo "make fuzz       10^4 random scenes at the ends of what is legal; writes figures to docs/hard-cases.md (hours)"
 	@echo "make bench      race the exported C and motions against shooting solvers and packages; writes tables and figures"
 	@echo "make dial       judge what tolerances pick on 200 random scenes, resumable; writes tables and figure"
@@ -40,6 +42,13 @@ test: $(STAMP) lint
 
 test-slow: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
+
+# Rounds as other processors, BLAS threads and optimised C do; what this processor cannot run is said and left out.
+test-arithmetic: $(STAMP)
+	$(BIN)/python -m tests.arithmetic
+
+test-%: $(STAMP)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/$*
 
 fuzz: $(STAMP)
 	$(BIN)/python benchmarks/fuzz.py --write --log out/fuzz.jsonl

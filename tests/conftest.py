@@ -15,6 +15,15 @@ ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT.parent / "shared" / "cases"
 
 
+C_FLAGS = "COSSERAT_CASADI_TEST_C_FLAGS"
+"""Environment variable with the optimisation that C is compiled with, instead of none."""
+
+
+def c_flags() -> list[str]:
+    """How C is optimised in these tests: not at all, since optimising takes the compiler far longer than it saves."""
+    return os.environ.get(C_FLAGS, "-O0").split()
+
+
 def case_files(folder: str) -> list[Path]:
     """Scene files of the reference cases; none where the cases are not at hand."""
     return sorted((CASES / folder).glob("*.toml"))
@@ -51,8 +60,8 @@ def quick_compiler(workshop: Path) -> Iterator[None]:
 
 
 def _write_compiler(path: Path) -> None:
-    """A script that compiles without optimisation."""
-    path.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" -O0\n')
+    """A script that has the last word on optimisation."""
+    path.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" {" ".join(c_flags())}\n')
     path.chmod(0o755)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Literal
 
@@ -13,6 +14,25 @@ Interpolation = Literal["linear", "cubic", "step"]
 
 _INSIDE = np.array([0.1, 0.4, 0.6, 0.9])
 """Places in a piece that tell a cubic polynomial, as shares of its length; at the ends it may jump."""
+
+_BINOMIALS = np.array([1.0, 3.0, 3.0, 1.0])
+"""Of the third degree."""
+
+_DEGREES = np.arange(4)
+
+_CONTROL = np.linalg.inv(_BINOMIALS * _INSIDE[:, None] ** _DEGREES * (1 - _INSIDE[:, None]) ** (3 - _DEGREES))
+"""Control points of a cubic polynomial from its values at these places, shape (4, 4)."""
+
+_SQUARE = np.array(
+    [np.outer(_BINOMIALS, _BINOMIALS) * (np.add.outer(_DEGREES, _DEGREES) == k) / math.comb(6, k) for k in range(7)]
+)
+"""Coefficients in Bernstein's basis of the product of two cubic polynomials from their own, shape (7, 4, 4)."""
+
+_LEAST_NORM_ERROR = 1e-14
+"""Of the largest norm: some tens of rounding errors."""
+
+_HALVINGS = 53
+"""As many as the digits of a number: the halves of a piece are no longer told apart after them."""
 
 
 def table_coefficients(knots: FloatArray, values: FloatArray, interpolation: Interpolation) -> FloatArray:
@@ -54,32 +74,58 @@ def table_values(
     return at
 
 
-def least_norm(path: Callable[[FloatArray], FloatArray], start: float, end: float) -> tuple[float, float]:
-    """Least norm of a path between two times, and the time of it, s; infinite where the path is no number.
+def least_norm(path: Callable[[FloatArray], FloatArray], cuts: FloatArray) -> tuple[float, float]:
+    """Least norm of a path of polynomials, and the time of it, s; infinite where the path is no number.
 
-    Where the squared norm is least its derivative is zero, or the path begins or ends. The squared norm of a cubic
-    polynomial is one of degree six: the roots of its derivative are all that can be.
+    Pieces are halved, and those kept that can hold a lesser norm than the least that was met at an end: the squared
+    norm of a piece is nowhere less than the least of its coefficients in Bernstein's basis. Halving averages control
+    points, which loses no digits however small the path becomes, and takes all degrees alike.
 
     Args:
-        path: times, shape (T,), s ↦ values, shape (T, entries): a polynomial up to the third degree from start to end.
-        start: s.
-        end: s.
+        path: times, shape (T,), s ↦ values, shape (T, entries): between two cuts a polynomial up to the third degree.
+        cuts: ascending, shape (pieces + 1,), s.
+
+    Returns:
+        The norm, to 1e-14 of the largest, and the time of it.
     """
-    length = end - start
-    inside = path(start + length * _INSIDE)
-    if not np.all(np.isfinite(inside)):
-        return float("inf"), start
-    coefficients = np.linalg.solve(np.vander(_INSIDE, increasing=True), inside)
-    squares = np.zeros(7)
-    for entry in coefficients.T:
-        squares += np.convolve(entry, entry)
-    slope = np.polynomial.polynomial.polyder(squares)
-    # A double root may come out as a pair beside the real axis: any place in the piece can be looked at.
-    roots = np.polynomial.polynomial.polyroots(slope).real
-    places = np.concatenate([[0.0, 1.0], np.clip(roots, 0.0, 1.0)])
-    norms = np.linalg.norm(np.vander(places, 4, increasing=True) @ coefficients, axis=1)
-    least = int(norms.argmin())
-    return float(norms[least]), float(start + length * places[least])
+    starts = cuts[:-1]
+    widths = np.diff(cuts)
+    times = starts[:, None] + widths[:, None] * _INSIDE
+    values = path(times.ravel()).reshape(*times.shape, -1)
+    finite = np.all(np.isfinite(values), axis=(1, 2))
+    if not np.any(finite):
+        return float("inf"), float(cuts[0])
+    starts, widths, points = starts[finite], widths[finite], _CONTROL @ values[finite]
+    # A power of two changes no digit: the norms of very small and very large values can be squared.
+    exponent = np.frexp(np.abs(points).max())[1]
+    points = np.ldexp(points, -exponent)
+    allowed = _LEAST_NORM_ERROR * np.linalg.norm(points, axis=2).max()
+    least, time = np.inf, 0.0
+    for _ in range(_HALVINGS):
+        ends = np.linalg.norm(points[:, [0, -1]], axis=2)
+        piece, side = np.unravel_index(ends.argmin(), ends.shape)
+        if ends[piece, side] < least:
+            least, time = ends[piece, side], starts[piece] + side * widths[piece]
+        bounds = np.einsum("kij,nie,nje->nk", _SQUARE, points, points).min(axis=1)
+        lower = np.sqrt(np.maximum(bounds, 0.0)) < least - allowed
+        if not np.any(lower):
+            break
+        points = _halves(points[lower])
+        widths = np.repeat(widths[lower] / 2, 2)
+        starts = np.repeat(starts[lower], 2)
+        starts[1::2] += widths[1::2]
+    return float(np.ldexp(least, exponent)), float(time)
+
+
+def _halves(points: FloatArray) -> FloatArray:
+    """Control points of both halves of each piece, by de Casteljau's averages: shape (n, 4, e) ↦ (2 n, 4, e)."""
+    left, right = [points[:, 0]], [points[:, -1]]
+    while points.shape[1] > 1:
+        points = points[:, :-1] / 2 + points[:, 1:] / 2
+        left.append(points[:, 0])
+        right.append(points[:, -1])
+    both = np.stack([np.stack(left, axis=1), np.stack(right[::-1], axis=1)], axis=1)
+    return both.reshape(-1, *both.shape[2:])
 
 
 def _cubic_coefficients(knots: FloatArray, values: FloatArray) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -167,18 +166,13 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
 
         knots = np.unique(np.concatenate([motion.knots for motion in tables]))
         # Squares of very large or very small numbers would be no numbers.
-        scale = max(float(np.abs(total(knots)).max()), float(np.finfo(float).tiny))
-
-        def path(times: FloatArray) -> FloatArray:
-            return total(times) / scale
-
-        largest = float(np.linalg.norm(path(knots), axis=1).max())
+        largest = float(np.hypot.reduce(total(knots), axis=1).max())
         end = min(duration, knots[-1])
         inside = knots[(knots > 0.0) & (knots < end)]
         cuts = np.concatenate([[min(0.0, end)], inside, [end]])
-        if not np.all(np.isfinite(path(cuts))) or not np.isfinite(largest):
+        if not np.all(np.isfinite(total(cuts))) or not np.isfinite(largest):
             return
-        least, time = min(least_norm(path, *piece) for piece in pairwise(cuts.tolist()))
+        least, time = least_norm(total, cuts)
     if least > LEAST_NORM * largest:
         return
     # Rounding would be told as a norm that is small, and is none.

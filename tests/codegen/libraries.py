@@ -18,6 +18,7 @@ import numpy as np
 
 from cosserat_casadi import Compiled, Model, Scene, Solution, build, discretise, export, solve
 from cosserat_casadi.codegen.names import Names, scene_names
+from tests.conftest import c_flags
 from tests.once import once
 from tests.scenes import WEIGHT, push, rod, scene, three_cables
 
@@ -29,8 +30,8 @@ C99 = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic")
 GENERATED = (*C99, "-Wno-unused-parameter", "-Wno-unused-function")
 """The same for generated sources: their signatures are CasADi's, and so is what they may leave unused."""
 
-QUICK = ("-O0", "-fPIC")
-"""Optimising straight-line code takes the compiler far longer than running it slowly takes the tests."""
+QUICK = (*c_flags(), "-fPIC")
+"""Flags of libraries that are run for what they compute."""
 
 ARCH = {"rods": [rod("planar", intrinsic={"curvature": [0.0, 1.2, 0.0]})]}
 PIN = {"rod": "rod", "kind": "pinned", "position": [np.sin(0.48) ** 2 / 0.6, 0.0, np.sin(0.96) / 1.2]}

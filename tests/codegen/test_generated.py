@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shutil
 import subprocess
 from collections.abc import Collection
@@ -21,11 +22,23 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Discretisation, Model, Solution, build, export, parse_scene, read_scene, solve, solve_scene
+from cosserat_casadi import (
+    Compiled,
+    Discretisation,
+    Model,
+    Solution,
+    build,
+    export,
+    load,
+    parse_scene,
+    read_scene,
+    solve,
+    solve_scene,
+)
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.manifest import MANIFEST
-from tests.conftest import ROOT
+from tests.conftest import ROOT, c_flags
 
 FOLDER = ROOT / "generated"
 
@@ -166,14 +179,23 @@ def is_kernel(name: str) -> bool:
     return name.endswith(("_kernels.c", "_derivatives.c", "_in_fours.h"))
 
 
-def without_rounding(name: str, text: str) -> str:
-    """A text without what depends on the last digits of constants: how many instructions are left of them."""
-    if name != MANIFEST:
-        return text
-    described = json.loads(text)
-    for entry in described["functions"]:
-        del entry["instructions"]
-    return json.dumps(described)
+COUNTS = re.compile(r"(?<=_SZ_W )\d+|(?<=kernel_reals\[)\d+|[\d.]+(?= kB)|(?<=\"instructions\": )\d+")
+"""Numbers of instructions, and of the memory for what they leave to later ones.
+
+CasADi computes equal expressions once. Constants that are equal but for their rounding, as in the sums of symmetric
+rows, are equal on one machine and not on the next, so that a few instructions in a thousand come or go.
+"""
+
+COUNTS_AGREE = 0.02
+"""Share that counts may differ by: three times the most that was met, 0.65 %, with OpenBLAS for other processors."""
+
+
+def is_same_but_for_counts(one: str, other: str) -> bool:
+    """Whether texts differ in nothing but numbers of instructions, and in those by little."""
+    if COUNTS.sub("#", one) != COUNTS.sub("#", other):
+        return False
+    ours, theirs = (np.array(COUNTS.findall(text), dtype=float) for text in (one, other))
+    return np.allclose(ours, theirs, rtol=COUNTS_AGREE, atol=0)
 
 
 def differing(committed: dict[str, str], fresh: dict[str, str], exact: bool, hashes: Collection[str] = ()) -> list[str]:
@@ -188,12 +210,10 @@ def differing(committed: dict[str, str], fresh: dict[str, str], exact: bool, has
     lines = [f"{name} is missing" for name in sorted(fresh.keys() - committed.keys())]
     lines += [f"{name} is stale: this version does not write it" for name in sorted(committed.keys() - fresh.keys())]
     for name in sorted(fresh.keys() & committed.keys()):
+        if not exact and (is_kernel(name) or name in hashes):
+            continue
         one, other = committed[name], fresh[name]
-        if not exact:
-            if is_kernel(name) or name in hashes:
-                continue
-            one, other = without_rounding(name, one), without_rounding(name, other)
-        if one != other:
+        if one != other and (exact or not is_same_but_for_counts(one, other)):
             lines.append(f"{name} differs from what this version writes")
     return lines
 
@@ -217,7 +237,8 @@ def test_files_are_what_this_version_writes(folder: Path, generated: Path) -> No
     if theirs != ours:
         pytest.skip(f"generated/{folder.name} was written with CasADi {theirs}, this is {ours}")
     exact = (generated / ARITHMETIC).read_text().strip() == arithmetic()
-    fresh = files_of(rebuilt(folder), described["name"], described["error_estimate"])
+    model = rebuilt(folder)
+    fresh = files_of(model, described["name"], described["error_estimate"])
     committed = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
     hashes = hashed(generated, folder.name)["sha256"]
     assert hashes.keys().isdisjoint(committed)
@@ -226,8 +247,29 @@ def test_files_are_what_this_version_writes(folder: Path, generated: Path) -> No
     wrong = differing(committed | hashes, compared, exact, hashes)
     if wrong:
         pytest.fail("\n".join([f"generated/{folder.name}: {ANEW}", *wrong]), pytrace=False)
-    if not exact:
-        pytest.skip("linear algebra rounds differently here: kernels are compared by what they compute")
+    if not exact and folder.name not in HASHED:
+        assert_same_values(load(folder), model)
+
+
+def assert_same_values(loaded: Compiled, model: Model) -> None:
+    """Every function of a library gives what the model gives, at zero and at random; it may leave out last results."""
+    random = np.random.default_rng(3)
+    pairs = [(loaded.residual, model.residual, ())]
+    for of_library, of_model, place in (
+        (loaded.tip, model.tip, ()),
+        (loaded.shape, model.shape, (0.4,)),
+        (loaded.actuator, model.actuator, ()),
+    ):
+        assert of_library.keys() == of_model.keys()
+        pairs += [(of_library[name], of_model[name], place) for name in of_model]
+    for spread in (0.0, 0.5):
+        x = spread * random.standard_normal(model.size)
+        inputs = model.pack() * (1 + spread * random.standard_normal(model.inputs.size))
+        for ours, theirs, place in pairs:
+            found = np.concatenate([value.full().ravel() for value in ours.call([x, inputs, *place])])
+            results = theirs.call([x, inputs, *place])[: ours.n_out()]
+            wanted = np.concatenate([value.full().ravel() for value in results])
+            assert_allclose(found, wanted, rtol=1e-11, atol=1e-12 * max(1.0, np.abs(wanted).max()))
 
 
 def hashed(generated: Path, name: str) -> dict[str, Any]:
@@ -252,7 +294,7 @@ def test_committed_sources_give_the_tip_of_this_version(folder: Path, generated:
     sources = [str(folder / f"{name}{part}.c") for part in ("_demo", "", "_kernels")]
     program = str(tmp_path / "program")
     assert COMPILER is not None
-    subprocess.run([COMPILER, "-O0", *sources, "-lm", "-o", program], check=True, timeout=300)
+    subprocess.run([COMPILER, *c_flags(), *sources, "-lm", "-o", program], check=True, timeout=300)
     printed = subprocess.run([program, "--repeat", "1"], capture_output=True, text=True, check=True, timeout=60)
     result = json.loads(printed.stdout)
     assert result["status"] == "converged"
@@ -272,16 +314,37 @@ def test_generated_folders_are_small(generated: Path) -> None:
 
 
 def test_missing_stale_and_changed_files_are_named() -> None:
-    text = json.dumps({"functions": [{"name": "f", "instructions": 3}]})
-    fewer = json.dumps({"functions": [{"name": "f", "instructions": 2}]})
-    fresh = {"a.h": "1", "a_kernels.c": "x=0.1;", MANIFEST: text}
+    fresh = {"a.h": "1", "a_kernels.c": "x=0.1;", MANIFEST: '"instructions": 1000'}
     assert differing(fresh, fresh, True) == []
     assert differing({**fresh, "b.h": ""}, fresh, True) == ["b.h is stale: this version does not write it"]
-    assert differing({"a.h": "1", MANIFEST: text}, fresh, False) == ["a_kernels.c is missing"]
+    assert differing({"a.h": "1", MANIFEST: fresh[MANIFEST]}, fresh, False) == ["a_kernels.c is missing"]
     assert differing({**fresh, "a.h": "2"}, fresh, False) == ["a.h differs from what this version writes"]
-    rounded = {**fresh, "a_kernels.c": "x=0.2;", MANIFEST: fewer}
+    rounded = {**fresh, "a_kernels.c": "x=0.2;", MANIFEST: '"instructions": 1005'}
     assert differing(rounded, fresh, False) == []
     assert [line.split()[0] for line in differing(rounded, fresh, True)] == ["a_kernels.c", MANIFEST]
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ('"instructions": 2238', '"instructions": 2235'),
+        ("#define wire_k_igm_SZ_W 625", "#define wire_k_igm_SZ_W 621"),
+        ("wire_real kernel_reals[2232];", "wire_real kernel_reals[2230];"),
+        ("A workspace takes 31.7 kB in double precision", "A workspace takes 31.6 kB in double precision"),
+    ],
+)
+def test_counts_that_hang_on_rounding_may_differ_by_little(one: str, other: str) -> None:
+    assert is_same_but_for_counts(one, other)
+    ours, theirs = (COUNTS.findall(text) for text in (one, other))
+    assert len(ours) == len(theirs) == 1
+    twice = str(2 * float(ours[0])) if "." in ours[0] else str(2 * int(ours[0]))
+    assert not is_same_but_for_counts(one.replace(ours[0], twice), other)
+    assert not is_same_but_for_counts(one + " ", other)
+
+
+@pytest.mark.parametrize("text", ["_SZ_IW 4", "_SZ_ARG 3", '"first": 12', "double tension[10];", "CasADi 3.8.2"])
+def test_other_numbers_are_no_counts(text: str) -> None:
+    assert not COUNTS.findall(text)
 
 
 def test_a_changed_hash_is_named() -> None:

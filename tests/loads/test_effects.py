@@ -11,15 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Model, build, discretise, follow_path, load, read_scene, solve, solve_scene
+from cosserat_casadi import build, follow_path, load, read_scene, solve, solve_scene
 from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.model.price import price_of_load
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
-LENGTHS = {"foundation": 0.8, "flow_bending": 0.4, "tendon_friction": 0.3}
+LENGTHS = {"foundation": 0.8, "flow_bending": 0.4, "tendon_friction": 0.3, "magnet_uniform": 0.5}
 
 SCENE = """
 schema = 1
@@ -79,41 +78,6 @@ def test_reference_cases(name: str) -> None:
     if "base_wrench" in expected:
         assert_allclose(found.base_wrench().force, expected["base_wrench"]["force"], rtol=0, atol=1e-6)
         assert_allclose(found.base_wrench().moment, expected["base_wrench"]["moment"], rtol=0, atol=1e-6)
-
-
-def test_reference_case_of_a_magnet() -> None:
-    """The case holds one of the two other equilibria of the elastica, which the shooting that made it came upon."""
-    if not EFFECTS.is_dir():
-        pytest.skip("the reference cases are not at hand")
-    expected = json.loads((EFFECTS / "magnet_uniform.json").read_text())["expected"]["tip"]
-    scene = read_scene(EFFECTS / "magnet_uniform.toml")
-    model = build(scene, discretise(scene, 12, 30))
-    # Elastica in the plane of the base and the pull: EI κ' = −F cos θ with θ from the base towards the pull.
-    pull = np.array([0.0, 0.06, 0.18])
-    force = np.linalg.norm(pull)
-    bent = solve_ivp(lambda s, y: [y[1], -force / 0.004 * np.cos(y[0])], (0, 0.5), [0, -2.0986484], dense_output=True)
-    about = np.cross([1.0, 0.0, 0.0], pull / force)
-    local = model.discrete.unloaded.base("rod").rotation.T @ about
-    rod = model.discrete.rods["rod"]
-    curvature = bent.sol(0.5 * rod.grid.nodes)[1]
-    start = np.zeros(model.size)
-    for axis in (0, 1):
-        fitted, *_ = np.linalg.lstsq(rod.at_nodes[axis], curvature * local[axis], rcond=None)
-        start[rod.columns[axis]] = fitted
-    found = newton(model, start)
-    model_stability = np.linalg.eigvalsh(model.jacobian(found, model.pack())[0].full())
-    assert model_stability[0] < -0.1
-    position = model.tip["rod"](found, model.pack())[0].full()[:, 0]
-    assert_allclose(position, expected["position"], rtol=0, atol=5e-8)
-
-
-def newton(model: Model, x: np.ndarray) -> np.ndarray:
-    """Plain Newton, which stays at the equilibrium that it starts near to."""
-    for _ in range(12):
-        jacobian, residual = (value.full() for value in model.jacobian(x, model.pack()))
-        x = x - np.linalg.solve(jacobian, residual[:, 0])
-    assert np.abs(residual).max() < 1e-11
-    return x
 
 
 @pytest.fixture

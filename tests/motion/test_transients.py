@@ -133,9 +133,13 @@ def test_sudden_weight_vs_independent_galerkin_method() -> None:
     assert error <= motion.error_estimate + 3e-5
 
 
-@pytest.mark.parametrize(("tolerance", "share"), [(1e-3, 1e-4), (1e-4, 5e-6)])
+@pytest.mark.parametrize(("tolerance", "share"), [(1e-3, 2.4e-4), (1e-4, 3.6e-5)])
 def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
-    """Energy is kept as exactly as the steps are exact, which follow the tolerance of the path."""
+    """Energy is kept as exactly as the steps are exact, which follow the tolerance of the path.
+
+    All modes ring at once, and rounding decides which steps are refused: weights that differ by 1e-9 take 173 to 300
+    steps at 1e-4. Of 24 such motions the worst loses 8e-5 and 1.2e-5, and three times as much is allowed.
+    """
     energy = simulated(transients.sudden_weight(), tolerance).energy
     total = energy.kinetic + energy.elastic + energy.potential
     assert_allclose(total, 0.0, rtol=0, atol=share * np.abs(energy.potential).max())

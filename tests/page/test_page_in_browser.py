@@ -14,6 +14,9 @@ from cosserat_casadi.page.page import LARGEST, export_page
 from tests.browser import browser
 from tests.page.pages_made import strip, wasm_compiler
 
+PATIENCE = 60_000
+"""Milliseconds that a condition is waited for: twenty times what a browser takes on an idle machine."""
+
 
 @pytest.fixture(scope="module")
 def solution() -> Solution:
@@ -41,7 +44,7 @@ def page_and_faults(window: Any, file: Path) -> tuple[Any, list[str]]:
     opened.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
     opened.on("request", lambda request: faults.append(request.url) if request.url.startswith("http") else None)
     opened.goto(file.as_uri())
-    opened.wait_for_selector("body[data-ready]", timeout=20_000)
+    opened.wait_for_selector("body[data-ready]", timeout=PATIENCE)
     return opened, faults
 
 
@@ -56,7 +59,7 @@ def page(page_and_faults: tuple[Any, list[str]]) -> Iterator[Any]:
 
 def at_rest(page: Any) -> None:
     """Wait until the stability of the last equilibrium is shown."""
-    page.wait_for_function("() => window.robot.stable !== null", timeout=20_000)
+    page.wait_for_function("() => window.robot.stable !== null", timeout=PATIENCE)
 
 
 def test_it_is_one_small_file_with_the_title_of_the_scene(file: Path, page: Any) -> None:
@@ -150,7 +153,7 @@ def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
         """([x, y]) => { const box = document.getElementById("hand").getBoundingClientRect();
         return Math.hypot(box.x + box.width / 2 - x, box.y + box.height / 2 - y) < 0.5; }""",
         arg=list(aim),
-        timeout=20_000,
+        timeout=PATIENCE,
     )
     page.mouse.up()
     # It has moved what has bounds, and nothing else; what is drawn is the equilibrium at these inputs.
@@ -160,6 +163,22 @@ def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
     assert max(abs(value - old) for value, old in zip(force, [0.3, 0.0, -0.2], strict=True)) > 0.05
     expected = solve(solution.model, {"push.force": force}).tip().position[0]
     assert_allclose(tip, expected, rtol=0, atol=1e-8)
+
+
+def test_a_script_has_the_last_word_over_the_hand(page: Any, solution: Solution) -> None:
+    """The hand goes on towards a place that it was led to: an input that is set ends that."""
+    box = page.locator("#hand").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 150, box["y"] - 150, steps=3)
+    page.wait_for_function("() => window.robot.inputs['push.force.x'] !== 0.3", timeout=PATIENCE)
+    page.evaluate("window.robot.setInput('push.force', [0.1, 0.2, 0.3])")
+    page.mouse.up()
+    # As many pictures as the hand would take several steps in.
+    page.evaluate("async () => { for (let i = 0; i < 20; i++) await new Promise(requestAnimationFrame); }")
+    assert page.evaluate("Object.values(window.robot.inputs)") == list(
+        solution.model.pack({"push.force": [0.1, 0.2, 0.3]})
+    )
 
 
 def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
@@ -182,20 +201,22 @@ def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
 
 def test_what_moves_is_painted_as_finely_as_there_is_time_for_and_at_rest_in_full(page: Any) -> None:
     page.set_viewport_size({"width": 1100, "height": 700})
-    moved = """async (quality) => { window.scenery.painter.pace.turnTo(quality);
-        await window.robot.setInput("push.force.x", 0.3 + 0.1 * quality);
-        const shown = document.getElementById(quality ? "rough" : "canvas");
-        return [document.getElementById("picture").classList.contains("rough"), shown.width / shown.clientWidth]; }"""
+    # The picture is looked at when it is painted: before, the last one is shown; after, perhaps the one at rest.
+    moved = """async (quality) => { const { painter } = window.scenery; painter.pace.turnTo(quality);
+        const painted = new Promise((resolve) => { painter.paintMoving = () => { delete painter.paintMoving;
+            painter.paintMoving(); const shown = document.getElementById(quality ? "rough" : "canvas");
+            resolve([shown.parentElement.classList.contains("rough"), shown.width / shown.clientWidth]); }; });
+        window.robot.setInput("push.force.x", 0.3 + 0.1 * quality); return painted; }"""
     # A browser without a graphics card may be late by itself: the quality is held for these pictures.
     page.evaluate("window.scenery.painter.pace.took = () => {}")
     assert page.evaluate(moved, 0) == [False, 1.0]
     assert page.evaluate(moved, 1) == [True, 1.0]
     assert page.evaluate(moved, 3) == [True, 0.5]
-    page.wait_for_function("() => !document.getElementById('picture').classList.contains('rough')", timeout=20_000)
+    page.wait_for_function("() => !document.getElementById('picture').classList.contains('rough')", timeout=PATIENCE)
     assert page.evaluate("window.scenery.painter.shown.smooth")
     # However many things move, they are one picture.
     painted = page.evaluate("""async () => { const { painter } = window.scenery; let count = 0;
-        const { show } = painter; painter.show = (quality) => { count++; show.call(painter, quality); };
+        painter.paintMoving = () => { count++; Painter.prototype.paintMoving.call(painter); };
         for (let i = 0; i < 5; i++) window.scenery.show("loads", i % 2 === 0);
         await new Promise(requestAnimationFrame); await new Promise(requestAnimationFrame); return count; }""")
     assert painted == 1

@@ -19,6 +19,7 @@ class Hand {
     this.mark.onpointercancel = () => this.letGo();
     this.scenery.controls.addEventListener("change", () => this.place());
     panel.listeners.push(() => this.place());
+    panel.interrupted.push(() => (this.wanted = null));
     this.place();
   }
 
@@ -63,6 +64,7 @@ class Hand {
       const before = aim.distanceToPoint(this.position);
       const inputs = this.panel.inputs;
       await this.step(aim, damping);
+      if (!this.wanted) return;
       const nearer = aim.distanceToPoint(this.position) < before;
       if (!nearer) await this.panel.solve(inputs);
       damping = nearer ? Math.max(damping / 10, DAMPING) : damping * 10;
@@ -74,7 +76,7 @@ class Hand {
   async step(ray, damping) {
     const { facts } = this.panel;
     const all = await this.panel.robot.derivatives();
-    if (!all) return;
+    if (!all || !this.wanted) return;
     const inputs = Float64Array.from(this.panel.inputs);
     const columns = facts.hand.map((i) => {
       const first = 7 * (facts.sliders.length * this.panel.point + i);

@@ -17,6 +17,8 @@ class Panel {
     this.waiting = [];
     // Told of every equilibrium that is shown.
     this.listeners = [];
+    // Told when sliders, scripts or the button of the scene's own inputs move the robot: nothing leads it elsewhere then.
+    this.interrupted = [];
     this.buildSliders();
     this.buildLayers();
     document.getElementById("reset").onclick = () => this.reset();
@@ -108,6 +110,12 @@ class Panel {
   moveTo(i, value) {
     const inputs = Float64Array.from(this.wanted || this.inputs);
     inputs[i] = value;
+    return this.ask(inputs);
+  }
+
+  // Go to inputs and stay there, whatever led the robot before.
+  ask(inputs) {
+    this.interrupted.forEach((stop) => stop());
     return this.solve(inputs);
   }
 
@@ -123,9 +131,8 @@ class Panel {
   async work() {
     while (this.wanted) {
       const inputs = this.wanted;
-      const waiting = this.waiting;
+      const waiting = this.waiting.splice(0);
       this.wanted = null;
-      this.waiting = [];
       try {
         const state = await this.robot.move(inputs);
         if (state.refused) this.say("✕ Refused", state.refused);
@@ -136,6 +143,8 @@ class Panel {
       waiting.forEach((resolve) => resolve(this.state));
       await new Promise(requestAnimationFrame);
     }
+    // A wish that the scene's own inputs have replaced is answered by those.
+    this.waiting.splice(0).forEach((resolve) => resolve(this.state));
     this.busy = null;
   }
 
@@ -170,6 +179,7 @@ class Panel {
   }
 
   async reset() {
+    this.interrupted.forEach((stop) => stop());
     const inputs = Float64Array.from(this.facts.sliders, (slider) => slider.value);
     inputs.forEach((value, i) => this.rows[i].show(value));
     this.wanted = null;
@@ -299,7 +309,7 @@ class Panel {
         const values = [value].flat();
         if (chosen.length !== values.length) throw new Error(`${name} has ${chosen.length} numbers, got ${values.length}`);
         chosen.forEach(([slider], k) => (inputs[slider.index] = values[k]));
-        return panel.solve(inputs);
+        return panel.ask(inputs);
       },
       tip(name) {
         const index = panel.facts.poses.findIndex((pose) => name === undefined || pose.rod === name || pose.body === name);
