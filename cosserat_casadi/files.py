@@ -45,6 +45,13 @@ def is_special(path: Path) -> bool:
     return path.exists() and not path.is_file() and not path.is_dir()
 
 
+def are_one_file(first: Path, second: Path) -> bool:
+    """Whether two paths lead to one regular file, there or still to be written; into a device many may write."""
+    if first.exists() and second.exists():
+        return first.is_file() and first.samefile(second)
+    return os.path.realpath(first) == os.path.realpath(second)
+
+
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file under a temporary name beside its place, then move it there: it is never half there.
 

@@ -83,6 +83,28 @@ def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) 
     return tables
 
 
+def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> list[Path]:
+    """The files that reading a scene reads: its own, and the tables that its motions and measurements name.
+
+    Of a scene that is refused the tables are those that can be told.
+
+    Args:
+        path: the file.
+        overrides: as in `read_scene`.
+    """
+    file = Path(path)
+    # A pipe cannot be read again, and is not overwritten.
+    if not file.is_file():
+        return []
+    try:
+        tables = parsed(file_text(file))
+        apply_overrides(tables, overrides, SCENE_KEYS)
+    except (SceneError, RecursionError):
+        return [file]
+    _locate_files(tables, file.parent)
+    return [file, *(Path(entry["file"]) for entry in _entries_with_files(tables))]
+
+
 def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     """Path of what an override with this key sets: two keys of one path set the same.
 
@@ -127,11 +149,15 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
 
 def _locate_files(tables: dict[str, Any], folder: Path) -> None:
     """Put the folder of the scene before the files that its motions and measurements name."""
+    for entry in _entries_with_files(tables):
+        entry["file"] = str(folder / entry["file"])
+
+
+def _entries_with_files(tables: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Motions and measurements that name a file."""
     given = SceneTables(tables)
-    for _, entry in (*given.tables("motions"), *given.tables("measurements")):
-        file = entry.get("file")
-        if isinstance(file, str) and isinstance(entry, dict):
-            entry["file"] = str(folder / file)
+    entries = [entry for _, entry in (*given.tables("motions"), *given.tables("measurements"))]
+    return [entry for entry in entries if isinstance(entry, dict) and isinstance(entry.get("file"), str)]
 
 
 def _copy(value: Any) -> Any:
