@@ -29,6 +29,12 @@ VARIABLE = "COSSERAT_CASADI_CACHE"
 
 OFF = "off"
 
+BASES = {"win32": "LOCALAPPDATA", "darwin": ""}
+"""Environment variable that names the folder of caches, by platform; elsewhere it is XDG_CACHE_HOME."""
+
+FOLDERS = {"win32": "AppData/Local", "darwin": "Library/Caches"}
+"""The folder of caches in a user's home, by platform; elsewhere it is .cache."""
+
 LIMIT = 500_000_000
 """Bytes of all libraries in the folder, beyond which some are removed."""
 
@@ -48,19 +54,24 @@ ABANDONED = 86400.0
 
 
 def cache_folder() -> Path:
-    """Where compiled libraries are kept: what the variable names, or the cache folder of the user's platform."""
+    """Where compiled libraries are kept: what the variable names, or the cache folder of the user's platform.
+
+    Of a user who has no home it is a folder that is removed when the process ends.
+    """
     chosen = os.environ.get(VARIABLE)
     if chosen == OFF:
         return _folder_of_process()
     if chosen:
         return Path(chosen)
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "cosserat_casadi"
+    named = os.environ.get(BASES.get(sys.platform, "XDG_CACHE_HOME"))
+    if named:
+        return Path(named) / "cosserat_casadi"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        # The user is not known to the system, as in a container: nobody else may write to what is made for us.
+        return _folder_of_process()
+    return home / FOLDERS.get(sys.platform, ".cache") / "cosserat_casadi"
 
 
 @cache

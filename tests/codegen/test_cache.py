@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -270,3 +271,16 @@ def test_a_launched_compiler_is_told_by_its_file(tmp_path: Path) -> None:
     before = content_hash(["env", str(program)], [], [])
     program.write_text("#!/bin/sh\nexit 1 # newer\n")
     assert content_hash(["env", str(program)], [], []) != before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks for the user by number")
+def test_a_user_without_a_home_keeps_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unknown(number: int) -> None:
+        raise KeyError(number)
+
+    for variable in ("COSSERAT_CASADI_CACHE", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", unknown)
+    folder = cache_folder()
+    assert folder.is_dir()
+    assert folder.is_relative_to(tempfile.gettempdir())
