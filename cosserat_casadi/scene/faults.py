@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
@@ -70,6 +71,18 @@ class SceneTables:
             if isinstance(name, str):
                 first.setdefault(name, (i, table))
         return first
+
+
+def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
+    """Whole numbers, anywhere in a value, that no number of double precision comes near."""
+    if isinstance(value, Mapping):
+        for key, entry in value.items():
+            yield from faults_of_range(entry, (*path, key))
+    elif isinstance(value, list | tuple):
+        for i, entry in enumerate(value):
+            yield from faults_of_range(entry, (*path, i))
+    elif isinstance(value, int) and abs(value) > sys.float_info.max:
+        yield Fault(path, f"must be finite, got {shown(value)}")
 
 
 def shown(value: object) -> str:

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Path as FaultPath
-from cosserat_casadi.scene.faults import SceneTables, shown
-from cosserat_casadi.scene.messages import problems_of
+from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
+from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
 from cosserat_casadi.scene.records import keys_of
 from cosserat_casadi.scene.scene import Scene
@@ -137,6 +137,10 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))
     # A refused override does not stop the reading: its problem comes together with those of the file.
     applied, problems = apply_overrides(tables, overrides, SCENE_KEYS)
+    # Rules take numbers for numbers of double precision.
+    faults = list(faults_of_range(tables))
+    if faults:
+        raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
     _locate_files(tables, folder)
     try:
         scene = Scene.model_validate(tables)
