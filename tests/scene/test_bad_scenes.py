@@ -8,6 +8,7 @@ import pytest
 
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene.faults import LENGTHS, SIZES
 
 JARGON = ("type=", "input_value", "https://", "pydantic", "⟨", "something else", "Traceback", "Input should")
 
@@ -218,8 +219,10 @@ BAD = [
      "supports[1].rod", "overlapping supports"),
     ("support_too_far", support("kind = 'pinned'\nposition = [0.2, 0, 0.1]"),
      "supports[0].position", "unreachable combination: 0.223606798 m from the base of a rod of 0.2 m"),
-    ("support_beyond_all_range", support("kind = 'pinned'\nposition = [1e308, -1e308, 1e308]"),
+    ("support_beyond_all_range", support("kind = 'pinned'\nposition = [1e60, -1e60, 1e60]"),
      "supports[0].position", "unreachable combination"),
+    ("support_beyond_all_powers", support("kind = 'pinned'\nposition = [0, 0, -1e308]"),
+     "supports[0].position[2]", "must be at most 1e+60 in size, got -1e+308"),
     ("support_out_of_plane", support("kind = 'pinned'\nposition = [0.1, 0.01, 0.1]", rods=planar()),
      "supports[0].position", "unreachable combination: 0.01 m outside the plane"),
     ("support_out_of_turned_plane",
@@ -560,3 +563,28 @@ def test_a_whole_number_beyond_all_range_is_refused_at_its_override():
         parse_scene(scene(), [f"finger.length={HUGE}"])
     (problem,) = caught.value.problems
     assert problem.where == "--set finger.length"
+
+
+@pytest.mark.parametrize("table", ["rods", "tubes", "joints", "obstacles", "bodies", "loads"])
+@pytest.mark.parametrize("key", sorted(LENGTHS))
+def test_lengths_beyond_all_powers_are_refused(table, key):
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, table: [{"deeper": {key: [0.0, 1.1e60]}}]})
+    (problem,) = caught.value.problems
+    assert problem.where == f"{table}[0].deeper.{key}[1]"
+    assert problem.remedy == "lengths are in m"
+
+
+@pytest.mark.parametrize("key", sorted(SIZES))
+@pytest.mark.parametrize("value", [1e-320, 1e-61])
+def test_sizes_that_are_next_to_nothing_are_refused(key, value):
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, "rods": [{"section": {key: {"base": 1.0, "tip": value}}}]})
+    (problem,) = caught.value.problems
+    assert problem.where == f"rods[0].section.{key}.tip"
+    assert problem.problem == f"must be at least 1e-60, got {value!r}"
+
+
+def test_numbers_that_are_no_lengths_may_be_of_any_size():
+    force = f"{scene()}[[loads]]\nname = 'push'\nkind = 'tip_wrench'\nrod = 'finger'\nforce = [1e300, 0, 0]\n"
+    assert parse_scene(force).loads[0].force[0] == 1e300
