@@ -11,46 +11,100 @@ from typing import IO
 
 from cosserat_casadi.errors import Problem, SceneError, WriteError
 
+BLOCK = 1 << 20
+"""Bytes that are copied at a time."""
+
 
 def check_writable(path: Path, option: str) -> None:
     """Refuse a path that cannot become a file, before any work is done for it.
 
+    Links are followed; a device or a pipe that is there needs no folder that takes files.
+
     Raises:
-        SceneError: the path is a folder, or its folder does not exist or cannot be written to.
+        SceneError: the path is a folder, or a device or a pipe that takes nothing, or its folder does not exist or
+            cannot be written to, or the path is a link that leads to itself.
     """
-    folder = path.parent
     if path.is_dir():
         raise SceneError(Problem(option, f"{path} is a folder", "name a file in it"))
+    if is_special(path):
+        if not os.access(path, os.W_OK):
+            raise SceneError(Problem(option, f"{path} cannot be written to"))
+        return
+    target = _target(path)
+    if target.is_symlink():
+        raise SceneError(Problem(option, f"{path} is a link that leads to itself", "remove it, or name another file"))
+    folder = target.parent
     if not folder.is_dir():
         raise SceneError(Problem(option, f"the folder {folder} does not exist", "make it first"))
     if not os.access(folder, os.W_OK):
         raise SceneError(Problem(option, f"the folder {folder} cannot be written to"))
 
 
+def is_special(path: Path) -> bool:
+    """Whether a path leads to something that is there and holds no content of its own: a device, a pipe, a socket."""
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+def are_one_file(first: Path, second: Path) -> bool:
+    """Whether two paths lead to one regular file, there or still to be written; into a device many may write."""
+    if first.exists() and second.exists():
+        return first.is_file() and first.samefile(second)
+    return os.path.realpath(first) == os.path.realpath(second)
+
+
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file under a temporary name beside its place, then move it there: it is never half there."""
+    """Write a file under a temporary name beside its place, then move it there: it is never half there.
+
+    Into a device or a pipe, which must not be replaced by a file, the content is written once it is whole.
+
+    Raises:
+        WriteError: the disk is full, or the folder cannot be written to.
+    """
     with atomic_file(path) as temporary:
         temporary.write_bytes(content)
 
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """A temporary file beside a path, to be filled; it is moved there at the end, or removed where that fails.
+    """A temporary file, to be filled; it goes to a path at the end, or is removed where that fails.
+
+    Where the path is a link, the file goes to where the link leads. Into a device or a pipe its content is written.
 
     Raises:
         WriteError: the disk is full, or the folder cannot be written to.
     """
     with write_errors(path):
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        if is_special(path):
+            with tempfile.TemporaryDirectory() as folder:
+                filled = Path(folder) / path.name
+                yield filled
+                _pour(filled, path)
+            return
+        target = _target(path)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
         temporary = Path(name)
         try:
             os.close(handle)
             yield temporary
             temporary.chmod(0o644)
-            temporary.replace(path)
+            temporary.replace(target)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+
+
+def _target(path: Path) -> Path:
+    """Where a path leads to: itself, unless it is a link."""
+    if path.is_symlink():
+        return Path(os.path.realpath(path))
+    return path
+
+
+def _pour(source: Path, special: Path) -> None:
+    """Write the content of a file into a device or a pipe."""
+    with source.open("rb") as content, special.open("wb", buffering=0) as stream:
+        while block := content.read(BLOCK):
+            write_whole(stream, block)
 
 
 def write_whole(stream: IO[bytes], content: bytes) -> None:

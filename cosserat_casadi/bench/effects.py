@@ -18,7 +18,7 @@ def effect_times(
 
     Args:
         scene: the scene.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler.
         progress: told what is compiled, how many programs are, and of how many.
     """
     with ExitStack() as stack:

@@ -101,7 +101,7 @@ class Trial:
         candidate: what to measure.
         scene: the scene, of the candidate's strain model.
         reference: of that scene.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler.
     """
 
     def __init__(self, candidate: Candidate, scene: scenes.Scene, reference: Reference, compiler: str) -> None:

@@ -35,7 +35,7 @@ class Plan:
 
     Attributes:
         scene: the scene.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler.
         candidates: points to be measured, those that an earlier bench measured left out.
         output: folder for the files; None for none.
         rows: what is measured, with what an earlier bench left.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.compiler import compiler_words
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.names import Names, scene_names
@@ -45,7 +47,7 @@ class Program:
 
     Args:
         model: what to compile.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler.
     """
 
     def __init__(self, model: Model, compiler: str) -> None:
@@ -57,8 +59,9 @@ class Program:
             (folder / file).write_text(text, encoding="utf-8")
         # What the demo does not time is half of the work for the compiler: it is not optimised.
         wanted = ["timed_demo.c", "timed.c", "timed_kernels.c", "untimed.o", "-lm", "-o", "demo"]
-        script = f'"$0" -O0 -std=c99 -c untimed.c && "$0" {" ".join((*FLAGS, *wanted))}'
-        command = ["/bin/sh", "-c", script, compiler]
+        beside = shlex.join([*compiler_words(compiler, ("-O0", "-std=c99")), "-c", "untimed.c"])
+        program = shlex.join([*compiler_words(compiler, FLAGS), *wanted])
+        command = ["/bin/sh", "-c", f"{beside} && {program}"]
         self._compilation = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def wait(self) -> None:

@@ -23,7 +23,7 @@ class Session:
 
     Attributes:
         scene: the scene.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler.
         reference: what errors are measured against.
     """
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,8 @@ from typing import Annotated
 import typer
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable
+from cosserat_casadi.files import are_one_file, check_writable
+from cosserat_casadi.scene.reading import files_read
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).", show_default=False)]
 
@@ -62,6 +63,34 @@ def check_file(file: Path | None, option: str, suffix: str) -> None:
         written = suffix.removeprefix(".").upper()
         problem = f"writes {written} only, and {file} has the suffix {file.suffix}"
         raise SceneError(Problem(option, problem, f"name it {file.with_suffix(suffix)}"))
+
+
+def check_inputs_stay(
+    outputs: Mapping[str, Path | None], scene: Path, settings: list[str] | None, *others: Path | None
+) -> None:
+    """Refuse to write over a file that the command reads, or two results into one file.
+
+    Args:
+        outputs: files to be written, by the option that asks for each; None where none is asked for.
+        scene: file of the scene, whose tables are read too.
+        settings: changes of the scene, which may name other tables.
+        others: files that the command reads beside the scene.
+
+    Raises:
+        SceneError: with a problem for each such file.
+    """
+    inputs = [*files_read(scene, settings or ()), *given_files(*others)]
+    asked = [(option, output) for option, output in outputs.items() if output is not None]
+    problems = []
+    for index, (option, output) in enumerate(asked):
+        if any(are_one_file(output, read) for read in inputs):
+            problem = f"{output} is read by this command, and would be overwritten"
+            problems.append(Problem(option, problem, "name another file"))
+        for earlier_option, earlier in asked[:index]:
+            if are_one_file(output, earlier):
+                problems.append(Problem(option, f"{output} is the file of {earlier_option} too", "name another file"))
+    if problems:
+        raise SceneError(*problems)
 
 
 def _check_plot(plot: Path | None) -> None:

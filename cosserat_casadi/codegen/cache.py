@@ -1,4 +1,7 @@
-"""Where compiled libraries are kept: under names that hold a hash of all that they are made of.
+"""Where compiled libraries are kept: under names that hold a hash of their sources, and one of their content.
+
+The first is of all that a library is made of. The second tells one that was cut off or written over, as by a full disk,
+before it is loaded: loading it could end the process.
 
 The least recently used ones are removed beyond a limit, so that the folder never grows without bound. Processes may do
 all this at once: a library appears whole or not at all, and one that was used in the last hour is not removed.
@@ -26,6 +29,12 @@ VARIABLE = "COSSERAT_CASADI_CACHE"
 
 OFF = "off"
 
+BASES = {"win32": "LOCALAPPDATA", "darwin": ""}
+"""Environment variable that names the folder of caches, by platform; elsewhere it is XDG_CACHE_HOME."""
+
+FOLDERS = {"win32": "AppData/Local", "darwin": "Library/Caches"}
+"""The folder of caches in a user's home, by platform; elsewhere it is .cache."""
+
 LIMIT = 500_000_000
 """Bytes of all libraries in the folder, beyond which some are removed."""
 
@@ -35,27 +44,34 @@ IN_USE = 3600.0
 SCRATCH = "cosserat_casadi-compiling-"
 """How folders begin in which libraries are compiled."""
 
-LIBRARY = re.compile(r"\w+-[0-9a-f]{20}\.so")
-"""What libraries are called. Whatever else lies in the folder is not ours to remove."""
+LIBRARY = re.compile(r"\w+-[0-9a-f]{20}(-[0-9a-f]{20})?\.so")
+"""What libraries are called; those of earlier versions had no hash of their content.
+
+Whatever else lies in the folder is not ours to remove."""
 
 ABANDONED = 86400.0
 """Seconds after which what a killed compilation left is removed."""
 
 
 def cache_folder() -> Path:
-    """Where compiled libraries are kept: what the variable names, or the cache folder of the user's platform."""
+    """Where compiled libraries are kept: what the variable names, or the cache folder of the user's platform.
+
+    Of a user who has no home it is a folder that is removed when the process ends.
+    """
     chosen = os.environ.get(VARIABLE)
     if chosen == OFF:
         return _folder_of_process()
     if chosen:
         return Path(chosen)
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "cosserat_casadi"
+    named = os.environ.get(BASES.get(sys.platform, "XDG_CACHE_HOME"))
+    if named:
+        return Path(named) / "cosserat_casadi"
+    try:
+        home = Path.home()
+    except RuntimeError:
+        # The user is not known to the system, as in a container: nobody else may write to what is made for us.
+        return _folder_of_process()
+    return home / FOLDERS.get(sys.platform, ".cache") / "cosserat_casadi"
 
 
 @cache
@@ -66,25 +82,65 @@ def _folder_of_process() -> Path:
     return Path(folder)
 
 
-def content_hash(compiler: str, flags: Sequence[str], contents: Iterable[bytes]) -> str:
+def library_name(stem: str, content: bytes) -> str:
+    """Name of a library: what tells its sources, and what tells its content."""
+    return f"{stem}-{_short_hash(content)}.so"
+
+
+def kept_library(folder: Path, stem: str) -> Path | None:
+    """A library of the folder, its content as it was compiled; one that has changed since is removed.
+
+    Args:
+        folder: with the libraries.
+        stem: what the name of the library begins with: it tells the sources.
+
+    Returns:
+        None where there is none.
+    """
+    for library in sorted(folder.glob(f"{stem}-*.so")):
+        try:
+            if library.name == library_name(stem, library.read_bytes()):
+                return library
+            library.unlink()
+        except OSError:
+            # Another process has removed it, or it is not ours to read.
+            continue
+    return None
+
+
+def _short_hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:20]
+
+
+def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterable[bytes]) -> str:
     """A hash of sources and of all else that a library depends on.
 
     Args:
-        compiler: path of the compiler. It is told by its file, since asking it for its version would mean to run it.
+        compiler: words of its command. Programs among them are told by their files, since asking a compiler for its
+            version would mean to run it.
         flags: its flags.
         contents: of the sources and of what they include, each as in its file.
     """
-    program = Path(compiler).resolve()
-    with suppress(OSError):
-        found = program.stat()
-        flags = [*flags, str(found.st_size), str(found.st_mtime_ns)]
+    programs = [_program_facts(word) for word in compiler]
     # The folder may lie in a home that machines of several kinds share.
     machine = [platform.system(), platform.machine()]
-    words = [version("cosserat-casadi"), compiler, str(program), *flags, *machine]
+    words = [version("cosserat-casadi"), *compiler, *programs, *flags, *machine]
     digest = hashlib.sha256("\0".join(words).encode())
     for content in contents:
         digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()[:20]
+
+
+def _program_facts(word: str) -> str:
+    """Path, size and time of a program; nothing where a word is an option."""
+    path = shutil.which(word)
+    if path is None:
+        return ""
+    program = Path(path).resolve()
+    with suppress(OSError):
+        found = program.stat()
+        return f"{program} {found.st_size} {found.st_mtime_ns}"
+    return str(program)
 
 
 def mark_used(library: Path) -> None:

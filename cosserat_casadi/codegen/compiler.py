@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import shlex
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
-from cosserat_casadi.codegen.cache import SCRATCH, VARIABLE, cache_folder, content_hash, keep_within, mark_used
+from cosserat_casadi.codegen.cache import (
+    SCRATCH,
+    VARIABLE,
+    cache_folder,
+    content_hash,
+    keep_within,
+    kept_library,
+    library_name,
+    mark_used,
+)
+from cosserat_casadi.codegen.processes import Processes
 from cosserat_casadi.errors import ExportError, Problem
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
@@ -19,6 +30,9 @@ EXPORT_ANEW = "export the folder anew"
 """What helps where files of a folder are missing, of another version, or do not belong together."""
 
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
+
+LONGEST = 1200.0
+"""Time that the compiler has for one file, s: the largest file of the examples takes it less than a tenth of that."""
 
 Progress = Callable[[str, int, int], None]
 """Takes what is being done, how much of it is done, and how much there is."""
@@ -29,29 +43,33 @@ def shared_object(
 ) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
+    A library of the cache whose content has changed since it was compiled is compiled again.
+
     Args:
         name: what the name of the object begins with.
         sources: files to compile.
         headers: files beside them that they include.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler, of :func:`find_compiler`.
         progress: told what is compiled, how many files are, and of how many.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
-    digest = content_hash(compiler, FLAGS, [_read(path) for path in (*sources, *headers)])
-    target = cache_folder() / f"{name}-{digest}.so"
-    if target.exists():
-        mark_used(target)
-        return target
+    digest = content_hash(compiler_words(compiler), FLAGS, [_read(path) for path in (*sources, *headers)])
+    stem = f"{name}-{digest}"
+    folder = cache_folder()
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _compile(compiler, sources, target, progress)
-        keep_within(target.parent)
+        kept = kept_library(folder, stem)
+        if kept is not None:
+            mark_used(kept)
+            return kept
+        folder.mkdir(parents=True, exist_ok=True)
+        library = _compile(compiler, sources, folder, stem, progress)
+        keep_within(folder)
     except OSError as error:
         remedy = f"name a folder for it in the environment variable {VARIABLE}"
-        raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
-    return target
+        raise ExportError(Problem(str(folder), f"cannot be written to: {error.strerror}", remedy)) from None
+    return library
 
 
 def compiled_texts(
@@ -66,7 +84,7 @@ def compiled_texts(
     Args:
         name: what the name of the object begins with.
         texts: content by file name.
-        compiler: path of a C compiler.
+        compiler: command of a C compiler, of :func:`find_compiler`.
         included: files that others include: they are not compiled by themselves.
         progress: as there.
     """
@@ -79,46 +97,118 @@ def compiled_texts(
         return shared_object(name, sources, headers, compiler, progress)
 
 
-def _compile(compiler: str, sources: Sequence[Path], target: Path, progress: Progress | None = None) -> None:
-    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=target.parent) as scratch:
-        made = Path(scratch) / target.name
-        objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
-        commands = [[compiler, *FLAGS, "-c", str(s), "-o", str(o)] for s, o in zip(sources, objects, strict=True)]
-        doing = f"Compiling {target.name.rpartition('-')[0]}"
-        if progress is not None:
-            progress(doing, 0, len(sources))
-        with ThreadPoolExecutor() as pool:
-            running = [pool.submit(_run, command, sources[0].parent) for command in commands]
-            for done, compiled in enumerate(as_completed(running), 1):
-                compiled.result()
-                if progress is not None:
-                    progress(doing, done, len(sources))
-        _run([compiler, *FLAGS, "-shared", *map(str, objects), "-o", str(made), "-lm"], sources[0].parent)
-        made.replace(target)
-
-
-def _run(command: list[str], folder: Path) -> None:
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-    except OSError as error:
-        raise ExportError(Problem("compiler", f"{command[0]} cannot be run: {error.strerror}", REMEDY)) from None
-    if done.returncode:
-        raise ExportError(Problem(str(folder), f"{command[0]} could not compile it: {done.stderr.strip()[-800:]}"))
-
-
 def find_compiler(wanted: str | None = None) -> str:
-    """Path of a C compiler: the one wanted, else that of CC, else the first there is.
+    """Command of a C compiler: the one wanted, else that of CC, else the first there is.
+
+    Args:
+        wanted: a program, or a command with options or a launcher before it, such as ``gcc -O1`` or ``ccache gcc``.
+
+    Returns:
+        the command as a shell takes it, with the path of its program.
 
     Raises:
         ExportError: there is none.
     """
-    asked = wanted or os.environ.get("CC")
+    asked = wanted or os.environ.get("CC", "").strip()
     for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
-        path = shutil.which(candidate)
+        # A path may hold blanks: what is a program as it stands is no command.
+        whole = shutil.which(candidate)
+        words = [candidate] if whole else _words(candidate)
+        path = shutil.which(words[0])
         if path:
-            return path
+            return shlex.join([path, *words[1:]])
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
     raise ExportError(Problem("compiler", problem, REMEDY))
+
+
+def compiler_words(compiler: str, flags: Sequence[str] = ()) -> list[str]:
+    """Words of a call of a compiler, to be followed by files.
+
+    Args:
+        compiler: command, of :func:`find_compiler`.
+        flags: of ours; options of the command come after them, so that what the user asks for holds.
+    """
+    words = shlex.split(compiler)
+    programs = [word.startswith("-") for word in [*words, "-"]].index(True)
+    return [*words[:programs], *flags, *words[programs:]]
+
+
+def _words(command: str) -> list[str]:
+    try:
+        return shlex.split(command)
+    except ValueError as error:
+        raise ExportError(Problem("compiler", f"{command} is no command: {error}", REMEDY)) from None
+
+
+def _compile(compiler: str, sources: Sequence[Path], folder: Path, stem: str, progress: Progress | None = None) -> Path:
+    """Compile sources into a folder, under a name that begins with a stem and tells the content."""
+    name = stem.rpartition("-")[0]
+    call = compiler_words(compiler, FLAGS)
+    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=folder) as scratch:
+        objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
+        doing = f"Compiling {name}"
+        if progress is not None:
+            progress(doing, 0, len(sources))
+        # What fails, or an interrupt, stops the compilers that are still running.
+        with ThreadPoolExecutor() as pool, Processes(LONGEST) as processes:
+            running = [
+                pool.submit(_run, processes, [*call, "-c", str(source), "-o", str(made)], made, source)
+                for source, made in zip(sources, objects, strict=True)
+            ]
+            for done, compiled in enumerate(as_completed(running), 1):
+                compiled.result()
+                if progress is not None:
+                    progress(doing, done, len(sources))
+        made = Path(scratch) / f"{stem}.so"
+        with Processes(LONGEST) as processes:
+            command = [*call, "-shared", *map(str, objects), "-o", str(made), "-lm"]
+            _run(processes, command, made, sources[0].parent)
+        _check_loads(compiler, made)
+        library = folder / library_name(stem, made.read_bytes())
+        made.replace(library)
+    return library
+
+
+def _run(processes: Processes, command: list[str], made: Path, of: Path) -> None:
+    """Run a compiler.
+
+    Args:
+        processes: among which it runs.
+        command: its words.
+        made: file that it has to write.
+        of: what it is compiled from, for the sentence.
+
+    Raises:
+        ExportError: it cannot be run, does not end, fails, or writes nothing.
+    """
+    program = command[0]
+    try:
+        code, told = processes.run(command)
+    except TimeoutError:
+        problem = f"{program} was stopped: it had not compiled {of} after {LONGEST:g} s"
+        raise ExportError(Problem("compiler", problem, "name another in the environment variable CC")) from None
+    except OSError as error:
+        raise ExportError(Problem("compiler", f"{program} cannot be run: {error.strerror}", REMEDY)) from None
+    if code:
+        raise ExportError(Problem(str(of), f"{program} could not compile it: {told.strip()[-800:]}"))
+    if not made.exists() or made.stat().st_size == 0:
+        problem = f"{program} says that it has compiled {of}, and wrote nothing"
+        raise ExportError(Problem("compiler", problem, "name another in the environment variable CC"))
+
+
+def _check_loads(compiler: str, library: Path) -> None:
+    """Refuse what a compiler made where it is no library of this machine.
+
+    Raises:
+        ExportError: the library cannot be loaded.
+    """
+    try:
+        ctypes.CDLL(str(library))
+    except OSError as error:
+        reason = str(error).replace(f"{library}: ", "")
+        problem = f"{compiler} has made no library that this machine can load: {reason}"
+        remedy = f"name another in the environment variable CC, or in {VARIABLE} a folder that programs may run from"
+        raise ExportError(Problem("compiler", problem, remedy)) from None
 
 
 def _read(path: Path) -> bytes:

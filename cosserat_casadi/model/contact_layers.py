@@ -90,8 +90,9 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
     widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and obstacle.concerns(rod.name)]
     if not widths:
         return []
-    wanted = ceil(sqrt(rod.length / min(widths)) / ELEMENT_FACTOR)
-    return list(map(float, np.linspace(0.0, 1.0, min(wanted, MOST_ELEMENTS) + 1)))
+    # The ratio may be beyond all range: it is bounded before it becomes a whole number.
+    wanted = min(sqrt(rod.length / min(widths)) / ELEMENT_FACTOR, MOST_ELEMENTS)
+    return list(map(float, np.linspace(0.0, 1.0, ceil(wanted) + 1)))
 
 
 def thinnest(scene: scenes.Scene) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.enrichment import nodes_for
-from cosserat_casadi.model.places import element_ends
+from cosserat_casadi.model.places import check_places, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -30,6 +30,9 @@ def discretise(
         modes: polynomials per component and element, one number or one for each admitted strain.
         nodes: Chebyshev intervals per element.
         transport: integration method of the rotation.
+
+    Raises:
+        SceneError: the scene has tubes, or two places on a rod are too near each other to compute with.
     """
     refuse_tubes(scene)
     if modes is None:
@@ -46,6 +49,7 @@ def discretise(
         if intervals is None:
             intervals = nodes_for(max(modes_of_rod))
         breaks = element_ends(scene, rod.name)
+        check_places(rod.name, breaks)
         chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, transport)
     return chosen
 

@@ -6,14 +6,15 @@ of the scene's own numbers, so that the order of the places along a rod must sta
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
@@ -21,6 +22,13 @@ from cosserat_casadi.model.registry import EFFECTS
 
 NARROWEST = 1e-6
 """Width of an element relative to the rod below which its ends are taken to meet."""
+
+
+CLOSEST = 1e-13
+"""Distance of two places relative to the rod below which rounding makes the equations between them singular.
+
+At 1e-12 a rod with a load at each is still solved to its tolerance.
+"""
 
 
 def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
@@ -40,6 +48,23 @@ def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
     asked_for = tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
     (record,) = [record for record in scene.rods if record.name == rod]
     return joined_ends(asked_for, layer_ends(scene, record))
+
+
+def check_places(rod: str, ends: Sequence[float]) -> None:
+    """Refuse places on a rod that are so near each other that there is no element between them.
+
+    Args:
+        rod: name of the rod.
+        ends: where its elements end, ascending.
+
+    Raises:
+        SceneError: two are closer than CLOSEST.
+    """
+    for before, after in pairwise(ends):
+        if after - before < CLOSEST:
+            problem = f"its elements would end at {before!r} and at {after!r}, too near each other to compute with"
+            remedy = "give what meets on the rod the same abscissa X, or move one"
+            raise SceneError(Problem(rod, problem, remedy))
 
 
 def moved_ends(

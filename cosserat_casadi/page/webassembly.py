@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
 
+from cosserat_casadi.codegen.compiler import LONGEST
 from cosserat_casadi.codegen.export import folder_files
+from cosserat_casadi.codegen.processes import Processes
 from cosserat_casadi.codegen.texts import fill
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.page.drawn_model import DrawnModel
@@ -102,9 +103,17 @@ def _compiled(compiler: str, files: Mapping[str, str], sources: list[str]) -> by
         module = folder / "module.wasm"
         command = [compiler, *FLAGS, *sources, "-lm", "-o", module.name]
         try:
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False)
+            with Processes(LONGEST) as processes:
+                code, told = processes.run(command, folder)
+        except TimeoutError:
+            problem = f"{compiler} was stopped: it had not compiled the page after {LONGEST:g} s"
+            raise ExportError(Problem("--page", problem, REMEDY)) from None
         except OSError as error:
             raise ExportError(Problem("--page", f"{compiler} cannot be run: {error.strerror}", REMEDY)) from None
-        if done.returncode:
-            raise ExportError(Problem("--page", done.stderr.strip()[-400:]))
+        if code:
+            raise ExportError(Problem("--page", told.strip()[-400:]))
+        if not module.exists():
+            raise ExportError(
+                Problem("--page", f"{compiler} says that it has compiled the page, and wrote nothing", REMEDY)
+            )
         return module.read_bytes()

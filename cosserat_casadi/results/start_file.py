@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,13 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.places import element_ends
+from cosserat_casadi.model.places import CLOSEST, element_ends
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES
 
 WHERE = "--from"
 
@@ -60,14 +63,21 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        # Every number is one of double precision: of 400 digits it is infinite, and refused as such.
+        data = json.loads(path.read_text(encoding="utf-8"), parse_int=_whole_number)
     except OSError as error:
         raise _refusal(path, f"cannot be read: {error.strerror}", "") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise _refusal(path, "is not JSON", "write it with cosserat solve SCENE --output") from error
     if not isinstance(data, dict):
         raise _refusal(path, "is no result file", "write it with cosserat solve SCENE --output")
     return data
+
+
+def _whole_number(digits: str) -> int | float:
+    """A whole number as JSON has it; infinite where no number of double precision comes near."""
+    number = float(digits)
+    return int(number) if math.isfinite(number) else number
 
 
 def _refusal(path: str | Path, problem: str, remedy: str) -> SceneError:
@@ -75,17 +85,53 @@ def _refusal(path: str | Path, problem: str, remedy: str) -> SceneError:
 
 
 def _discretisation(data: Mapping[str, Any], scene: Scene) -> dict[str, Discretisation]:
+    """The discretisation of every rod.
+
+    Raises:
+        ValueError: one is none that a solve could have had.
+    """
     chosen = {}
     for rod in scene.rods:
         entry = data["discretisation"][rod.name]
         breaks = element_ends(scene, rod.name) if scene.touches_exactly else tuple(entry["breaks"])
-        chosen[rod.name] = Discretisation(
-            modes=tuple(entry["modes"]),
-            nodes=entry["nodes"],
-            breaks=breaks,
-            transport=entry["transport"],
-        )
+        modes = tuple(entry["modes"])
+        _check_whole(*modes, least=1, most=MOST_MODES)
+        _check_whole(entry["nodes"], least=2, most=MOST_NODES)
+        places = _finite_array(breaks)
+        if places[0] != 0.0 or places[-1] != 1.0 or np.diff(places).min() < CLOSEST:
+            raise ValueError("breaks do not ascend from 0 to 1")
+        chosen[rod.name] = Discretisation(modes, entry["nodes"], tuple(places.tolist()), entry["transport"])
     return chosen
+
+
+def _check_whole(*numbers: Any, least: int, most: int) -> None:
+    for number in numbers:
+        if type(number) is not int or not least <= number <= most:
+            raise ValueError(f"{number!r} is no number from {least} to {most}")
+
+
+def _finite_array(listed: Any) -> FloatArray:
+    """An array of the file.
+
+    Raises:
+        ValueError: a number is missing or not finite.
+    """
+    array = np.asarray(listed, dtype=float)
+    if not array.size or not np.all(np.isfinite(array)):
+        raise ValueError("numbers are missing or not finite")
+    return array
+
+
+def _abscissae(listed: Any) -> FloatArray:
+    """Abscissae X of the file.
+
+    Raises:
+        ValueError: one does not lie on the rod.
+    """
+    X = _finite_array(listed)
+    if X.ndim != 1 or X.min() < 0.0 or X.max() > 1.0:
+        raise ValueError("an abscissa does not lie on the rod")
+    return X
 
 
 def _inputs(model: Model, data: Mapping[str, Any]) -> dict[str, FloatArray]:
@@ -94,7 +140,7 @@ def _inputs(model: Model, data: Mapping[str, Any]) -> dict[str, FloatArray]:
     for entry in model.inputs.entries:
         if entry.name not in data["inputs"]:
             continue
-        listed = np.asarray(data["inputs"][entry.name], dtype=float)
+        listed = _finite_array(data["inputs"][entry.name])
         components, degrees = entry.shape
         # Legendre coefficients are rows in the file.
         values[entry.name] = listed.reshape(degrees, components).T
@@ -106,14 +152,14 @@ def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
     x = model.unloaded()
     stacked = model.pack(_inputs(model, data))
     for name, rod in model.discrete.rods.items():
-        X = np.asarray(data["rods"][name]["X"], dtype=float)
-        strain = np.asarray(data["rods"][name]["strain"], dtype=float)
-        intrinsic = rod.properties.intrinsic_strain(X)
+        X = _abscissae(data["rods"][name]["X"])
+        strain = _finite_array(data["rods"][name]["strain"])
+        intrinsic = known(rod.properties.intrinsic_strain(X))
         # Strain coordinates are of the reference length, strains of the length that the rod has.
         deviation = (strain - intrinsic) * model.length_ratio(name, stacked)
         q = x[model.discrete.unknowns.strain(name)]
         for component, columns in rod.columns.items():
-            strain_of = rod.strain_of(component, X)
+            strain_of = known(rod.strain_of(component, X))
             q[columns] = np.linalg.lstsq(strain_of, deviation[:, component], rcond=None)[0]
     return x
 
@@ -123,7 +169,7 @@ def _distance(solution: Solution, data: Mapping[str, Any]) -> float:
     distances = []
     for name, rod in solution.model.discrete.rods.items():
         listed = data["rods"][name]
-        position = solution.pose(listed["X"], name).position
-        change = position - np.asarray(listed["position"], dtype=float)
+        position = solution.pose(_abscissae(listed["X"]), name).position
+        change = position - _finite_array(listed["position"])
         distances.append(float(np.abs(change).max()) / rod.properties.length)
     return max(distances)

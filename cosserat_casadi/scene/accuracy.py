@@ -12,7 +12,13 @@ from cosserat_casadi.scene.number_table import finite_number
 from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.values import BY_LENGTH, SEVERAL, SINGLE, NotEmpty, Number, Whole
 
-Modes = Annotated[Whole, Field(ge=1, le=200)]
+MOST_MODES = 200
+"""Polynomials per strain component and element that a scene may ask for."""
+
+MOST_NODES = 1000
+"""Intervals of a grid that a scene may ask for."""
+
+Modes = Annotated[Whole, Field(ge=1, le=MOST_MODES)]
 ModesChoice = Annotated[
     Annotated[Modes, SINGLE] | Annotated[tuple[Modes, ...], NotEmpty(), SEVERAL],
     BY_LENGTH,
@@ -51,7 +57,7 @@ shape = true
     modes: ModesChoice | None = Field(
         None, description="polynomial modes per strain component, a whole number or a list of one per admitted strain"
     )
-    nodes: Annotated[Whole, Field(ge=2, le=1000)] | None = Field(
+    nodes: Annotated[Whole, Field(ge=2, le=MOST_NODES)] | None = Field(
         None, description="intervals of the Chebyshev grid, a whole number"
     )
     rotation: Literal["magnus4", "magnus6", "magnus8", "permuted"] | None = Field(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
@@ -16,6 +18,25 @@ LONGEST_TEXT = 60
 
 LONGEST_LIST = 12
 """Names that a remedy lists."""
+
+
+LARGEST_LENGTH = 1e60
+"""Largest length, m, and largest curvature, 1/m: their fourth powers are numbers of double precision."""
+
+SMALLEST_SIZE = 1e-60
+"""Smallest size of a thing, m: so are the fourth powers of its inverse."""
+
+SIZES = frozenset({"length", "radius", "outer_radius", "inner_radius", "width", "height", "diameter"})
+"""Keys of sizes, whatever table they stand in."""
+
+LENGTHS = SIZES | {
+    *("position", "point", "points", "centre", "from", "to", "offset", "centre_of_mass"),
+    *("straight", "curved", "translation", "curvature"),
+}
+"""Keys of sizes, of other lengths, of positions, and of curvatures."""
+
+PROFILE_KEYS = ("base", "tip", "legendre", "powers")
+"""Keys of a table of what varies along the rod, below the key of the quantity."""
 
 
 class Fault(NamedTuple):
@@ -70,6 +91,36 @@ class SceneTables:
             if isinstance(name, str):
                 first.setdefault(name, (i, table))
         return first
+
+
+def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
+    """Numbers, anywhere in a value, that cannot be reckoned with.
+
+    Whole numbers that no number of double precision comes near, and lengths whose powers overflow. Infinity and NaN
+    are left to the types.
+    """
+    if isinstance(value, Mapping):
+        for key, entry in value.items():
+            yield from faults_of_range(entry, (*path, key))
+    elif isinstance(value, list | tuple):
+        for i, entry in enumerate(value):
+            yield from faults_of_range(entry, (*path, i))
+    elif isinstance(value, int) and abs(value) > sys.float_info.max:
+        yield Fault(path, f"must be finite, got {shown(value)}")
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield from _length_faults(float(value), path)
+
+
+def _length_faults(value: float, path: Path) -> Iterator[Fault]:
+    """A length that is too large or too small to compute with; the last key of its path says whether it is one."""
+    keys = [part for part in path if isinstance(part, str)]
+    if keys[-1] in PROFILE_KEYS:
+        keys.pop()
+    key = keys[-1] if keys else ""
+    if key in LENGTHS and LARGEST_LENGTH < abs(value) < math.inf:
+        yield Fault(path, f"must be at most {LARGEST_LENGTH:g} in size, got {shown(value)}", "lengths are in m")
+    if key in SIZES and 0.0 < abs(value) < SMALLEST_SIZE:
+        yield Fault(path, f"must be at least {SMALLEST_SIZE:g}, got {shown(value)}", "lengths are in m")
 
 
 def shown(value: object) -> str:

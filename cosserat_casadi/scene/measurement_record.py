@@ -195,6 +195,9 @@ class MovingMeasurement(MeasurementRecord):
         yield from super().scene_conflicts(given, scene)
         if "time" not in given:
             return
+        time = given["time"]
+        if numbers_of(time) or (isinstance(time, Mapping) and time.get("column") is None):
+            yield Fault(("time",), "names no column, and all rows would be at one time", "name the column of the times")
         if scene.get("simulation") is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or leave time out"
             yield Fault(("time",), "is of a motion, and the scene has none", remedy)

@@ -52,7 +52,7 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
     faults = [_fault(details) for details in errors]
     order = _FileOrder(tables)
     faults.sort(key=order.position)
-    return [_problem(fault, applied) for fault in faults]
+    return [problem_of(fault, applied) for fault in faults]
 
 
 # From pydantic's errors to faults
@@ -191,7 +191,7 @@ class _FileOrder:
         return order
 
 
-def _problem(fault: Fault, applied: Sequence[Assignment]) -> Problem:
+def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
     """A fault as it is shown; one that an override brought in is shown at the override."""
     where = _dotted(fault.path).removeprefix(".")
     # The last override of a key counts: it stands first.

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Path as FaultPath
-from cosserat_casadi.scene.faults import SceneTables, shown
-from cosserat_casadi.scene.messages import problems_of
+from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
+from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
 from cosserat_casadi.scene.records import keys_of
 from cosserat_casadi.scene.scene import Scene
@@ -83,6 +83,28 @@ def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) 
     return tables
 
 
+def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> list[Path]:
+    """The files that reading a scene reads: its own, and the tables that its motions and measurements name.
+
+    Of a scene that is refused the tables are those that can be told.
+
+    Args:
+        path: the file.
+        overrides: as in `read_scene`.
+    """
+    file = Path(path)
+    # A pipe cannot be read again, and is not overwritten.
+    if not file.is_file():
+        return []
+    try:
+        tables = parsed(file_text(file))
+        apply_overrides(tables, overrides, SCENE_KEYS)
+    except (SceneError, RecursionError):
+        return [file]
+    _locate_files(tables, file.parent)
+    return [file, *(Path(entry["file"]) for entry in _entries_with_files(tables))]
+
+
 def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     """Path of what an override with this key sets: two keys of one path set the same.
 
@@ -115,6 +137,10 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))
     # A refused override does not stop the reading: its problem comes together with those of the file.
     applied, problems = apply_overrides(tables, overrides, SCENE_KEYS)
+    # Rules take numbers for numbers of double precision.
+    faults = list(faults_of_range(tables))
+    if faults:
+        raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
     _locate_files(tables, folder)
     try:
         scene = Scene.model_validate(tables)
@@ -127,11 +153,15 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
 
 def _locate_files(tables: dict[str, Any], folder: Path) -> None:
     """Put the folder of the scene before the files that its motions and measurements name."""
+    for entry in _entries_with_files(tables):
+        entry["file"] = str(folder / entry["file"])
+
+
+def _entries_with_files(tables: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Motions and measurements that name a file."""
     given = SceneTables(tables)
-    for _, entry in (*given.tables("motions"), *given.tables("measurements")):
-        file = entry.get("file")
-        if isinstance(file, str) and isinstance(entry, dict):
-            entry["file"] = str(folder / file)
+    entries = [entry for _, entry in (*given.tables("motions"), *given.tables("measurements"))]
+    return [entry for entry in entries if isinstance(entry, dict) and isinstance(entry.get("file"), str)]
 
 
 def _copy(value: Any) -> Any:

@@ -45,6 +45,11 @@ class ContactSession:
         self.model = build(without_contacts(first.scene), first.discretisation)
         self._present = self.first
 
+    @property
+    def input_count(self) -> int:
+        """Numbers in the stacked inputs; forces of contacts, which are found, are not among them."""
+        return self.model.inputs.size
+
     def facts(self) -> dict[str, Any]:
         """Facts of the scene for its page, which offers what is answered here alone."""
         began = time.perf_counter()

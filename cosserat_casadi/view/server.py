@@ -1,20 +1,31 @@
-"""The page of a session, served on this machine alone; the browser asks, the session answers."""
+"""The page of a session, served on this machine alone; the browser asks, the session answers.
+
+Other users of the machine reach its ports too: the address holds a secret that they do not know.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import io
 import json
+import re
+import secrets
+import socket
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
 from importlib import resources
-from threading import Lock
+from threading import BoundedSemaphore, Lock
 from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.contact_session import ContactSession
+from cosserat_casadi.view.questions import Question, QuestionError
 from cosserat_casadi.view.session import Session
 
 HOST = "127.0.0.1"
@@ -22,6 +33,15 @@ HOST = "127.0.0.1"
 
 LARGEST_QUESTION = 1_000_000
 """Bytes of a question beyond which it is none of ours."""
+
+CONNECTIONS = 32
+"""Connections that are served at once; a browser has six to one server."""
+
+PATIENCE = 30.0
+"""Time in which a request must have arrived, and an answer been taken, s; a connection may be silent as long."""
+
+SECRET_BYTES = 16
+"""Random bytes in a secret: more than can be tried."""
 
 SCRIPTS = ("server_robot.js", "theatre.js")
 
@@ -45,40 +65,58 @@ class Desk:
 
     Attributes:
         session: who answers.
+        page: the page.
+        policy: what the page may do, as the header Content-Security-Policy says it.
     """
 
     session: Session | ContactSession
     page: bytes = field(init=False)
+    policy: str = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
 
     def __post_init__(self) -> None:
         folder = resources.files("cosserat_casadi.view") / "assets"
         scripts = [(folder / name).read_text(encoding="utf-8") for name in SCRIPTS]
-        self.page = page_text(self.session.facts(), scripts).encode()
+        text = page_text(self.session.facts(), scripts)
+        self.page = text.encode()
+        self.policy = _policy(text)
 
-    def answer(self, question: str, asked: dict[str, Any]) -> Any:
+    def answer(self, name: str, question: Question) -> Any:
         """The answer to a question; a refusal is an answer with the sentence ``refused``.
 
+        Args:
+            name: of the question.
+            question: what stands in it.
+
         Raises:
-            KeyError: there is no such question, or something it needs is missing.
+            QuestionError: there is no such question, or something it needs is missing or wrong.
         """
         session = self.session
-        if question == "motion" and isinstance(session, Session):
+        if name == "motion" and isinstance(session, Session):
             # It may take a minute, in which the robot can be moved: it has a model of its own.
             return _refusable(session.motion)
         with self._lock:
-            if question in ("move", "reset"):
-                inputs = asked["inputs"]
-                answer = session.move if question == "move" else session.reset
+            if name in ("move", "reset"):
+                inputs = question.inputs(session.input_count)
+                answer = session.move if name == "move" else session.reset
                 return _refusable(lambda: answer(inputs))
-            plain = {"derivatives": session.derivatives, "eigenvalues": session.eigenvalues}
-            if question in plain:
-                return plain[question]()
-            if isinstance(session, ContactSession):
-                raise KeyError(question)
-            if question == "reach":
-                return _refusable(lambda: session.reach(asked["pose"], asked["position"]))
-            return _refusable({"modes": session.modes}[question])
+            if name == "derivatives":
+                return session.derivatives()
+            if name == "eigenvalues":
+                return session.eigenvalues()
+            if name == "reach" and isinstance(session, Session):
+                pose = question.pose(_pose_names(session))
+                position = question.position()
+                return _refusable(lambda: session.reach(pose, position))
+            if name == "modes" and isinstance(session, Session):
+                return _refusable(session.modes)
+        raise QuestionError("the page asks no such question")
+
+
+def _pose_names(session: Session) -> dict[str, list[str]]:
+    """Names of what can be led to a point, by kind."""
+    scene = session.first.model.scene
+    return {"rod": [rod.name for rod in scene.rods], "body": [body.name for body in scene.bodies]}
 
 
 def _refusable(answer: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -86,6 +124,29 @@ def _refusable(answer: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         return answer()
     except CosseratError as error:
         return {"refused": str(error)}
+
+
+def _policy(page: str) -> str:
+    """What a page may do: run the scripts and have the style that stand in it, and ask this server."""
+    scripts = " ".join(map(_digest, re.findall(r"<script>(.*?)</script>", page, re.DOTALL)))
+    styles = " ".join(map(_digest, re.findall(r"<style>(.*?)</style>", page, re.DOTALL)))
+    rules = (
+        "default-src 'none'",
+        f"script-src {scripts}",
+        f"style-src {styles}",
+        "img-src data:",
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+    return "; ".join(rules)
+
+
+def _digest(text: str) -> str:
+    """A text as a policy names it."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"
 
 
 class RobotServer(ThreadingHTTPServer):
@@ -98,48 +159,169 @@ class RobotServer(ThreadingHTTPServer):
     def __init__(self, session: Session | ContactSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
+        self._secret = secrets.token_urlsafe(SECRET_BYTES)
+        self._ticket = secrets.token_urlsafe(SECRET_BYTES)
+        self._ticket_lock = Lock()
+        self._free = BoundedSemaphore(CONNECTIONS)
         super().__init__((HOST, port), _Handler)
 
     @property
     def address(self) -> str:
-        """What a browser is to open."""
-        return f"http://{HOST}:{self.server_port}/"
+        """What a browser is to open; it holds the secret."""
+        return f"http://{HOST}:{self.server_port}/{self._secret}/"
+
+    @property
+    def address_for_once(self) -> str:
+        """What leads to the address the first time that it is opened, and nowhere afterwards.
+
+        Arguments of programs, such as a browser's, can be read by all users of a machine.
+        """
+        return f"http://{HOST}:{self.server_port}/{self._ticket}"
+
+    def is_secret(self, word: str) -> bool:
+        """Whether a word is the secret of the address."""
+        return secrets.compare_digest(word.encode(), self._secret.encode())
+
+    def takes_ticket(self, word: str) -> bool:
+        """Whether a word is the ticket of the address for once, which is spent by this."""
+        with self._ticket_lock:
+            valid = bool(self._ticket) and secrets.compare_digest(word.encode(), self._ticket.encode())
+            if valid:
+                self._ticket = ""
+        return valid
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in a thread of its own, or close it where there are too many."""
+        if not self._free.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except BaseException:
+            self._free.release()
+            raise
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve a connection until it is closed."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing where a page that has been closed does not wait for its answer."""
-        if not isinstance(sys.exception(), ConnectionError):
+        """Say nothing where a page that has been closed, or that sleeps, does not take its answer."""
+        if not isinstance(sys.exception(), ConnectionError | TimeoutError):
             super().handle_error(request, client_address)
+
+
+class _Arrival(io.RawIOBase):
+    """What arrives at a socket before a moment; TimeoutError for what is late.
+
+    A time limit of the socket begins anew with every byte: whoever sends one now and then would never end.
+    """
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._end = 0.0
+
+    def begin(self) -> None:
+        """Wait for the next request, from now on."""
+        self._end = time.monotonic() + PATIENCE
+
+    def readable(self) -> bool:
+        """It is."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer with what has arrived."""
+        left = self._end - time.monotonic()
+        if left <= 0.0:
+            raise TimeoutError
+        self._connection.settimeout(left)
+        try:
+            return self._connection.recv_into(buffer)
+        finally:
+            self._connection.settimeout(PATIENCE)
 
 
 class _Handler(BaseHTTPRequestHandler):
     """GET gives the page, POST to the name of a question its answer, both as JSON."""
 
     protocol_version = "HTTP/1.1"
+    # A line that names no version is answered with a status too.
+    default_request_version = "HTTP/1.0"
+    server_version = "cosserat"
+    sys_version = ""
+    timeout = PATIENCE
     disable_nagle_algorithm = True
     server: RobotServer
+
+    def setup(self) -> None:
+        """Read from the socket with a limit for each request."""
+        super().setup()
+        self.rfile.close()
+        self._arrival = _Arrival(self.connection)
+        self.rfile = io.BufferedReader(self._arrival)
+
+    def handle_one_request(self) -> None:
+        """Wait for a request and answer it; the connection is closed where it does not arrive in time."""
+        self._arrival.begin()
+        super().handle_one_request()
 
     def do_GET(self) -> None:
         if self._is_foreign():
             return
-        if self.path != "/":
+        if self.server.takes_ticket(self.path.removeprefix("/")):
+            self._send(HTTPStatus.SEE_OTHER, "text/plain", b"", {"Location": self.server.address})
+            return
+        if self._name() != "":
             self.send_error(HTTPStatus.NOT_FOUND)
             return
-        self._send("text/html; charset=utf-8", self.server.desk.page)
+        desk = self.server.desk
+        self._send(HTTPStatus.OK, "text/html", desk.page, {"Content-Security-Policy": desk.policy})
 
     def do_POST(self) -> None:
         if self._is_foreign():
             return
-        length = int(self.headers.get("Content-Length", "0"))
-        if length > LARGEST_QUESTION:
-            self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+        name = self._name()
+        if name is None:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return
+        length = self._length()
+        if length is None:
             return
         try:
-            asked = json.loads(self.rfile.read(length) or b"{}")
-            answer = self.server.desk.answer(self.path.removeprefix("/"), asked)
-        except (KeyError, TypeError, ValueError) as error:
-            self.send_error(HTTPStatus.BAD_REQUEST, f"no question of the page: {error!r}")
+            question = Question.read(self.rfile.read(length))
+            answer = self.server.desk.answer(name, question)
+        except QuestionError as error:
+            self.send_error(HTTPStatus.BAD_REQUEST, str(error))
             return
-        self._send("application/json", _json(answer))
+        except Exception:
+            # A fault of ours: the page is told that there is no answer, and whoever started the program why.
+            self.send_error(HTTPStatus.INTERNAL_SERVER_ERROR)
+            raise
+        self._send(HTTPStatus.OK, "application/json", _json(answer))
+
+    def _name(self) -> str | None:
+        """What stands behind the secret in the path; None where the secret is missing."""
+        secret, slash, name = self.path.removeprefix("/").partition("/")
+        return name if slash and self.server.is_secret(secret) else None
+
+    def _length(self) -> int | None:
+        """Bytes of the question; None where they are refused, which has been answered then."""
+        told = self.headers.get_all("Content-Length", [])
+        if len(told) != 1 or "Transfer-Encoding" in self.headers:
+            self.send_error(HTTPStatus.LENGTH_REQUIRED)
+            return None
+        # int() takes signs, blanks, underscores and digits of all scripts.
+        if re.fullmatch("[0-9]{1,12}", told[0]) is None:
+            self.send_error(HTTPStatus.BAD_REQUEST, "Content-Length is no number of bytes")
+            return None
+        length = int(told[0])
+        if length > LARGEST_QUESTION:
+            self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+            return None
+        return length
 
     def _is_foreign(self) -> bool:
         """Refuse a request that a page from elsewhere makes, under a name of its own for this machine."""
@@ -151,13 +333,28 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_error(HTTPStatus.FORBIDDEN)
         return True
 
-    def _send(self, kind: str, content: bytes) -> None:
-        self.send_response(HTTPStatus.OK)
-        self.send_header("Content-Type", kind)
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """Refuse a request, and close the connection.
+
+        The sentence is the content: in the line of the status, or in a header, what was sent would stand among headers.
+        """
+        status = HTTPStatus(code)
+        sentence = message or status.phrase
+        self._send(status, "text/plain", f"{sentence}\n".encode(errors="replace"), {"Connection": "close"})
+
+    def _send(self, status: HTTPStatus, kind: str, content: bytes, headers: dict[str, str] | None = None) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", f"{kind}; charset=utf-8")
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Cache-Control", "no-store")
+        self.send_header("Referrer-Policy", "same-origin")
+        self.send_header("X-Content-Type-Options", "nosniff")
+        self.send_header("Cross-Origin-Resource-Policy", "same-origin")
+        for name, value in (headers or {}).items():
+            self.send_header(name, value)
         self.end_headers()
-        self.wfile.write(content)
+        if self.command != "HEAD":
+            self.wfile.write(content)
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name of the base class
         """Say nothing of each request."""

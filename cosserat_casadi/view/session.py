@@ -76,6 +76,11 @@ class Session:
     def __post_init__(self) -> None:
         self._inputs = self.first.inputs
 
+    @property
+    def input_count(self) -> int:
+        """Numbers in the stacked inputs."""
+        return self.first.model.inputs.size
+
     def facts(self) -> dict[str, Any]:
         """Facts of the scene for its page."""
         has_motion = self.first.model.scene.simulation is not None

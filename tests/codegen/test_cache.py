@@ -6,12 +6,13 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import pytest
 
-from cosserat_casadi import build, discretise, export, load
+from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.codegen import cache, compiler
 from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
 from cosserat_casadi.codegen.compiler import find_compiler
@@ -65,8 +66,8 @@ def test_another_compiler_under_the_same_name_compiles_again(strip: Path, tmp_pa
 
 def test_contents_are_told_from_each_other_and_from_their_order() -> None:
     compiler = find_compiler()
-    hashes = {content_hash(compiler, ["-O2"], contents) for contents in ([b"ab", b"c"], [b"a", b"bc"], [b"c", b"ab"])}
-    assert len(hashes | {content_hash(compiler, ["-O3"], [b"ab", b"c"])}) == 4
+    hashes = {content_hash([compiler], ["-O2"], contents) for contents in ([b"ab", b"c"], [b"a", b"bc"], [b"c", b"ab"])}
+    assert len(hashes | {content_hash([compiler], ["-O3"], [b"ab", b"c"])}) == 4
 
 
 @needs_compiler
@@ -141,3 +142,145 @@ def test_the_variable_names_the_folder(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     assert cache_folder() == tmp_path / "xdg" / "cosserat_casadi"
+
+
+@needs_compiler
+@pytest.mark.parametrize("damage", ["cut off", "empty", "text"])
+def test_a_damaged_library_is_compiled_anew(strip: Path, damage: str) -> None:
+    first = load(strip).library
+    sound = first.read_bytes()
+    contents = {"cut off": sound[: len(sound) // 2], "empty": b"", "text": b"not a library"}
+    first.unlink()
+    first.write_bytes(contents[damage])
+    # In a process of its own: this one has the sound library in memory.
+    code = f"""
+import sys
+from cosserat_casadi import load
+from cosserat_casadi.codegen import compiler
+compiler.FLAGS = {compiler.FLAGS}
+print(load(sys.argv[1]).solve().converged)
+"""
+    command = [sys.executable, "-c", code, str(strip)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.strip() == "True", (done.returncode, done.stderr)
+    (kept,) = first.parent.iterdir()
+    assert kept.name == cache.library_name(first.name.rpartition("-")[0], kept.read_bytes())
+
+
+def script(tmp_path: Path, *lines: str) -> str:
+    """A compiler that does as these lines say."""
+    path = tmp_path / "scriptcc"
+    path.write_text("\n".join(["#!/bin/sh", *lines, ""]))
+    path.chmod(0o755)
+    return str(path)
+
+
+LAST_WORD_OF_OUTPUT = 'while [ "$1" != -o ]; do shift; done'
+"""Shifts the words of a call until the second is the file to write."""
+
+
+@needs_shell
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (["exit 0"], r"says that it has compiled .*strip.*\.c, and wrote nothing"),
+        ([LAST_WORD_OF_OUTPUT, ': > "$2"'], "and wrote nothing"),
+        ([LAST_WORD_OF_OUTPUT, 'echo text > "$2"'], "has made no library that this machine can load"),
+    ],
+    ids=["nothing", "an empty file", "text"],
+)
+def test_a_compiler_that_only_says_that_it_compiles(strip: Path, tmp_path: Path, lines: list[str], words: str) -> None:
+    with pytest.raises(ExportError, match=words):
+        load(strip, script(tmp_path, *lines))
+    assert list((tmp_path / "kept").iterdir()) == []
+
+
+@needs_shell
+def test_a_compiler_that_hangs_is_stopped(strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler, "LONGEST", 0.2)
+    running = tmp_path / "running"
+    hanging = script(tmp_path, f"sleep 1000 & echo $! >> {running}", "wait")
+    with pytest.raises(ExportError, match=r"was stopped: it had not compiled .*\.c after 0.2 s"):
+        load(strip, hanging)
+    # What it had started is stopped with it.
+    for number in map(int, running.read_text().split()):
+        assert not is_alive(number)
+
+
+@needs_shell
+def test_an_interrupt_stops_compilers(strip: Path, tmp_path: Path) -> None:
+    running = tmp_path / "running"
+    hanging = script(tmp_path, f"sleep 1000 & echo $! >> {running}", "wait")
+
+    def interrupted(doing: str, done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        load(strip, hanging, progress=interrupted)
+    assert not running.exists() or not any(map(is_alive, map(int, running.read_text().split())))
+
+
+def is_alive(number: int) -> bool:
+    """Whether a process does anything: one that has ended may wait for whoever asks how."""
+    found = subprocess.run(["ps", "-o", "stat=", "-p", str(number)], capture_output=True, text=True, check=False)
+    return found.stdout.strip()[:1] not in ("", "Z")
+
+
+@needs_compiler
+@needs_shell
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("{gcc} -O1 -DANSWER='4 2'", ["-O0", "-O1", "-DANSWER=4 2", "-c"]),
+        ("{launcher} {gcc}", ["-O0", "-c"]),
+        ("{blank}", ["-O0", "-c"]),
+    ],
+    ids=["options", "launcher", "a path with a blank"],
+)
+def test_commands_of_several_words(
+    strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, words: list[str]
+) -> None:
+    calls = tmp_path / "calls"
+    gcc = tmp_path / "noting-gcc"
+    gcc.write_text(f'#!/bin/sh\nfor word; do echo "$word" >> "{calls}"; done\nexec gcc "$@"\n')
+    launcher = tmp_path / "launcher"
+    launcher.write_text('#!/bin/sh\nexec "$@"\n')
+    blank = tmp_path / "the compiler"
+    blank.write_bytes(gcc.read_bytes())
+    for program in (gcc, launcher, blank):
+        program.chmod(0o755)
+    monkeypatch.setenv("CC", command.format(gcc=gcc, launcher=launcher, blank=blank))
+    assert load(strip).solve().converged
+    # Ours come first: of two options a compiler takes the last, which is the user's.
+    called = calls.read_text().splitlines()
+    assert [word for word in called[: called.index("-c") + 1] if word in words] == words
+
+
+def test_a_command_that_is_none(strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "gcc '-O1")
+    with pytest.raises(ExportError, match="gcc '-O1 is no command: No closing quotation"):
+        load(strip)
+    monkeypatch.setenv("CC", "no-such-compiler -O1")
+    with pytest.raises(ExportError, match="no-such-compiler -O1 is not a program"):
+        load(strip)
+
+
+@needs_shell
+def test_a_launched_compiler_is_told_by_its_file(tmp_path: Path) -> None:
+    program = Path(script(tmp_path, "exit 0"))
+    before = content_hash(["env", str(program)], [], [])
+    program.write_text("#!/bin/sh\nexit 1 # newer\n")
+    assert content_hash(["env", str(program)], [], []) != before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks for the user by number")
+def test_a_user_without_a_home_keeps_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unknown(number: int) -> None:
+        raise KeyError(number)
+
+    for variable in ("COSSERAT_CASADI_CACHE", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("pwd.getpwuid", unknown)
+    folder = cache_folder()
+    assert folder.is_dir()
+    assert folder.is_relative_to(tempfile.gettempdir())

@@ -104,7 +104,7 @@ def test_files_that_are_no_results_are_refused(tmp_path: Path, text: str | None,
         read_start(path, scene(push()))
 
 
-def test_a_number_that_is_missing_is_no_agreement(tmp_path: Path) -> None:
+def test_a_number_that_is_missing_is_refused(tmp_path: Path) -> None:
     given = scene(push())
     solution = solve(build(given))
     write_result(solution, tmp_path / "result.json")
@@ -113,5 +113,48 @@ def test_a_number_that_is_missing_is_no_agreement(tmp_path: Path) -> None:
     positions[3, 1] = np.nan
     rods = {"rod": {**data["rods"]["rod"], "position": positions.tolist()}}
     path = spoilt(solution, tmp_path / "result.json", rods=rods)
-    with pytest.raises(SceneError, match="does not have"):
+    with pytest.raises(SceneError, match="is no result file of this scene"):
         read_start(path, given)
+
+
+SPOILT = {
+    "huge input": ("inputs", "push.force", [10**400, 0, 0]),
+    "billions of modes": ("discretisation", "rod", "modes", [10**9] * 3),
+    "modes that are no numbers": ("discretisation", "rod", "modes", [True, "a", None]),
+    "billions of nodes": ("discretisation", "rod", "nodes", 10**9),
+    "half a node": ("discretisation", "rod", "nodes", 10.5),
+    "breaks that do not ascend": ("discretisation", "rod", "breaks", [0, 0.5, 0.5, 1]),
+    "breaks elsewhere": ("discretisation", "rod", "breaks", [1, 2]),
+    "huge break": ("discretisation", "rod", "breaks", [0, 10**400]),
+    "unknown transport": ("discretisation", "rod", "transport", []),
+    "huge abscissa": ("rods", "rod", "X", [10**400]),
+    "abscissae beyond the rod": ("rods", "rod", "X", [1e308]),
+    "abscissae that are no list": ("rods", "rod", "X", 0.5),
+    "no strains": ("rods", "rod", "strain", []),
+    "strains that are none": ("rods", "rod", "strain", None),
+    "huge positions": ("rods", "rod", "position", [[10**400, 0, 0]]),
+}
+"""Path of an entry of a result file, and what is put there."""
+
+
+@pytest.mark.parametrize("name", SPOILT)
+def test_files_with_a_spoilt_entry_are_refused(tmp_path: Path, name: str) -> None:
+    given = scene(push())
+    path = tmp_path / "result.json"
+    write_result(solve(build(given)), path)
+    data = json.loads(path.read_text(encoding="utf-8"))
+    *keys, last, value = SPOILT[name]
+    entry = data
+    for key in keys:
+        entry = entry[key]
+    entry[last] = value
+    path.write_text(json.dumps(data), encoding="utf-8")
+    with pytest.raises(SceneError, match=r"--from: .* is no result file of this scene"):
+        read_start(path, given)
+
+
+def test_a_file_that_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "result.json"
+    path.write_text("[" * 100_000, encoding="utf-8")
+    with pytest.raises(SceneError, match="is not JSON"):
+        read_start(path, scene(push()))

@@ -168,6 +168,16 @@ REFUSED = {
         "unknowns[0].parameter",
         "unknowns[1] has the input 'wire.base.position.y'",
     ),
+    "time": (
+        ROD + "[simulation]\nduration = 1.0\n" + MEASURED + "time = 0.5\n",
+        "measurements[0].time",
+        "names no column, and all rows would be at one time",
+    ),
+    "time_without_column": (
+        ROD + "[simulation]\nduration = 1.0\n" + MEASURED + "time = { scale = 1e-3 }\n",
+        "measurements[0].time",
+        "names no column, and all rows would be at one time",
+    ),
     "loss": (ROD + '[identification]\nloss = "median"\n', "identification.loss", "must be one of 'squares', 'huber'"),
 }
 

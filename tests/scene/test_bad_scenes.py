@@ -8,6 +8,7 @@ import pytest
 
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene.faults import LENGTHS, SIZES
 
 JARGON = ("type=", "input_value", "https://", "pydantic", "⟨", "something else", "Traceback", "Input should")
 
@@ -91,7 +92,7 @@ BAD = [
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
     ("shape_one", scene("[accuracy]\nshape = 1"), "accuracy.shape", "must be true or false, got 1"),
     ("nodes_true", scene("[accuracy]\nnodes = true"), "accuracy.nodes", "must be a whole number, got true"),
-    ("nodes_huge", scene(f"[accuracy]\nnodes = 0x{'f' * 6000}"), "accuracy.nodes", "must be <= 1000"),
+    ("nodes_huge", scene(f"[accuracy]\nnodes = 0x{'f' * 6000}"), "accuracy.nodes", "a whole number beyond all range"),
     ("accuracy_number", scene(before="accuracy = 1e-6"), "accuracy", "must be a table, got 1e-06"),
     ("name_missing", scene(rods=rod().replace('name = "finger"', "")), "rods[0].name", "missing"),
     ("name_word", scene(rods=rod(name='"my rod"')), "rods[0].name", "a letter, then letters"),
@@ -218,8 +219,10 @@ BAD = [
      "supports[1].rod", "overlapping supports"),
     ("support_too_far", support("kind = 'pinned'\nposition = [0.2, 0, 0.1]"),
      "supports[0].position", "unreachable combination: 0.223606798 m from the base of a rod of 0.2 m"),
-    ("support_beyond_all_range", support("kind = 'pinned'\nposition = [1e308, -1e308, 1e308]"),
+    ("support_beyond_all_range", support("kind = 'pinned'\nposition = [1e60, -1e60, 1e60]"),
      "supports[0].position", "unreachable combination"),
+    ("support_beyond_all_powers", support("kind = 'pinned'\nposition = [0, 0, -1e308]"),
+     "supports[0].position[2]", "must be at most 1e+60 in size, got -1e+308"),
     ("support_out_of_plane", support("kind = 'pinned'\nposition = [0.1, 0.01, 0.1]", rods=planar()),
      "supports[0].position", "unreachable combination: 0.01 m outside the plane"),
     ("support_out_of_turned_plane",
@@ -529,3 +532,59 @@ def test_bad_overrides_are_told_together_with_the_faults_of_the_file():
         parse_scene(text, overrides=["pull.force=[1, 0, 0]", "push.force=3"])
     where = ["--set pull.force", "rods[0].length", "--set push.force"]
     assert [problem.where for problem in caught.value.problems] == where
+
+
+HUGE = 10**400
+
+WITH_RULES = {
+    "tubes[0].straight": {"tubes": [{"name": "tube", "straight": HUGE, "curved": 0.1}]},
+    "simulation.duration": {"simulation": {"duration": HUGE}},
+    "loads[0].field[0]": {"loads": [{"name": "field", "kind": "magnet", "rod": "finger", "field": [HUGE, 0, 0]}]},
+    "obstacles[0].width": {"obstacles": [{"name": "bar", "kind": "sphere", "radius": 1.0, "width": HUGE}]},
+    "loads[0].velocity": {
+        "loads": [{"name": "flow", "kind": "flow", "rod": "finger", "velocity": HUGE}],
+        "motions": [{"input": "flow.velocity", "amplitude": [1.0], "frequency": 1.0}],
+    },
+}
+"""Tables whose rules reckon with a number before it is judged, by where the number stands."""
+
+
+@pytest.mark.parametrize("where", WITH_RULES)
+def test_whole_numbers_beyond_all_range_are_refused(where):
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, **WITH_RULES[where]})
+    (problem,) = caught.value.problems
+    assert problem.where == where
+    assert problem.problem == "must be finite, got a whole number beyond all range"
+
+
+def test_a_whole_number_beyond_all_range_is_refused_at_its_override():
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene(), [f"finger.length={HUGE}"])
+    (problem,) = caught.value.problems
+    assert problem.where == "--set finger.length"
+
+
+@pytest.mark.parametrize("table", ["rods", "tubes", "joints", "obstacles", "bodies", "loads"])
+@pytest.mark.parametrize("key", sorted(LENGTHS))
+def test_lengths_beyond_all_powers_are_refused(table, key):
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, table: [{"deeper": {key: [0.0, 1.1e60]}}]})
+    (problem,) = caught.value.problems
+    assert problem.where == f"{table}[0].deeper.{key}[1]"
+    assert problem.remedy == "lengths are in m"
+
+
+@pytest.mark.parametrize("key", sorted(SIZES))
+@pytest.mark.parametrize("value", [1e-320, 1e-61])
+def test_sizes_that_are_next_to_nothing_are_refused(key, value):
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, "rods": [{"section": {key: {"base": 1.0, "tip": value}}}]})
+    (problem,) = caught.value.problems
+    assert problem.where == f"rods[0].section.{key}.tip"
+    assert problem.problem == f"must be at least 1e-60, got {value!r}"
+
+
+def test_numbers_that_are_no_lengths_may_be_of_any_size():
+    force = f"{scene()}[[loads]]\nname = 'push'\nkind = 'tip_wrench'\nrod = 'finger'\nforce = [1e300, 0, 0]\n"
+    assert parse_scene(force).loads[0].force[0] == 1e300

@@ -211,7 +211,11 @@ OFFSET = ("actuators", 0, "offset", 0)
         (OFFSET, {"base": True, "tip": 0}, "actuators[0].offset[0].base: must be a number, got true"),
         (OFFSET, {"base": 1e-3, "tip": float("nan")}, "actuators[0].offset[0].tip: must be finite, got nan"),
         (OFFSET, {"base": 10**400, "tip": 0}, "must be finite, got a whole number beyond all range"),
-        (OFFSET, {"base": 1e308, "tip": -1e308}, "actuators[0].offset[0]: must be finite, got -inf"),
+        (
+            OFFSET,
+            {"base": 0.0, "tip": -1e308},
+            "actuators[0].offset[0].tip: must be at most 1e+60 in size, got -1e+308 (lengths are in m)",
+        ),
         (
             OFFSET,
             {"legendre": [1.0] * 11},

@@ -134,7 +134,7 @@ def test_contact_moves_under_the_slider(page: Any, session: ContactSession, firs
     assert page.get_by_label("derivatives").count() == 0
     assert page.locator("#hand").count() == 0
     assert page.get_by_role("button", name="Vibrations here").count() == 0
-    assert page.evaluate("fetch('/modes', { method: 'POST', body: '{}' }).then((answer) => answer.status)") == 400
+    assert page.evaluate("fetch('modes', { method: 'POST', body: '{}' }).then((answer) => answer.status)") == 400
     # The ball is on the picture, in the colour of obstacles, as long as it is wanted.
     sandy = """() => { window.robot.redraw(); const source = document.getElementById("canvas");
         const copy = document.createElement("canvas").getContext("2d");

@@ -24,7 +24,7 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
         try:
             assert running.stdout is not None
             line = running.stdout.readline()
-            address = re.search(r"http://127\.0\.0\.1:\d+/", line)
+            address = re.search(r"http://127\.0\.0\.1:\d+/[-\w]+/", line)
             assert address is not None, line
             with urllib.request.urlopen(address[0], timeout=30) as answer:
                 page = answer.read().decode()

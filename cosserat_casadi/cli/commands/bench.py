@@ -10,7 +10,8 @@ from rich.console import Console
 
 from cosserat_casadi.bench.grid import METHODS
 from cosserat_casadi.bench.plan import make_plan, run_plan
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.bench.record import CSV, JSON
+from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.scene import read_scene
@@ -33,6 +34,8 @@ def bench(
     Errors are against an independent reference found in the same run. Exit codes: 0 measured, 2 refused,
     3 no reference found, 130 interrupted; what was measured until then is in bench.csv.
     """
+    if output is not None:
+        check_inputs_stay({"--output": output / CSV, "the record of --output": output / JSON}, scene, settings)
     plan = make_plan(read_scene(scene, tuple(settings or ())), output, methods, points, quick)
     with progress_bar() as bar:
         interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))

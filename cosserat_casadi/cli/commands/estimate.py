@@ -11,7 +11,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.errors import Problem, SceneError
@@ -42,6 +49,8 @@ def estimate(
         check_writable(output, "--output")
     with collect_problems(problems):
         check_outputs(None, plot)
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
     suffix = output.suffix.lower()
     if suffix not in WRITERS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))

@@ -15,7 +15,7 @@ from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
@@ -99,6 +99,7 @@ def export(
         check_writable(page, "--page")
     if fmu is not None:
         check_fmu(fmu)
+    check_inputs_stay(_written_files(output, page, fmu), scene, settings, over)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
     if exported_scene.tubes:
@@ -172,6 +173,15 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
+
+
+def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
+    """What an export writes over, by option: page, FMU, and what an earlier export left in the folder."""
+    written = {"--page": page, "--fmu": fmu}
+    if output is not None and output.is_dir():
+        # Names of files are no options: they tell the many of one folder apart.
+        written |= {f"--output, {file.name}": file for file in output.iterdir()}
+    return written
 
 
 def _refuse_without_sources(options: Mapping[str, bool]) -> None:

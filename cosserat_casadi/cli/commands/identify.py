@@ -9,7 +9,15 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_file,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.identification import (
     print_identification,
@@ -47,6 +55,8 @@ def identify(
         check_outputs(output, plot)
     with collect_problems(problems):
         check_file(write, "--write", ".toml")
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot, "--write": write}, scene, settings)
     if starts is not None and starts < 1:
         problems.append(Problem("--starts", f"must be 1 or more, got {starts}"))
     if hold_out is not None and not 0.0 <= hold_out < 1.0:

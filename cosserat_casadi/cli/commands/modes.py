@@ -9,7 +9,14 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.modes import print_modes
 from cosserat_casadi.errors import Problem, SceneError
@@ -35,6 +42,8 @@ def modes(
     problems: list[Problem] = []
     _check_numbers(count, mode, problems)
     _check_files(output, plot, animation, problems)
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings)
     checked_scene: Scene | None = None
     with collect_problems(problems):
         checked_scene = read_scene(scene, tuple(settings or ()))

@@ -12,7 +12,15 @@ from rich.console import Console
 
 from cosserat_casadi.cli.commands.tubes import Outputs, follow_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_file,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.errors import Problem, SceneError
@@ -49,6 +57,8 @@ def path(
         check_outputs(output, plot)
     with collect_problems(problems):
         check_file(table, "--csv", ".csv")
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot, "--csv": table}, scene, settings)
     checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
     if checked_scene.tubes:
         if branch:

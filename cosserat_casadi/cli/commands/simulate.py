@@ -9,7 +9,14 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.progress import motion_display, share_display
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion, print_motion_warnings
 from cosserat_casadi.cli.signals import StoppedError
@@ -59,6 +66,8 @@ def simulate(
     overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
     problems: list[Problem] = []
     _check_files(output, plot, animation, speed, problems)
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings, start)
     checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
 
     motion = _simulate_with_progress(checked_scene, start_solution)

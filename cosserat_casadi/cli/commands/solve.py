@@ -12,7 +12,14 @@ from rich.console import Console
 from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progress
 from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+    given_files,
+)
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
@@ -39,13 +46,15 @@ def solve(
 ) -> None:
     """Find the equilibrium of a scene.
 
-    Exit codes: 0 solved; 2 refused; 3 none found, or with --stable no stable one, or modes that the scene fixes leave an
-    error above the tolerance that it gives.
+    Exit codes: 0 solved; 2 refused; 3 none found, or with --stable no stable one, or modes that the scene fixes leave
+    an error above the tolerance that it gives.
     """
     # A file that cannot be written is refused before the solve, not after it.
     problems: list[Problem] = []
     with collect_problems(problems):
         check_outputs(output, plot)
+    with collect_problems(problems):
+        check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
     with collect_problems(problems):
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:

@@ -9,7 +9,14 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_outputs, collect_problems
+from cosserat_casadi.cli.options import (
+    SceneFile,
+    Settings,
+    check_file,
+    check_inputs_stay,
+    check_outputs,
+    collect_problems,
+)
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sobol import print_sobol
@@ -19,6 +26,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.sobol_file import sobol_text
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.sweep.outcome_file import record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
 from cosserat_casadi.sweep.sobol import sobol_indices
@@ -61,6 +69,9 @@ def sweep(
         check_file(sobol, "--sobol", ".json")
     with collect_problems(problems):
         check_outputs(None, plot)
+    with collect_problems(problems):
+        outputs = {"--output": output, "the record of --output": record_file(output), "--sobol": sobol, "--plot": plot}
+        check_inputs_stay(outputs, scene, settings, over)
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, sobol is not None, problems)

@@ -12,7 +12,7 @@ from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.accuracy.tune import tune as tune_scene
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_file
+from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
 from cosserat_casadi.cli.progress import progress_bar
 from cosserat_casadi.cli.reports.model import print_tuning
 from cosserat_casadi.files import write_atomically
@@ -37,6 +37,7 @@ def tune(
     tuned_scene = read_scene(scene, tuple(settings or ()))
     layout = case_layout(tuned_scene)
     check_file(output, "--output", ".toml")
+    check_inputs_stay({"--output": output}, scene, settings, over)
     cases = load_cases(over, ranges or [], samples, layout)
     tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
     print_tuning(Console(), tuning, layout, cases)

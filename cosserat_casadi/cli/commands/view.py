@@ -26,7 +26,7 @@ def view(
 ) -> None:
     """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
 
-    Only this machine reaches the page. Exit codes: 2 refused, 3 not solved, 130 ended.
+    Only this machine reaches the page, and only who knows its address. Exit codes: 2 refused, 3 not solved, 130 ended.
     """
     # Imported here, because motions and inverse problems are needed by few commands.
     from cosserat_casadi.view.server import RobotServer, check_port
@@ -46,7 +46,7 @@ def view(
     with RobotServer(session, port) as server:
         print_plain(console, f"The robot is at {server.address} until you press Ctrl-C.")
         if browser:
-            webbrowser.open(server.address)
+            webbrowser.open(server.address_for_once)
         try:
             server.serve_forever()
         except KeyboardInterrupt:

@@ -143,7 +143,8 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         # None as short as the distance of an end of the loads from one of ours may be.
         thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
         # Nodes are no farther apart than the thinnest bar is thick.
-        elements = min(max(ELEMENTS, ceil(thinnest / (2 * NODES))), MOST_ELEMENTS)
+        # The ratio may be beyond all range: it is bounded before it becomes a whole number.
+        elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
         further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
         modes = (MODES,) * len(rod.admitted)
         discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
