@@ -15,6 +15,8 @@ from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.families import without_mechanics
+from cosserat_casadi.scene.targets import TARGETS
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,8 @@ def model_error(solution: Solution, target: scenes.Target) -> float | None:
 
 def _error(model: Model, target: scenes.Target, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
     """Error of one target without its weight: 3 numbers, 6 with an orientation, 3k for k points of a curve."""
+    if target.kind not in ("pose", "position", "curve"):
+        raise without_mechanics(TARGETS, target.kind)
     length = length_of(model, target)
     if isinstance(target, scenes.CurveTarget):
         error = _curve_error(model, target, x, inputs)

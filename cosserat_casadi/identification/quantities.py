@@ -22,6 +22,8 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.interpolation import interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
+from cosserat_casadi.scene.families import without_mechanics
+from cosserat_casadi.scene.measurement_record import MEASUREMENTS
 
 
 @dataclass(frozen=True)
@@ -192,6 +194,8 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
     site = Site(System(discrete, Arguments(x, inputs)), record, at, measured)
+    if record.quantity not in QUANTITIES:
+        raise without_mechanics(MEASUREMENTS, record.quantity)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity](site))))
     derivatives = [ca.densify(ca.jacobian(stacked, argument)) for argument in (x, inputs, p)]
     return ca.Function("difference", [x, inputs, p, at, measured], [stacked, *derivatives])

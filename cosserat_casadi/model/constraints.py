@@ -21,6 +21,8 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.floating_frames import FLAT, FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.rods import base_pose, unit_quaternion, written_base_pose
+from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS
+from cosserat_casadi.scene.families import without_mechanics
 
 SUPPORT_WEIGHT = 2.0
 """Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
@@ -221,6 +223,8 @@ class _Section:
 def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     """The tip of a rod at a pose in the world."""
     support = unloaded.scene.supports[index]
+    if support.kind not in held.SUPPORTS:
+        raise without_mechanics(SUPPORTS, support.kind)
     rod = support.rod
     words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
     tip = _Section(unloaded, rod)
@@ -284,6 +288,8 @@ def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint, target: Nume
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
+    if joint.kind not in ("fixed", "spherical", "revolute", "prismatic"):
+        raise without_mechanics(JOINTS, joint.kind)
     coplanar = list(_coplanar(unloaded, joint))
     if len(coplanar) > 1 and coplanar[0] != joint:
         return _directions_in_plane(joint, target)

@@ -24,6 +24,8 @@ from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
 from cosserat_casadi.rod.properties import STRAINS, Field, RodProperties
+from cosserat_casadi.scene.families import without_mechanics
+from cosserat_casadi.scene.rods import SECTIONS
 
 SMALLEST_FORCE = 1e-150
 """Least EI/ℓ² that can be computed with, N: its square is still a number."""
@@ -187,6 +189,8 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
 def _section_shape(
     shape: scenes.Circle | scenes.Annulus | scenes.Rectangle,
 ) -> Callable[[Numbers], section.SectionShape]:
+    if shape.shape not in ("circle", "annulus", "rectangle"):
+        raise without_mechanics(SECTIONS, shape.shape)
     if isinstance(shape, scenes.Circle):
         radius = _linear(shape.radius)
         return lambda X: section.circle(_along(radius, X))

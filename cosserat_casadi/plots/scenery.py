@@ -16,6 +16,8 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import CurveTarget, Scene
+from cosserat_casadi.scene import targets as scenes
+from cosserat_casadi.scene.families import without_mechanics
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -191,6 +193,8 @@ def draw_targets(canvas: Canvas, solution: Solution) -> None:
     """Mark the points that an inverse problem wants to reach."""
     points: list[tuple[float, float, float]] = []
     for target in solution.model.scene.targets:
+        if target.kind not in ("pose", "position", "curve"):
+            raise without_mechanics(scenes.TARGETS, target.kind)
         if isinstance(target, CurveTarget):
             points += target.points
         else:
