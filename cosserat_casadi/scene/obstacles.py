@@ -1,6 +1,6 @@
 """Obstacles: what rods may not enter, and lumens, which they may not leave; without friction.
 
-A new kind is a record of its own, registered with `OBSTACLES`.
+A kind is a record here and a class in `obstacles/` that says how far a point is from its surface.
 """
 
 from __future__ import annotations
