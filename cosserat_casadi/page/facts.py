@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
@@ -140,10 +142,10 @@ def _colours() -> dict[str, str]:
     return {"body": BODIES, "target": TARGETS, "obstacle": OBSTACLES, **of_arrows}
 
 
-def _target_points(scene: scenes.Scene) -> list[tuple[float, float, float]]:
-    points: list[tuple[float, float, float]] = []
+def _target_points(scene: scenes.Scene) -> list[Sequence[float]]:
+    points: list[Sequence[float]] = []
     for target in scene.targets:
-        points += target.points if isinstance(target, scenes.CurveTarget) else [target.position]
+        points += TARGET_KINDS[target.kind].points(target)
     return points
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
+from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import known
@@ -18,9 +20,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import CurveTarget, Scene
-from cosserat_casadi.scene import targets as scenes
-from cosserat_casadi.scene.families import without_mechanics
+from cosserat_casadi.scene import Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -196,13 +196,8 @@ def _order_around_mean(points: FloatArray) -> Indices:
 
 def draw_targets(canvas: Canvas, solution: Solution) -> None:
     """Mark the points that an inverse problem wants to reach."""
-    points: list[tuple[float, float, float]] = []
+    points: list[Sequence[float]] = []
     for target in solution.model.scene.targets:
-        if target.kind not in ("pose", "position", "curve"):
-            raise without_mechanics(scenes.TARGETS, target.kind)
-        if isinstance(target, CurveTarget):
-            points += target.points
-        else:
-            points.append(target.position)
+        points += TARGET_KINDS[target.kind].points(target)
     if points:
         canvas.markers(np.array(points), label="targets", **TARGET_STYLE)
