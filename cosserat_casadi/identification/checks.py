@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cosserat_casadi.identification.found import Row
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.sections import sizes_of
@@ -48,9 +49,8 @@ def _far_positions(model: Model, rows: Sequence[Row]) -> Iterator[str]:
     bases = [np.abs(rod.base.position).max() for rod in model.scene.rods]
     reach = FAR * (length + max(bases))
     for number, measurement in enumerate(model.scene.measurements):
-        if measurement.quantity not in ("position", "pose"):
-            continue
-        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < 3]
+        coordinates = QUANTITIES[measurement.quantity].coordinates
+        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < coordinates]
         if distances and max(distances) > reach:
             farthest = max(distances)
             yield (
