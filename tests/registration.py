@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-from cosserat_casadi.actuators.actuator import Actuator
-from cosserat_casadi.loads.load import Load
-from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.scene.actuators import ACTUATORS
-from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.families import Kind, register
 
 
-def forget(member: type[Load[Any]] | type[Actuator[Any]]) -> None:
+def forget(member: type[Kind]) -> None:
     """Undo the registration of a kind."""
-    EFFECTS.pop(member.kind, None)
-    for family in (LOADS, ACTUATORS):
-        family.records.pop(member.kind, None)
+    member.kinds.pop(member.kind, None)
+    member.family.records.pop(member.kind, None)
+
+
+@contextmanager
+def registered(*members: type[Kind]) -> Iterator[None]:
+    """Kinds that are known within this context alone."""
+    for member in members:
+        register(member)
+    try:
+        yield
+    finally:
+        for member in members:
+            forget(member)

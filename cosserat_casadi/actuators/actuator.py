@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from typing import ClassVar, Generic, Literal, TypeVar
 
 from cosserat_casadi.actuators.routing import span_ends
+from cosserat_casadi.loads.load import EFFECTS
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Quantity
-from cosserat_casadi.scene.actuators import ActuatorRecord
+from cosserat_casadi.scene.actuators import ACTUATORS, ActuatorRecord
 from cosserat_casadi.scene.families import Kind
 
 RecordType = TypeVar("RecordType", bound=ActuatorRecord)
@@ -36,6 +37,8 @@ class Actuator(Kind, ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[ActuatorRecord]]
+    family = ACTUATORS
+    kinds = EFFECTS
     effort: ClassVar[str]
     conjugate: ClassVar[str]
     conjugate_unit: ClassVar[str]

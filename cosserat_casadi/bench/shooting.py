@@ -45,6 +45,9 @@ CONVERGED = 1e-9
 KINDS = ("gravity", "tip_wrench", "point_wrench", "distributed_wrench")
 """Loads that shooting knows."""
 
+SUPPORTS = ("clamped", "pinned")
+"""Supports that shooting knows."""
+
 Values = dict[str, dict[str, FloatArray]]
 """Magnitudes of every load, (3, k), by load and field."""
 
@@ -160,6 +163,7 @@ class _Problem:
     def __post_init__(self) -> None:
         kinds = {load.kind for load in self.scene.loads}
         unknown: list[str] = sorted(kinds - set(KINDS))
+        unknown += sorted({support.kind for support in self.scene.supports} - set(SUPPORTS))
         unknown += [key for key in ("actuators", "bodies", "joints") if getattr(self.scene, key, ())]
         if unknown:
             raise ShootingError(f"shooting does not know {', '.join(unknown)}")

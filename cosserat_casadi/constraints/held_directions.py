@@ -1,4 +1,4 @@
-"""What each kind of support and joint holds: a choice of directions, P and D of docs/theory.md, section 8.
+"""Held directions, P and D of docs/theory.md, section 8, and what remains of them for rods in a plane.
 
 A rod that stays in the x–z plane of its base needs to be held in that plane alone; what nothing can move is not held a
 second time, or the equations would depend on each other.
@@ -7,20 +7,23 @@ second time, or the equations would depend on each other.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.maths.numbers import is_zero
-from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
+
+FLAT = 1e-9
+"""Sine of an angle, or distance relative to a length, that is put down to rounding."""
 
 ALL = np.eye(3)
 IN_PLANE = ALL[:, [0, 2]]
 """The x and z axes of a planar rod's base, in which its sections move."""
 
-NORMAL = ALL[:, [1]]
+NORMAL = ALL[:, 1]
 """The y axis of a planar rod's base, about which its sections turn."""
 
 NONE = np.zeros((3, 0))
@@ -31,54 +34,70 @@ CLAMPED = HeldDirections(ALL, ALL)
 PINNED = HeldDirections(ALL, NONE)
 """Position is held, rotation is free: a pinned tip, a spherical joint."""
 
-CLAMPED_IN_PLANE = HeldDirections(IN_PLANE, NORMAL)
-PINNED_IN_PLANE = HeldDirections(IN_PLANE, NONE)
 
-PINNED_UPRIGHT = HeldDirections(ALL, IN_PLANE)
-"""A spherical joint of a planar rod that keeps its body in the plane too."""
-
-SUPPORTS: dict[str, tuple[HeldDirections, HeldDirections]] = {
-    "clamped": (CLAMPED, CLAMPED_IN_PLANE),
-    "pinned": (PINNED, PINNED_IN_PLANE),
-}
-"""What a support holds by the word of the scene: of any rod, and of one that stays in the plane of the support."""
-
-
-def revolute(axis: Sequence[float], place: NumericPose) -> HeldDirections:
-    """The tip turns about an axis of the body alone.
+def across(axis: Sequence[float], rotation: FloatArray) -> FloatArray:
+    """Two unit vectors at right angles to an axis, in the axes of the tip, shape (3, 2).
 
     Args:
-        axis: in the axes of the body, any length but zero.
-        place: pose of the tip section in the body.
+        axis: in the axes of what holds the tip, any length but zero.
+        rotation: turns the axes of the tip into those of what holds it, shape (3, 3).
     """
-    return HeldDirections(ALL, _across(axis, place), turn_with_place=True)
-
-
-def prismatic(axis: Sequence[float], place: NumericPose) -> HeldDirections:
-    """The tip slides along an axis of the body alone.
-
-    Args:
-        axis: in the axes of the body, any length but zero.
-        place: pose of the tip section in the body.
-    """
-    return HeldDirections(_across(axis, place), ALL, turn_with_place=True)
-
-
-def prismatic_in_plane(axis: Sequence[float], place: NumericPose) -> HeldDirections:
-    """The same in the x–z plane of the tip, where something else keeps the body in that plane."""
-    direction = place.rotation.T @ np.asarray(axis, dtype=float)
-    unit_direction = direction / np.linalg.norm(direction)
-    # The y axis of the tip is the normal of the plane: the one direction left to hold lies across the slide in it.
-    across = np.cross([0.0, 1.0, 0.0], unit_direction)
-    return HeldDirections(across[:, None], NORMAL, turn_with_place=True)
-
-
-def _across(axis: Sequence[float], place: NumericPose) -> FloatArray:
-    """Two unit vectors at right angles to an axis, in the axes of the place, shape (3, 2)."""
-    direction = place.rotation.T @ np.asarray(axis, dtype=float)
+    direction = rotation.T @ np.asarray(axis, dtype=float)
     # The first right singular vector of a row is along it; the others span what is orthogonal to it.
     _, _, rows = np.linalg.svd(direction[None, :])
     return np.asarray(rows[1:].T)
+
+
+def in_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirections:
+    """Held directions of a section that nothing takes out of a plane: displacements in it, rotation about its normal.
+
+    Args:
+        held: the directions of a section that moves in space.
+        normal: unit normal of the plane in the axes of ``held``, shape (3,).
+    """
+    along_normal = np.outer(normal, normal)
+    positions = _basis((ALL - along_normal) @ held.positions)
+    rotations = _basis(along_normal @ held.rotations)
+    # All displacements in the plane are those along its axes, whichever way the place has turned.
+    turn_with_place = held.turn_with_place and positions.shape[1] == 1
+    if positions.shape[1] == 2:
+        positions = IN_PLANE
+    if rotations.shape[1]:
+        rotations = NORMAL[:, None]
+    return HeldDirections(positions, rotations, turn_with_place)
+
+
+def upright(held: HeldDirections) -> HeldDirections:
+    """Held directions of a planar rod that keeps its body in the plane too: that body does not tilt out of it."""
+    if np.any(np.abs(IN_PLANE.T @ held.rotations) > FLAT):
+        return held
+    return replace(held, rotations=np.hstack([IN_PLANE, held.rotations]))
+
+
+def keeps_plane(held: HeldDirections) -> bool:
+    """Whether a body that is held to a section of a planar rod may be held in its plane by another such rod alone.
+
+    Along the normal it does not move, and of its tilts out of the plane both are held or neither.
+    """
+    left = NORMAL - held.positions @ (held.positions.T @ NORMAL)
+    if np.linalg.norm(left) > FLAT:
+        return False
+    tilts = np.linalg.svd(IN_PLANE.T @ held.rotations, compute_uv=False)
+    return bool(np.all(tilts <= FLAT) or (len(tilts) == 2 and np.all(tilts >= 1 - FLAT)))
+
+
+def _basis(vectors: FloatArray) -> FloatArray:
+    """Orthonormal basis of what vectors span, shape (3, k); the largest component of each vector is positive."""
+    left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)
+    span = left[:, sizes > FLAT]
+    projector = span @ span.T
+    basis = []
+    for _ in range(span.shape[1]):
+        column = projector[:, int(np.argmax(np.diag(projector)))]
+        unit = column / np.linalg.norm(column)
+        basis.append(unit)
+        projector = projector - np.outer(unit, unit)
+    return np.reshape(basis, (-1, 3)).T
 
 
 def stays_in_plane(rod: RodProperties) -> bool:

@@ -45,6 +45,11 @@ class HeldDirections:
         """Number of multipliers."""
         return int(self.positions.shape[1] + self.rotations.shape[1])
 
+    @property
+    def slides(self) -> bool:
+        """Whether the section may move along the place, so that the wrench on it acts where the section is."""
+        return self.turn_with_place and self.positions.shape[1] < 3
+
 
 class Variations(NamedTuple):
     """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
@@ -126,11 +131,6 @@ class SectionConstraint:
     def size(self) -> int:
         """Number of multipliers."""
         return self.held.size
-
-    @property
-    def slides(self) -> bool:
-        """Whether the section may move along the place, so that its wrench acts where the section is."""
-        return self.held.turn_with_place and self.held.positions.shape[1] < 3
 
     def residual(self, poses: Poses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
@@ -233,7 +233,7 @@ class SectionConstraint:
         wrench = self._wrench(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
-        if self.slides:
+        if self.held.slides:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:

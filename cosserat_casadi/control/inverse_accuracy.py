@@ -13,7 +13,8 @@ from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
-from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, wanted_poses
+from cosserat_casadi.control.target_errors import target_errors, wanted_poses
+from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -213,7 +214,7 @@ def _error_within(result: Inverse) -> bool:
     """Whether the estimated error is within the tolerance: of the tips, and where the targets are."""
     solution = result.solution
     tolerance = solution.model.scene.accuracy.tolerance
-    at_targets = [model_error(solution, target) for target in result.targets]
+    at_targets = [TARGET_KINDS[target.kind].model_error(target, solution) for target in result.targets]
     errors = [solution.error_estimate, *at_targets]
     return all(error is not None and error <= tolerance for error in errors)
 

@@ -9,14 +9,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.control.target_errors import (
-    Gap,
-    length_of,
-    model_error,
-    target_errors,
-    wanted_poses,
-    weighted_errors,
-)
+from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
+from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
 from cosserat_casadi.equilibrium.solution import Solution
 
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
@@ -129,7 +123,7 @@ def _minimum_sentence(result: Inverse) -> str:
 def _model_sentence(result: Inverse) -> str:
     """Why targets that the discrete model meets are not met by the rod, as far as is known."""
     scene = result.solution.model.scene
-    errors = [model_error(result.solution, target) or 0.0 for target in result.targets]
+    errors = [TARGET_KINDS[target.kind].model_error(target, result.solution) or 0.0 for target in result.targets]
     return (
         "The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
         f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "

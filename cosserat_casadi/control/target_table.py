@@ -65,17 +65,17 @@ def read_targets(path: Path, scene: scenes.Scene) -> TargetTable:
     return TargetTable(tuple(header), values, tuple(lines), tuple(rows))
 
 
-def _only_target(scene: scenes.Scene) -> scenes.PoseTarget | scenes.PositionTarget:
+def _only_target(scene: scenes.Scene) -> scenes.Target:
     remedy = "a table says where one section or body is to be: give one target of kind pose or position"
     if len(scene.targets) != 1:
         raise SceneError(Problem("targets", f"holds {len(scene.targets)} targets beside --table", remedy))
     (target,) = scene.targets
-    if not isinstance(target, scenes.PoseTarget | scenes.PositionTarget):
+    if "position" not in type(target).model_fields:
         raise SceneError(Problem("targets[0]", f"is of kind {target.kind} beside --table", remedy))
     return target
 
 
-def _column_problems(where: str, header: list[str], target: scenes.PoseTarget | scenes.PositionTarget) -> list[Problem]:
+def _column_problems(where: str, header: list[str], target: scenes.Target) -> list[Problem]:
     """Columns that are missing, that a table does not know, or that the target has no use for."""
     known = (*POSITION, *QUATERNION)
     needed = list(POSITION)
@@ -85,7 +85,7 @@ def _column_problems(where: str, header: list[str], target: scenes.PoseTarget | 
     remedy = f"the columns are {', '.join(POSITION)} and, of a pose, {', '.join(QUATERNION)}"
     problems = [Problem(where, f"has no column {name}", remedy) for name in needed if name not in header]
     problems += [Problem(where, f"has an unknown column {name}", remedy) for name in header if name not in known]
-    if oriented and isinstance(target, scenes.PositionTarget):
+    if oriented and "quaternion" not in type(target).model_fields:
         kind = 'give the target of the scene kind = "pose"'
         problems.append(Problem(where, "has orientations, but the target leaves them free", kind))
     return problems

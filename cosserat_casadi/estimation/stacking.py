@@ -10,12 +10,9 @@ import numpy as np
 from cosserat_casadi.codegen.estimator import MeasuredCases
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.identification.quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-
-UNIT_QUATERNION = 3
-"""Entry of a measured pose that is one where no orientation was measured: a quaternion must have a length."""
 
 
 def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
@@ -88,13 +85,10 @@ def _of_measurement(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Abscissae, numbers and weights of one measurement, a row for each case."""
     record = model.scene.measurements[number]
-    entries = len(record.entries)
     rows = len(record.differences)
     at = np.zeros((len(cases), sections))
-    measured = np.zeros((len(cases), sections, entries))
+    measured = QUANTITIES[record.quantity].blank(len(cases), sections)
     weights = np.zeros((len(cases), sections, rows))
-    if record.quantity == "pose":
-        measured[:, :, UNIT_QUATERNION] = 1.0
     inverse_sigma = 1.0 / np.broadcast_to(np.asarray(record.sigma, dtype=float), rows)
     for i, case in enumerate(cases):
         for k, datum in enumerate(case.data.get(number, [])):

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.identification.table import Table, read_table, table_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
@@ -232,20 +233,9 @@ class _Reader:
                 numbers, problems = self.table.numbers(column, rows)
                 self.problems += problems
                 values[:, k] = scale[k] * numbers + shift[k]
-        if measurement.quantity == "pose":
-            self._check_quaternions(values[:, 3:], rows)
+        for i, problem, remedy in QUANTITIES[measurement.quantity].faults(values):
+            self.problems.append(Problem(self.table.where(rows[i]), problem, remedy))
         return values
-
-    def _check_quaternions(self, quaternions: FloatArray, rows: Sequence[int]) -> None:
-        """A quaternion is there with all its numbers, or not at all."""
-        given = np.isfinite(quaternions)
-        norms = np.linalg.norm(np.where(given, quaternions, 0.0), axis=1)
-        for row, known, norm in zip(rows, given, norms, strict=True):
-            if known.any() and not known.all():
-                problem = Problem(self.table.where(row), "has a quaternion with empty cells", "give all four, or none")
-                self.problems.append(problem)
-            elif known.all() and norm == 0.0:
-                self.problems.append(Problem(self.table.where(row), "has a quaternion that is zero"))
 
     def _abscissae(self, rows: Sequence[int], measured: Flags) -> FloatArray:
         """Abscissa of the section or number of the mode of each row; NaN where the quantity has neither."""

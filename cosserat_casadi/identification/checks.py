@@ -7,11 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cosserat_casadi.identification.found import Row
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.model.build import Model
-
-SECTION_KEYS = ("radius", "outer_radius", "inner_radius", "width", "height")
-"""Keys of sizes of a section."""
+from cosserat_casadi.model.sections import sizes_of
 
 FAR = 3.0
 """Lengths of all rods together beyond which a measured position, counted from the base, is hardly one of the scene."""
@@ -24,25 +23,25 @@ def plausibility(model: Model, layout: UnknownLayout, rows: Sequence[Row]) -> li
 
 def _thick_rods(model: Model) -> Iterator[str]:
     for rod in model.scene.rods:
-        section = getattr(rod, "section", None)
-        if section is None:
-            continue
-        for key in SECTION_KEYS:
-            size = getattr(section, key, None)
-            largest = 0.0 if size is None else float(np.max(size))
+        sizes = {} if rod.section is None else sizes_of(rod.section)
+        for key, size in sizes.items():
+            largest = float(np.max(size))
             if largest >= rod.length:
                 yield f"{rod.name}.section.{key} is {largest:g} m in a rod of {rod.length:g} m: is it in metres?"
 
 
 def _wide_bounds(model: Model, layout: UnknownLayout) -> Iterator[str]:
     """Sizes of a section whose range begins above the length of the rod."""
-    lengths = {rod.name: rod.length for rod in model.scene.rods}
+    rods = {rod.name: rod for rod in model.scene.rods}
     for entry in layout.shared:
         owner, _, key = entry.record.name.partition(".")
         lower = entry.limits()[0]
-        is_size = any(part in SECTION_KEYS for part in key.split("."))
-        if is_size and owner in lengths and np.any(lower >= lengths[owner]):
-            yield f"{entry.record.name} is sought from {lower.max():g} m on in a rod of {lengths[owner]:g} m: metres?"
+        rod = rods.get(owner)
+        if rod is None or rod.section is None:
+            continue
+        is_size = any(part in sizes_of(rod.section) for part in key.split("."))
+        if is_size and np.any(lower >= rod.length):
+            yield f"{entry.record.name} is sought from {lower.max():g} m on in a rod of {rod.length:g} m: metres?"
 
 
 def _far_positions(model: Model, rows: Sequence[Row]) -> Iterator[str]:
@@ -50,9 +49,8 @@ def _far_positions(model: Model, rows: Sequence[Row]) -> Iterator[str]:
     bases = [np.abs(rod.base.position).max() for rod in model.scene.rods]
     reach = FAR * (length + max(bases))
     for number, measurement in enumerate(model.scene.measurements):
-        if measurement.quantity not in ("position", "pose"):
-            continue
-        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < 3]
+        coordinates = QUANTITIES[measurement.quantity].coordinates
+        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < coordinates]
         if distances and max(distances) > reach:
             farthest = max(distances)
             yield (

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.cases import Datum
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checks import immovable
@@ -226,6 +227,7 @@ class MeasuredModes:
         self.places: Indices = np.array([i for i, (_, data) in enumerate(rows) for _ in data], dtype=np.int64)
         self.sigma = np.array([np.max(record.sigma)])
         self._vibrations = vibrations
+        self._quantity = QUANTITIES[record.quantity]
         self._measured = np.array([datum.values[0] for datum, _ in self.data])
         self._numbers = [[int(datum.at) for datum in data] for _, data in rows]
 
@@ -240,7 +242,7 @@ class MeasuredModes:
         modelled = []
         for i, numbers in enumerate(self._numbers):
             found = self._vibrations.clusters(x[i], inputs[i], p, numbers)
-            modelled += [self._quantity(found[number].value) if number in found else np.nan for number in numbers]
+            modelled += [self._quantity.value(found[number].value) if number in found else np.nan for number in numbers]
         return np.asarray((np.array(modelled) - self._measured) / self.sigma)
 
     def derivatives(
@@ -256,7 +258,7 @@ class MeasuredModes:
                 if cluster.first not in slopes:
                     matrices = self._vibrations.derivatives(cluster, x[i], inputs[i], p)
                     of_mean = np.trace(matrices) / cluster.count
-                    slopes[cluster.first] = self._slope(cluster.value, of_mean)
+                    slopes[cluster.first] = self._quantity.slope(cluster.value, of_mean)
                 rows.append(slopes[cluster.first])
         stacked = np.array(rows) / self.sigma
         ends = np.cumsum([x.shape[1], inputs.shape[1]])
@@ -287,20 +289,6 @@ class MeasuredModes:
                 largest = np.abs(parting).max(axis=(0, 1))
                 joint.append(JointModes(int(self.cases[i]), cluster.numbers, largest > PARTED * abs(cluster.value)))
         return joint
-
-    def _quantity(self, value: complex) -> float:
-        """The frequency |λ| / 2π, Hz, or the damping ratio −Re λ / |λ|."""
-        if self.record.quantity == "frequency":
-            return abs(value) / (2 * np.pi)
-        return -value.real / abs(value)
-
-    def _slope(self, value: complex, change: ComplexArray) -> FloatArray:
-        """Derivative of the quantity where λ has the derivative that is given."""
-        size = abs(value)
-        of_size = (np.conj(value) * change).real / size
-        if self.record.quantity == "frequency":
-            return np.asarray(of_size / (2 * np.pi))
-        return np.asarray(-change.real / size + value.real * of_size / size**2)
 
 
 def check_vibrations(model: Model) -> None:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.identification.cases import Datum
 from cosserat_casadi.identification.equilibria import split
-from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.identification.quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -37,12 +37,9 @@ class MeasuredRows:
         self.times = np.array([data[0].time for _, data in rows])
         count = len(rows)
         sections = max(len(data) for _, data in rows)
-        entries = len(record.entries)
         differences = len(record.differences)
         self._at = np.zeros((count, sections))
-        measured = np.zeros((count, entries, sections))
-        if record.quantity == "pose":
-            measured[:, 3] = 1.0
+        measured = QUANTITIES[record.quantity].blank(count, sections)
         known = np.zeros((count, sections, differences), dtype=bool)
         self.data: list[tuple[Datum, int]] = []
         self.row_cases: list[int] = []
@@ -51,7 +48,7 @@ class MeasuredRows:
             for k, datum in enumerate(data):
                 self._at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
                 given = np.isfinite(datum.values)
-                measured[i, given, k] = datum.values[given]
+                measured[i, k, given] = datum.values[given]
                 known[i, k] = given[:differences]
                 for entry in np.flatnonzero(known[i, k]).tolist():
                     self.data.append((datum, entry))
@@ -70,7 +67,7 @@ class MeasuredRows:
 
     def _arguments(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
         at = self._at.reshape(1, -1)
-        measured = self._measured.transpose(1, 0, 2).reshape(-1, at.size)
+        measured = self._measured.reshape(at.size, -1).T
         return [x.T, inputs.T, p, at, measured]
 
     def residual(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:

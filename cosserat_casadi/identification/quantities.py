@@ -1,15 +1,17 @@
 """Measured quantities as expressions of the model: how far the model is from what was measured.
 
-A quantity is one function here, registered under the word that its record in scene/measurements.py has.
+A quantity is one class: it gives :meth:`Quantity.difference`, or of a vibration its value over the eigenvalue.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, Generic, TypeVar, final
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.rotation import (
     quaternion_conjugate,
@@ -17,11 +19,26 @@ from cosserat_casadi.maths.rotation import (
     quaternion_to_matrix,
     rotation_vector,
 )
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.interpolation import interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
+from cosserat_casadi.motion.eigenproblem import ComplexArray
+from cosserat_casadi.scene.families import Kind, Kinds, register
+from cosserat_casadi.scene.measurement_record import MEASUREMENTS, MeasurementRecord
+from cosserat_casadi.scene.measurements import (
+    MeasuredBaseWrench,
+    MeasuredDampingRatio,
+    MeasuredFrequency,
+    MeasuredLength,
+    MeasuredPose,
+    MeasuredPosition,
+    MeasuredStrain,
+    MeasuredTension,
+)
+
+RecordType = TypeVar("RecordType", bound=MeasurementRecord)
 
 
 @dataclass(frozen=True)
@@ -85,77 +102,215 @@ class Site:
         return poses
 
 
-Difference = Callable[[Site], Matrix]
-"""Writes model minus measurement, a column for each section, in the units of the record's `differences`."""
+class Quantity(Kind, ABC, Generic[RecordType]):
+    """One measured quantity.
 
-QUANTITIES: dict[str, Difference] = {}
-"""Expressions of the measured quantities by their words."""
+    Attributes:
+        coordinates: number of the first entries that are coordinates of a point of the world, m.
+        unmeasured: what stands for each entry that was not measured, and counts for nothing; zeros where left out.
+    """
 
+    record: ClassVar[type[MeasurementRecord]]
+    family = MEASUREMENTS
+    kinds = Kinds(MEASUREMENTS)
+    coordinates: ClassVar[int] = 0
+    unmeasured: ClassVar[tuple[float, ...]] = ()
 
-def measures(word: str) -> Callable[[Difference], Difference]:
-    """Register the expression of a quantity."""
+    def faults(self, values: FloatArray) -> list[tuple[int, str, str]]:
+        """What is wrong with measured entries, shape (rows, entries): the row, the problem and the remedy."""
+        return []
 
-    def register(difference: Difference) -> Difference:
-        QUANTITIES[word] = difference
-        return difference
+    def number(self, entry: int, values: FloatArray) -> float:
+        """The measured number that a difference is counted from, of the entries of one row."""
+        return float(values[entry])
 
-    return register
-
-
-@measures("position")
-def _position(site: Site) -> Matrix:
-    positions = [position for position, _ in site.frames()]
-    return ca.horzcat(*positions) - site.measured
-
-
-@measures("pose")
-def _pose(site: Site) -> Matrix:
-    differences = []
-    for k, (position, quaternion) in enumerate(site.frames()):
-        measured = site.measured[:, k]
-        wanted = measured[3:] / ca.norm_2(measured[3:])
-        turn = quaternion_product(quaternion, quaternion_conjugate(wanted))
-        differences.append(ca.vertcat(position - measured[:3], rotation_vector(turn)))
-    return ca.horzcat(*differences)
+    def blank(self, *shape: int) -> FloatArray:
+        """Entries that were not measured, shape (*shape, entries)."""
+        values = np.zeros((*shape, len(self.record.entries)))
+        if self.unmeasured:
+            values[...] = self.unmeasured
+        return values
 
 
-@measures("tension")
-def _tension(site: Site) -> Matrix:
-    tension = site.system.actuators.state(site.record.actuator)[0]
-    return ca.repmat(tension, 1, site.sections) - site.measured
+QUANTITIES = Quantity.kinds
+"""Measured quantities by the word of the scene format."""
 
 
-@measures("length")
-def _length(site: Site) -> Matrix:
-    length = site.system.actuators.state(site.record.actuator)[1]
-    return ca.repmat(length, 1, site.sections) - site.measured
+class StateQuantity(Quantity[RecordType]):
+    """One measured quantity that follows from the unknowns of an equilibrium, or of an instant."""
+
+    @abstractmethod
+    def difference(self, site: Site) -> Matrix:
+        """Model minus measurement, a column for each section, in the units of the record's `differences`."""
 
 
-@measures("base_wrench")
-def _base_wrench(site: Site) -> Matrix:
-    rotation = quaternion_to_matrix(site.system.base(site.record.rod).quaternion)
-    statics = site.system.rods[site.record.rod].statics
-    wrench = ca.vertcat(rotation @ statics.base_force, rotation @ statics.base_moment)
-    return ca.repmat(wrench, 1, site.sections) - site.measured
+@final
+@register
+class Position(StateQuantity[MeasuredPosition]):
+    """Position of a marker."""
+
+    record = MeasuredPosition
+    coordinates = 3
+
+    def difference(self, site: Site) -> Matrix:
+        """A distance, 3×k, m."""
+        positions = [position for position, _ in site.frames()]
+        return ca.horzcat(*positions) - site.measured
 
 
-@measures("strain")
-def _strain(site: Site) -> Matrix:
-    """Stretch of the fibre |Γ + K × r| over that of the unloaded rod, less one."""
-    rod = site.record.rod
-    system = site.system
-    discrete = system.discrete.rods[rod]
-    x, y = site.record.fibre
-    place = ca.DM([x, y, 0.0])
-    ratio = ratio_of(system.discrete, rod, system.arguments)
-    q = system.arguments.x[system.discrete.unknowns.strain(rod)]
-    # Strains are polynomials that the nodes resolve: the interpolant through them is exact.
-    strain = _strains(discrete.strain_rows(q, range(6), ratio), discrete.grid.size)
-    at_rest = discrete.strain_rows(ca.MX.zeros(discrete.size), range(6), ratio)
-    unloaded = _strains(at_rest, discrete.grid.size)
-    weights = site.weights(rod)
-    stretch, unloaded_stretch = (_stretch(rows @ weights, place) for rows in (strain, unloaded))
-    return stretch / unloaded_stretch - 1 - site.measured
+@final
+@register
+class MarkerPose(StateQuantity[MeasuredPose]):
+    """Position and orientation of a marker."""
+
+    record = MeasuredPose
+    coordinates = 3
+    # A quaternion has a length, also where none was measured.
+    unmeasured = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+
+    def difference(self, site: Site) -> Matrix:
+        """A distance, m, and the rotation vector from the measured orientation, 6×k."""
+        differences = []
+        for k, (position, quaternion) in enumerate(site.frames()):
+            measured = site.measured[:, k]
+            wanted = measured[3:] / ca.norm_2(measured[3:])
+            turn = quaternion_product(quaternion, quaternion_conjugate(wanted))
+            differences.append(ca.vertcat(position - measured[:3], rotation_vector(turn)))
+        return ca.horzcat(*differences)
+
+    def faults(self, values: FloatArray) -> list[tuple[int, str, str]]:
+        """A quaternion is there with all its numbers, or not at all."""
+        quaternions = values[:, 3:]
+        given = np.isfinite(quaternions)
+        norms = np.linalg.norm(np.where(given, quaternions, 0.0), axis=1)
+        faults = []
+        for row, (known, norm) in enumerate(zip(given, norms, strict=True)):
+            if known.any() and not known.all():
+                faults.append((row, "has a quaternion with empty cells", "give all four, or none"))
+            elif known.all() and norm == 0.0:
+                faults.append((row, "has a quaternion that is zero", ""))
+        return faults
+
+    def number(self, entry: int, values: FloatArray) -> float:
+        """A coordinate; a rotation is counted from the measured orientation."""
+        return float(values[entry]) if entry < self.coordinates else 0.0
+
+
+@final
+@register
+class Tension(StateQuantity[MeasuredTension]):
+    """Tension of a tendon."""
+
+    record = MeasuredTension
+
+    def difference(self, site: Site) -> Matrix:
+        """A force, 1×k, N."""
+        tension = site.system.actuators.state(site.record.actuator)[0]
+        return ca.repmat(tension, 1, site.sections) - site.measured
+
+
+@final
+@register
+class TendonLength(StateQuantity[MeasuredLength]):
+    """Length of a tendon within its rod."""
+
+    record = MeasuredLength
+
+    def difference(self, site: Site) -> Matrix:
+        """A length, 1×k, m."""
+        length = site.system.actuators.state(site.record.actuator)[1]
+        return ca.repmat(length, 1, site.sections) - site.measured
+
+
+@final
+@register
+class BaseWrench(StateQuantity[MeasuredBaseWrench]):
+    """Force and moment of the clamp."""
+
+    record = MeasuredBaseWrench
+
+    def difference(self, site: Site) -> Matrix:
+        """A force, N, and a moment, N m, world axes, 6×k."""
+        rotation = quaternion_to_matrix(site.system.base(site.record.rod).quaternion)
+        statics = site.system.rods[site.record.rod].statics
+        wrench = ca.vertcat(rotation @ statics.base_force, rotation @ statics.base_moment)
+        return ca.repmat(wrench, 1, site.sections) - site.measured
+
+
+@final
+@register
+class FibreStrain(StateQuantity[MeasuredStrain]):
+    """Stretch of a fibre |Γ + K × r| over that of the unloaded rod, less one."""
+
+    record = MeasuredStrain
+
+    def difference(self, site: Site) -> Matrix:
+        """A strain, 1×k."""
+        rod = site.record.rod
+        system = site.system
+        discrete = system.discrete.rods[rod]
+        x, y = site.record.fibre
+        place = ca.DM([x, y, 0.0])
+        ratio = ratio_of(system.discrete, rod, system.arguments)
+        q = system.arguments.x[system.discrete.unknowns.strain(rod)]
+        # Strains are polynomials that the nodes resolve: the interpolant through them is exact.
+        strain = _strains(discrete.strain_rows(q, range(6), ratio), discrete.grid.size)
+        at_rest = discrete.strain_rows(ca.MX.zeros(discrete.size), range(6), ratio)
+        unloaded = _strains(at_rest, discrete.grid.size)
+        weights = site.weights(rod)
+        stretch, unloaded_stretch = (_stretch(rows @ weights, place) for rows in (strain, unloaded))
+        return stretch / unloaded_stretch - 1 - site.measured
+
+
+class VibrationQuantity(Quantity[RecordType]):
+    """One measured quantity of a vibration: a function of its eigenvalue λ, 1/s."""
+
+    @abstractmethod
+    def value(self, eigenvalue: complex) -> float:
+        """The quantity of an eigenvalue."""
+
+    @abstractmethod
+    def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
+        """Derivatives of the quantity where the eigenvalue has these."""
+
+
+@final
+@register
+class Frequency(VibrationQuantity[MeasuredFrequency]):
+    """|λ| / 2π."""
+
+    record = MeasuredFrequency
+
+    def value(self, eigenvalue: complex) -> float:
+        """The frequency, Hz."""
+        return abs(eigenvalue) / (2 * np.pi)
+
+    def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
+        """Its derivatives."""
+        return np.asarray(_slope_of_size(eigenvalue, change) / (2 * np.pi))
+
+
+@final
+@register
+class DampingRatio(VibrationQuantity[MeasuredDampingRatio]):
+    """−Re λ / |λ|."""
+
+    record = MeasuredDampingRatio
+
+    def value(self, eigenvalue: complex) -> float:
+        """The damping ratio."""
+        return -eigenvalue.real / abs(eigenvalue)
+
+    def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
+        """Its derivatives."""
+        size = abs(eigenvalue)
+        of_size = _slope_of_size(eigenvalue, change)
+        return np.asarray(-change.real / size + eigenvalue.real * of_size / size**2)
+
+
+def _slope_of_size(eigenvalue: complex, change: ComplexArray) -> FloatArray:
+    """Derivatives of |λ| where λ has these."""
+    return np.asarray((np.conj(eigenvalue) * change).real / abs(eigenvalue))
 
 
 def _strains(rows: Sequence[Matrix | None], count: int) -> Matrix:
@@ -192,6 +347,6 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
     site = Site(System(discrete, Arguments(x, inputs)), record, at, measured)
-    stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity](site))))
+    stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
     derivatives = [ca.densify(ca.jacobian(stacked, argument)) for argument in (x, inputs, p)]
     return ca.Function("difference", [x, inputs, p, at, measured], [stacked, *derivatives])

@@ -16,6 +16,7 @@ from cosserat_casadi.identification.equilibria import Equilibria, Point
 from cosserat_casadi.identification.found import Identification, LeftOut, Row
 from cosserat_casadi.identification.misfit import Misfit, MisfitState, inputs_of, moving
 from cosserat_casadi.identification.motions import StartInputs
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.identification.report import Ending
 from cosserat_casadi.identification.statistics import NoiseFrom, Statistics, statistics
 from cosserat_casadi.identification.time_steps import STEP_ERROR, error_of_steps, given_steps, with_steps
@@ -344,8 +345,7 @@ class Task:
             residual = misfit.residual_of(measured, state)
             weights = self.loss.weights(residual)
             for i, (datum, entry) in enumerate(measured.data):
-                is_angle = measured.record.quantity == "pose" and entry >= 3
-                value = 0.0 if is_angle else float(datum.values[entry])
+                value = QUANTITIES[measured.record.quantity].number(entry, datum.values)
                 difference = float(residual[i] * measured.sigma[entry])
                 row = Row(
                     where=datum.where,

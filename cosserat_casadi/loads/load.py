@@ -35,10 +35,14 @@ from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
-from cosserat_casadi.scene.families import Kind
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.families import Kind, Kinds
+from cosserat_casadi.scene.loads import LOADS, LoadRecord
 
 RecordType = TypeVar("RecordType", bound=LoadRecord)
+
+EFFECTS = Kinds(LOADS, ACTUATORS)
+"""Mechanics of loads and actuators by the words of the scene format."""
 
 Axes = Literal["world", "section"]
 Poses = tuple[FloatArray, FloatArray]
@@ -126,6 +130,8 @@ class Load(Kind, ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[LoadRecord]]
+    family = LOADS
+    kinds = EFFECTS
     growth: ClassVar[int] = 1
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:

@@ -327,7 +327,7 @@ class Assembly:
         for moved, derivative in self._of_floating(placed, by_poses):
             by_motion[moved] = by_motion[moved] + derivative
         # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
-        if constraint.slides:
+        if constraint.held.slides:
             strains = self.unknowns.strain(placed.rod)
             by_strain = by_poses.section @ self._section_motion(placed)
             variations.append((strains, by_strain))

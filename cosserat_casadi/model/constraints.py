@@ -8,17 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints import held_directions as held
+from cosserat_casadi.constraints.held_directions import (
+    CLAMPED,
+    NORMAL,
+    in_plane,
+    keeps_plane,
+    stays_in_plane,
+    upright,
+)
+from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
+from cosserat_casadi.constraints.supports import SUPPORT_KINDS
+from cosserat_casadi.constraints.tip_holder import TipHolder, place_of
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, as_vector, is_symbolic, known
-from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
-from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.floating_frames import FLAT, FrameName, UnloadedScene, same_plane
+from cosserat_casadi.maths.pose import NumericPose, Pose, written_pose
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.rods import base_pose, unit_quaternion, written_base_pose
 
@@ -114,8 +125,21 @@ def written_constraints(
 
 
 def _axes(scene: scenes.Scene) -> dict[str, Numbers]:
-    """Axes of the hinges and slides of a scene in the axes of their bodies, by the paths of their tables."""
-    return {f"joints[{i}]": as_vector(joint.axis) for i, joint in enumerate(scene.joints) if hasattr(joint, "axis")}
+    """Axes of supports and joints in the world and in their bodies, by the paths of their tables."""
+    axes = {}
+    for where, holder, record in _holders(scene):
+        axis = holder.axis(record)
+        if axis is not None:
+            axes[where] = as_vector(axis)
+    return axes
+
+
+def _holders(scene: scenes.Scene) -> Iterator[tuple[str, TipHolder[Any], Any]]:
+    """Path of the table, mechanics and record of each support and joint."""
+    for i, support in enumerate(scene.supports):
+        yield f"supports[{i}]", SUPPORT_KINDS[support.kind], support
+    for i, joint in enumerate(scene.joints):
+        yield f"joints[{i}]", JOINT_KINDS[joint.kind], joint
 
 
 def _turn_of_axis(start: NumericPose, before: Numbers, place: NumericPose | Pose, after: Numbers) -> Matrix | None:
@@ -147,11 +171,9 @@ def decisive_axes(unloaded: UnloadedScene) -> set[int]:
 def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
     """Poses that close the constraints of a scene as it gives them, by the paths of their tables."""
     places: dict[str, NumericPose | Pose] = {}
-    for i, support in enumerate(scene.supports):
-        quaternion = support.quaternion if isinstance(support, scenes.ClampedSupport) else (1.0, 0.0, 0.0, 0.0)
-        places[f"supports[{i}]"] = written_pose(as_vector(support.position), unit_quaternion(quaternion))
-    for i, joint in enumerate(scene.joints):
-        places[f"joints[{i}]"] = written_pose(as_vector(joint.position), unit_quaternion(joint.quaternion))
+    for where, _, record in _holders(scene):
+        quaternion = record.orientation or (1.0, 0.0, 0.0, 0.0)
+        places[where] = written_pose(as_vector(record.position), unit_quaternion(quaternion))
     for i, rod in enumerate(scene.rods):
         if rod.base.rod is not None:
             # The scene gives the base in the section; the constraint wants the section in the frame of the base.
@@ -224,24 +246,19 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     rod = support.rod
     words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
     tip = _Section(unloaded, rod)
-    target = _support_pose(support)
-    spatial, planar = held.SUPPORTS[support.kind]
-    if unloaded.floating_base(rod) is None:
-        in_plane = held.stays_in_plane(unloaded.rods[rod].properties)
-        directions = planar if in_plane else spatial
-        # The scene's own sign of the quaternion says by which way round the tip is to be turned.
-        placed = tip.held_to(target, directions, None, words)
-        return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
-    directions = planar if _supported_in_plane(unloaded, support, target) else spatial
-    return tip.held_to(tip.nearer_sign(target, None), directions, None, words)
-
-
-def _support_pose(support: scenes.Support) -> NumericPose:
-    """World pose of a support; a pinned one has no rotation to hold."""
-    quaternion = IDENTITY.quaternion
-    if isinstance(support, scenes.ClampedSupport):
-        quaternion = _array(support.quaternion)
-    return NumericPose(_array(support.position), quaternion)
+    target = place_of(support)
+    directions = SUPPORT_KINDS[support.kind].held(support, target.rotation)
+    floats = unloaded.floating_base(rod) is not None
+    stays = _supported_in_plane(unloaded, support, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
+    if stays:
+        # Directions that turn with the place are given in its axes, others in those of the base.
+        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_place else NORMAL
+        directions = in_plane(directions, normal)
+    if floats:
+        return tip.held_to(tip.nearer_sign(target, None), directions, None, words)
+    # The scene's own sign of the quaternion says by which way round the tip is to be turned.
+    placed = tip.held_to(target, directions, None, words)
+    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
 
 
 def _supported_in_plane(unloaded: UnloadedScene, support: scenes.Support, target: NumericPose) -> bool:
@@ -250,8 +267,7 @@ def _supported_in_plane(unloaded: UnloadedScene, support: scenes.Support, target
     if plane is None:
         return False
     length = unloaded.records[support.rod].length
-    tilted = not isinstance(support, scenes.ClampedSupport)
-    return same_plane(plane, target, length, tilted=tilted)
+    return same_plane(plane, target, length, tilted=support.orientation is None)
 
 
 def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
@@ -265,7 +281,7 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
     # The scene gives the base in the section; the constraint wants the section in the frame of the base.
     section_in_base = NumericPose(*base_pose(rod)).inverse
     target = section.nearer_sign(section_in_base, frame)
-    return section.held_to(target, held.CLAMPED, frame, words)
+    return section.held_to(target, CLAMPED, frame, words)
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
@@ -274,37 +290,23 @@ def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     frame = FrameName("body", joint.body)
     words = (f"joints[{index}]", f"the tip of {joint.rod!r} at {joint.body!r}")
     tip = _Section(unloaded, joint.rod)
-    target = tip.nearer_sign(_joint_pose(joint), frame)
-    directions = _joint_directions(unloaded, joint, target)
+    target = tip.nearer_sign(place_of(joint), frame)
+    directions = _joint_directions(unloaded, joint)
     return tip.held_to(target, directions, frame, words)
 
 
-def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint, target: NumericPose) -> HeldDirections:
+def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
     """What a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
+    directions: HeldDirections = JOINT_KINDS[joint.kind].directions(joint)
     coplanar = list(_coplanar(unloaded, joint))
-    if len(coplanar) > 1 and coplanar[0] != joint:
-        return _directions_in_plane(joint, target)
-    if isinstance(joint, scenes.PrismaticJoint):
-        return held.prismatic(joint.axis, target)
-    if isinstance(joint, scenes.RevoluteJoint):
-        return held.revolute(joint.axis, target)
-    if joint.kind == "fixed":
-        return held.CLAMPED
-    if len(coplanar) > 1:
-        return held.PINNED_UPRIGHT
-    return held.PINNED
-
-
-def _directions_in_plane(joint: scenes.Joint, target: NumericPose) -> HeldDirections:
-    """What a joint holds of a body that a joint before it keeps in the plane."""
-    if isinstance(joint, scenes.PrismaticJoint):
-        return held.prismatic_in_plane(joint.axis, target)
-    if joint.kind == "fixed":
-        return held.CLAMPED_IN_PLANE
-    return held.PINNED_IN_PLANE
+    if len(coplanar) < 2:
+        return directions
+    if coplanar[0] != joint:
+        return in_plane(directions)
+    return upright(directions)
 
 
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
@@ -321,14 +323,7 @@ def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.J
 
 def _moves_in_plane(joint: scenes.Joint) -> bool:
     """Whether a joint leaves its body in the x–z plane of the tip: a hinge about its normal, a slide along it."""
-    if not isinstance(joint, scenes.RevoluteJoint | scenes.PrismaticJoint):
-        return True
-    axis = _joint_pose(joint).rotation.T @ np.asarray(joint.axis)
-    # The y axis of the tip is the normal of its plane.
-    out_of_plane = abs(axis[1]) / np.linalg.norm(axis)
-    if isinstance(joint, scenes.RevoluteJoint):
-        return bool(out_of_plane >= 1 - FLAT)
-    return bool(out_of_plane <= FLAT)
+    return keeps_plane(JOINT_KINDS[joint.kind].directions(joint))
 
 
 def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPose, candidate: scenes.Joint) -> bool:
@@ -337,20 +332,11 @@ def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPo
     length = unloaded.records[joint.rod].length
     if second is None or not same_plane(plane, second, length):
         return False
-    first_joint = _joint_pose(joint)
-    second_joint = _joint_pose(candidate)
+    first_joint = place_of(joint)
+    second_joint = place_of(candidate)
     # Normals may be opposite, if they are so in the world and in the body alike.
     in_world = float(plane.rotation[:, 1] @ second.rotation[:, 1])
     in_body = float(first_joint.rotation[:, 1] @ second_joint.rotation[:, 1])
     if in_world * in_body <= 0:
         return False
     return same_plane(first_joint, second_joint, length)
-
-
-def _joint_pose(joint: scenes.Joint) -> NumericPose:
-    """Pose of the tip section in the body."""
-    return NumericPose(_array(joint.position), _array(joint.quaternion))
-
-
-def _array(values: tuple[float, ...]) -> FloatArray:
-    return np.asarray(values, dtype=np.float64)

@@ -15,16 +15,15 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.held_directions import stays_in_plane
+from cosserat_casadi.constraints.held_directions import FLAT, stays_in_plane
+from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import matrix_to_quaternion
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
-
-FLAT = 1e-9
-"""Distance from a plane, relative to a length, and sine of an angle to it, that count as none."""
 
 
 class FrameName(NamedTuple):
@@ -188,9 +187,9 @@ class UnloadedScene:
         mean_point = points.mean(axis=0)
         correlation = (points - mean_point).T @ (arms - mean_arm)
         for joint, tip in zip(joints, tips, strict=True):
-            # A spherical joint leaves the orientation free: it counts by its arm alone.
-            if joint.kind != "spherical":
-                tip_in_body = NumericPose(np.zeros(3), np.asarray(joint.quaternion, dtype=float))
+            # A joint that leaves the orientation free counts by its arm alone.
+            if JOINT_KINDS[joint.kind].directions(joint).rotations.size:
+                tip_in_body = NumericPose(np.zeros(3), place_of(joint).quaternion)
                 wanted = tip.then(tip_in_body.inverse)
                 correlation = correlation + length**2 * wanted.rotation
         rotation = _nearest_rotation(correlation)

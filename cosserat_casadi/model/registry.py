@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
-
-from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
@@ -15,31 +12,14 @@ from cosserat_casadi.loads.distributed_wrench import DistributedWrenchLoad
 from cosserat_casadi.loads.flow import FlowLoad
 from cosserat_casadi.loads.foundation import FoundationLoad
 from cosserat_casadi.loads.gravity import GravityLoad
-from cosserat_casadi.loads.load import Load
+from cosserat_casadi.loads.load import EFFECTS
 from cosserat_casadi.loads.magnet import MagnetLoad
 from cosserat_casadi.loads.penetration import PenetrationLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
-from cosserat_casadi.scene.actuators import ACTUATORS
-from cosserat_casadi.scene.families import Family, add_kind
-from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.families import register
 
-Member = TypeVar("Member", bound=type[Load[Any]] | type[Actuator[Any]])
-
-EFFECTS: dict[str, Any] = {}
-"""Loads and actuators by the word of the scene format."""
-
-
-def register(member: Member) -> Member:
-    """Make a kind of load or actuator known, to the scene format and to the mechanics; decorates its class.
-
-    Raises:
-        ValueError: another class has the same word.
-    """
-    family: Family[Any] = LOADS if issubclass(member, Load) else ACTUATORS
-    add_kind(EFFECTS, family, member)
-    return member
-
+__all__ = ["EFFECTS", "register"]
 
 for shipped in (
     GravityLoad,

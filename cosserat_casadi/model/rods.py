@@ -22,8 +22,10 @@ from cosserat_casadi.maths.numbers import (
 )
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod import section
+from cosserat_casadi.model.sections import SHAPES, sizes_of
 from cosserat_casadi.rod.properties import STRAINS, Field, RodProperties
+from cosserat_casadi.rod.section import SectionShape
+from cosserat_casadi.rod.section import hooke as hooke_tensor
 
 SMALLEST_FORCE = 1e-150
 """Least EI/ℓ² that can be computed with, N: its square is still a number."""
@@ -145,11 +147,6 @@ def _shared(field: Field, *sizes: Any) -> Field:
     return at
 
 
-def _sizes(shape: scenes.Section) -> list[Any]:
-    """The sizes of a section, each constant or of base and tip."""
-    return [getattr(shape, name) for name in type(shape).model_fields if name not in ("shape", "shear_correction")]
-
-
 def _hooke(rod: scenes.Rod) -> Field:
     if rod.stiffness is not None:
         # One that is not given is not admitted, and not read.
@@ -160,8 +157,8 @@ def _hooke(rod: scenes.Rod) -> Field:
     shear = shear_modulus(rod.material)
     correction = rod.section.shear_correction
     shape = _section_shape(rod.section)
-    hooke: Field = lambda X: section.hooke(shape(X), youngs_modulus, shear, correction)  # noqa: E731
-    return _shared(hooke, *_sizes(rod.section))
+    hooke: Field = lambda X: hooke_tensor(shape(X), youngs_modulus, shear, correction)  # noqa: E731
+    return _shared(hooke, *sizes_of(rod.section).values())
 
 
 def shear_modulus(material: scenes.Material) -> Scalar:
@@ -184,19 +181,15 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
     return _shared(lambda X: side_by_side([_along(f, X) for f in linear]), *fields)
 
 
-def _section_shape(
-    shape: scenes.Circle | scenes.Annulus | scenes.Rectangle,
-) -> Callable[[Numbers], section.SectionShape]:
-    if isinstance(shape, scenes.Circle):
-        radius = _linear(shape.radius)
-        return lambda X: section.circle(_along(radius, X))
-    if isinstance(shape, scenes.Annulus):
-        outer = _linear(shape.outer_radius)
-        inner = _linear(shape.inner_radius)
-        return lambda X: section.annulus(_along(outer, X), _along(inner, X))
-    width = _linear(shape.width)
-    height = _linear(shape.height)
-    return lambda X: section.rectangle(_along(width, X), _along(height, X))
+def _section_shape(record: scenes.Section) -> Callable[[Numbers], SectionShape]:
+    """Abscissae ↦ areas and second moments of the sections there."""
+    shape = SHAPES[record.shape]
+    return lambda X: shape.shape(sizes_along(record, X))
+
+
+def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
+    """Sizes of a section at abscissae, shape (k,) each, m, by their keys."""
+    return {key: _along(_linear(size), X) for key, size in sizes_of(record).items()}
 
 
 def _along(field: Field, X: Numbers) -> Numbers:
@@ -212,7 +205,7 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
         return None
     density = rod.material.density
     shape = _section_shape(rod.section)
-    return _shared(lambda X: density * shape(X).area, *_sizes(rod.section))
+    return _shared(lambda X: density * shape(X).area, *sizes_of(rod.section).values())
 
 
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
@@ -226,7 +219,7 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
         return None
     density = rod.material.density
     shape = _section_shape(rod.section)
-    return _shared(lambda X: density * shape(X).second_moments, *_sizes(rod.section))
+    return _shared(lambda X: density * shape(X).second_moments, *sizes_of(rod.section).values())
 
 
 def _area(rod: scenes.Rod) -> Field | None:
@@ -239,12 +232,9 @@ def _area(rod: scenes.Rod) -> Field | None:
 
 def _diameter(rod: scenes.Rod) -> Field | None:
     """Outer diameter of round sections (k,); None of others."""
-    if isinstance(rod.section, scenes.Circle):
-        radius = _linear(rod.section.radius)
-    elif isinstance(rod.section, scenes.Annulus):
-        radius = _linear(rod.section.outer_radius)
-    else:
+    if rod.section is None or rod.section.radius_key is None:
         return None
+    radius = _linear(getattr(rod.section, rod.section.radius_key))
     return lambda X: 2 * _along(radius, X)
 
 
@@ -254,7 +244,7 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
         return None
     time = rod.damping.retardation_time
     if time is not None:
-        sizes = [] if rod.section is None else _sizes(rod.section)
+        sizes = [] if rod.section is None else list(sizes_of(rod.section).values())
         if rod.stiffness is not None:
             sizes = [getattr(rod.stiffness, name) for name in STRAINS]
         return _shared(lambda X: time * hooke(X), *sizes)

@@ -13,11 +13,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import FLAT
+from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.body_loads import BodyLoads
-from cosserat_casadi.model.floating_frames import FLAT, FrameName
+from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 
 
@@ -44,10 +46,12 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
         if joint.body != body.name:
             continue
         points.append(np.asarray(joint.position))
-        if isinstance(joint, scenes.RevoluteJoint):
-            # A hinge holds all but the turn about its axis: the body may turn about that line alone.
-            points.append(np.add(joint.position, joint.axis))
-        elif system.discrete.constraint(f"joints[{i}]").held.rotations.size:
+        about = system.discrete.constraint(f"joints[{i}]").held.rotations
+        if about.shape[1] == 2:
+            # All but the turn about one axis is held: the body may turn about that line alone.
+            axis = place_of(joint).rotation @ np.cross(about[:, 0], about[:, 1])
+            points.append(np.add(joint.position, axis))
+        elif about.size:
             return None
     return np.array(points)
 

@@ -16,11 +16,8 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
 
-ROUND = ("sphere", "capsule")
-"""Kinds of obstacles that may be thin."""
-
 THINNEST = 1e-3
-"""Least radius of an obstacle and of a section together, over the length of the rod."""
+"""Least half of the thickness of an obstacle and radius of a section together, over the length of the rod."""
 
 
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
@@ -55,14 +52,11 @@ def _too_thin(model: Model) -> Iterator[Problem]:
             (obstacle, f"the ball of {body.name!r}", ball_radius(body), model.discrete.body_frame(body.name).length)
         )
     for obstacle, whose, own, length in met:
-        radius = getattr(obstacle, "radius", None)
-        if obstacle.kind not in ROUND or radius is None:
-            continue
-        thinnest = radius + own
+        thinnest = obstacle.thickness / 2 + own
         least = THINNEST * length
         if thinnest < least:
-            what = f"with {whose} it is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
-            yield Problem(f"obstacles.{obstacle.name}.radius", what, "give a larger radius, or a width, m")
+            what = f"its radius with {whose} is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
+            yield Problem(f"obstacles.{obstacle.name}", what, "make it thicker, or give it a width, m")
 
 
 def too_deep(history: History, duration: float) -> str:

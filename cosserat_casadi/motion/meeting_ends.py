@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -51,8 +52,8 @@ def _pairs(scene: scenes.Scene) -> Iterator[set[RodEnd]]:
         base = rod.base
         if base.rod is not None and base.at == TIP and not any(base.position):
             yield {RodEnd(base.rod, TIP), RodEnd(rod.name, BASE)}
-    # Along the axis of a slide a tip is not at one point.
-    points = [joint for joint in scene.joints if joint.kind != "prismatic"]
+    # A tip that slides in its body is not at one point.
+    points = [joint for joint in scene.joints if not JOINT_KINDS[joint.kind].directions(joint).slides]
     for number, joint in enumerate(points):
         for other in points[:number]:
             if joint.body == other.body and joint.position == other.position:

@@ -15,8 +15,8 @@ import numpy as np
 
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.scene.families import Kind
-from cosserat_casadi.scene.obstacles import ObstacleRecord
+from cosserat_casadi.scene.families import Kind, Kinds
+from cosserat_casadi.scene.obstacles import OBSTACLES, ObstacleRecord
 
 RecordType = TypeVar("RecordType", bound=ObstacleRecord)
 
@@ -33,6 +33,8 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[ObstacleRecord]]
+    family = OBSTACLES
+    kinds = Kinds(OBSTACLES)
 
     @abstractmethod
     def distance(self, obstacle: RecordType, point: Matrix) -> Matrix:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
@@ -17,6 +19,8 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.rods import sizes_along
+from cosserat_casadi.model.sections import SHAPES
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
 from cosserat_casadi.page.ranges import movable, sliders
@@ -83,19 +87,24 @@ def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
 
 def _rod(scene: scenes.Scene, rod: scenes.Rod, index: int) -> dict[str, Any]:
     """Colour, and the size of the sections along the rod: half widths along the section's x and y, m."""
-    section = rod.section
     described: dict[str, Any] = {"colour": rod_colour(index), "carried": rod.base.rod is not None}
-    if isinstance(section, scenes.Rectangle):
-        described |= {"shape": "rectangle", "x": _halves(section.width), "y": _halves(section.height)}
-    elif isinstance(section, scenes.Circle | scenes.Annulus):
-        radius = section.radius if isinstance(section, scenes.Circle) else section.outer_radius
-        radii = _along(radius)
-        described |= {"shape": "circle", "x": radii, "y": radii}
+    described |= _section(rod.section)
     inside = [
         actuator for actuator in scene.actuators if actuator.rod == rod.name and _runs_inside(actuator, described)
     ]
     # What runs inside is seen through the rod.
     return described | {"see_through": bool(inside)}
+
+
+def _section(section: scenes.Section | None) -> dict[str, Any]:
+    """Shape and half widths of the sections that are drawn; nothing of a rod that is drawn by its centre line."""
+    if section is None:
+        return {}
+    half_widths = SHAPES[section.shape].half_widths(sizes_along(section, SECTIONS))
+    if half_widths is None:
+        return {}
+    x, y = (_rounded(known(half_width)) for half_width in half_widths)
+    return {"shape": "rectangle" if section.radius_key is None else "circle", "x": x, "y": y}
 
 
 def _runs_inside(actuator: Any, rod: dict[str, Any]) -> bool:
@@ -104,17 +113,6 @@ def _runs_inside(actuator: Any, rod: dict[str, Any]) -> bool:
         return False
     offset, _ = offset_at(actuator, SECTIONS)
     return bool(np.all(np.abs(known(offset)) < np.array([rod["x"], rod["y"]])))
-
-
-def _along(size: Any) -> list[float]:
-    """A size at all drawn sections: constant, or linear from base to tip."""
-    ends = np.broadcast_to(np.asarray(size, dtype=float), 2)
-    sizes: list[float] = _rounded(ends[0] + (ends[1] - ends[0]) * SECTIONS)
-    return sizes
-
-
-def _halves(size: Any) -> list[float]:
-    return [value / 2 for value in _along(size)]
 
 
 def _actuator(actuator: Any, index: int) -> dict[str, Any]:
@@ -144,10 +142,10 @@ def _colours() -> dict[str, str]:
     return {"body": BODIES, "target": TARGETS, "obstacle": OBSTACLES, **of_arrows}
 
 
-def _target_points(scene: scenes.Scene) -> list[tuple[float, float, float]]:
-    points: list[tuple[float, float, float]] = []
+def _target_points(scene: scenes.Scene) -> list[Sequence[float]]:
+    points: list[Sequence[float]] = []
     for target in scene.targets:
-        points += target.points if isinstance(target, scenes.CurveTarget) else [target.position]
+        points += TARGET_KINDS[target.kind].points(target)
     return points
 
 

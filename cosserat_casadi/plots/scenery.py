@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.constraints.supports import SUPPORT_KINDS
+from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import known
@@ -15,7 +20,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import CurveTarget, Scene
+from cosserat_casadi.scene import Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -28,18 +33,11 @@ AXES_LENGTH = 0.06
 
 CLAMP: dict[str, Any] = {"color": "0.2", "marker": "s", "markersize": 9}
 
-JOINTS: dict[str, dict[str, Any]] = {
-    "fixed": {"marker": "s", "markersize": 7, "color": "0.35"},
-    "spherical": {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"},
-    "revolute": {"marker": "o", "markersize": 7, "color": "0.35"},
-    "prismatic": {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"},
-}
-"""How joints are marked; rods that start on rods are fixed there."""
-
-UNKNOWN_JOINT: dict[str, Any] = {"marker": "X", "markersize": 8, "color": "0.35"}
-
-SUPPORT_MARKERS = {"clamped": "s", "pinned": "^"}
-UNKNOWN_SUPPORT_MARKER = "X"
+FIXED: dict[str, Any] = {"marker": "s", "markersize": 7, "color": "0.35"}
+HINGE: dict[str, Any] = {"marker": "o", "markersize": 7, "color": "0.35"}
+BALL: dict[str, Any] = {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"}
+SLIDE: dict[str, Any] = {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"}
+"""How joints are marked, by what they hold; rods that start on rods are fixed there."""
 
 TARGET_STYLE: dict[str, Any] = {
     "marker": "+",
@@ -64,7 +62,7 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
         if several:
             label = name
         canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
-        base_style = JOINTS["fixed"]
+        base_style = FIXED
         if unloaded.floating_base(name) is None:
             base_style = CLAMP
         canvas.markers(deformed[:1], **base_style)
@@ -84,7 +82,8 @@ def _draw_section_axes(canvas: Canvas, solution: Solution, name: str) -> None:
 def draw_supports(canvas: Canvas, scene: Scene) -> None:
     """Mark the points at which tips are held."""
     for support in scene.supports:
-        marker = SUPPORT_MARKERS.get(support.kind, UNKNOWN_SUPPORT_MARKER)
+        turns = not SUPPORT_KINDS[support.kind].directions(support).rotations.size
+        marker = "^" if turns else "s"
         position = np.array([support.position])
         label = f"{support.kind} tip"
         canvas.markers(position, marker=marker, markersize=10, color="0.2", label=label)
@@ -159,7 +158,15 @@ def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     outline = np.concatenate([corners, corners[:1]])
     canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
     for joint, point in zip(joints, points, strict=True):
-        canvas.markers(point[None], **JOINTS.get(joint.kind, UNKNOWN_JOINT))
+        canvas.markers(point[None], **_joint_style(JOINT_KINDS[joint.kind].directions(joint)))
+
+
+def _joint_style(held: HeldDirections) -> dict[str, Any]:
+    if held.slides:
+        return SLIDE
+    if not held.rotations.size:
+        return BALL
+    return FIXED if held.rotations.shape[1] == 3 else HINGE
 
 
 def body_corners(scene: Scene, body: Any) -> FloatArray:
@@ -189,11 +196,8 @@ def _order_around_mean(points: FloatArray) -> Indices:
 
 def draw_targets(canvas: Canvas, solution: Solution) -> None:
     """Mark the points that an inverse problem wants to reach."""
-    points: list[tuple[float, float, float]] = []
+    points: list[Sequence[float]] = []
     for target in solution.model.scene.targets:
-        if isinstance(target, CurveTarget):
-            points += target.points
-        else:
-            points.append(target.position)
+        points += TARGET_KINDS[target.kind].points(target)
     if points:
         canvas.markers(np.array(points), label="targets", **TARGET_STYLE)

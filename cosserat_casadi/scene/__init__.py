@@ -1,7 +1,7 @@
 """The scene file: records, rules, reading, writing.
 
-A new kind of load, actuator, support or joint is a record that derives from the one of its family, registered with it:
-``@LOADS.register``.
+A new kind is a record that derives from the one of its family, and a class of the mechanics that names this record.
+`cosserat_casadi.model.registry.register` makes both known.
 """
 
 from cosserat_casadi.scene.accuracy import Accuracy

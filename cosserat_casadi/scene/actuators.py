@@ -1,6 +1,6 @@
 """Actuators: tendons and pressure chambers, led along a rod.
 
-A new kind is a record of its own, registered with `ACTUATORS`.
+A kind is a record here and a class in `actuators/` that gives the quantity its effort works on.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Bodies, and what holds tips of rods: supports hold them in the world, joints at bodies.
 
-A new kind of support or joint is a record of its own, registered with `SUPPORTS` or `JOINTS`.
+A kind of support or joint is a record here and a class in `constraints/` that says which directions it holds.
 """
 
 from __future__ import annotations
@@ -197,6 +197,11 @@ class JointRecord(Entry):
     )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
+
+    @property
+    def orientation(self) -> Quadruple:
+        """Orientation of the tip in the axes of the body, w, x, y, z."""
+        return self.quaternion
 
 
 JOINTS: Family[JointRecord] = Family("joints")

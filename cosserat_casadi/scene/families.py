@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record, refusal, restated
 
@@ -116,40 +117,81 @@ def word_of(record: type[Record], key: str = "kind") -> str:
     return str(words[0])
 
 
+class Kinds(dict[str, Any]):
+    """The mechanics of the kinds of one family, or of several whose words differ, by these words.
+
+    To look up a kind that is registered with the scene format alone raises a `SceneError`.
+
+    Attributes:
+        families: the families of the records.
+    """
+
+    def __init__(self, *families: Family[Any]) -> None:
+        super().__init__()
+        self.families = families
+
+    def add(self, family: Family[Any], member: type[Kind]) -> None:
+        """Make a kind known, to the scene format and to the mechanics.
+
+        Args:
+            family: the family that its record joins, if it is not there yet.
+            member: the class of the kind.
+
+        Raises:
+            ValueError: another class has the same word.
+        """
+        known = self.get(member.kind)
+        if known is not None and type(known) is not member:
+            raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
+        if family.records.get(member.kind) is not member.record:
+            family.register(member.record)
+        self[member.kind] = member()
+
+    def __missing__(self, word: str) -> Any:
+        for family in self.families:
+            if word in family.records:
+                raise without_mechanics(family, word)
+        raise KeyError(word)
+
+
+def without_mechanics(family: Family[Any], word: str) -> SceneError:
+    """The refusal of a kind that the scene format knows and the mechanics do not."""
+    problem = f"{family.key} = {word!r} is read, but nothing says what it does: its mechanics are not registered"
+    return SceneError(Problem(family.table, problem, "register the class of its mechanics, as docs/extending.md shows"))
+
+
 class Kind:
     """A class of the mechanics that stands for one record of a family.
 
     Attributes:
         record: the record of the scene.
         kind: its word.
+        family: the family of the record.
+        kinds: the mechanics of that family.
     """
 
     record: ClassVar[Any]
     kind: ClassVar[str]
+    family: ClassVar[Family[Any]]
+    kinds: ClassVar[Kinds]
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         if "record" in vars(cls):
-            cls.kind = word_of(cls.record)
+            cls.kind = word_of(cls.record, cls.family.key)
 
 
-def add_kind(kinds: dict[str, Any], family: Family[Any], member: type[Kind]) -> None:
-    """Make a kind known, to the scene format and to the mechanics.
+KindType = TypeVar("KindType", bound=type[Kind])
 
-    Args:
-        kinds: those that are known by their words, which it joins.
-        family: the family that its record joins, if it is not there yet.
-        member: the class of the kind.
+
+def register(member: KindType) -> KindType:
+    """Make a kind of any family known, to the scene format and to the mechanics; decorates the class of its mechanics.
 
     Raises:
         ValueError: another class has the same word.
     """
-    known = kinds.get(member.kind)
-    if known is not None and type(known) is not member:
-        raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
-    if family.records.get(member.kind) is not member.record:
-        family.register(member.record)
-    kinds[member.kind] = member()
+    member.kinds.add(member.family, member)
+    return member
 
 
 def _referable(record: type[Record]) -> CoreSchema:

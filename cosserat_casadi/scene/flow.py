@@ -10,10 +10,8 @@ from pydantic import Field
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LOADS, LoadRecord
+from cosserat_casadi.scene.rods import is_round
 from cosserat_casadi.scene.values import Names, NotNegative, Positive, Size, Vector
-
-ROUND = ("circle", "annulus")
-"""Shapes of sections that have a diameter."""
 
 
 @LOADS.register
@@ -64,8 +62,8 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
                 continue
             section = rod.get("section")
             # A section with faults of its own may have a diameter.
-            is_round = isinstance(section, Mapping) and section.get("shape", "circle") in ROUND
-            if not is_round:
+            without_shape = isinstance(section, Mapping) and "shape" not in section
+            if not without_shape and not is_round(section):
                 problem = f"missing: rod {shown(rod.get('name'))} has no round section"
                 yield Fault(("diameter",), problem, "give the diameter that the stream sees, m")
                 return

@@ -1,6 +1,6 @@
 """Loads: gravity, and wrenches on sections, along rods and on bodies.
 
-A new kind is a record of its own, registered with `LOADS`; load_kinds.py lists those that ship.
+A kind is a record here, or beside, and a class in `loads/`; load_kinds.py lists those that ship.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Obstacles: what rods may not enter, and lumens, which they may not leave; without friction.
 
-A new kind is a record of its own, registered with `OBSTACLES`.
+A kind is a record here and a class in `obstacles/` that says how far a point is from its surface.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pydantic import Field
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.rods import admitted_strains
+from cosserat_casadi.scene.rods import admitted_strains, is_round
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
     SEVERAL,
@@ -164,7 +164,7 @@ def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
 def _not_round(name: str, rod: Table) -> Iterator[Fault]:
     """A section that has no radius to keep."""
     section = rod.get("section")
-    if isinstance(section, Mapping) and section.get("shape") not in ("circle", "annulus"):
+    if isinstance(section, Mapping) and not is_round(section):
         problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
         yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
 

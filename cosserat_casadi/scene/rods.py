@@ -83,7 +83,15 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
 
 
 class SectionRecord(Record):
-    """A cross-section of a rod."""
+    """A cross-section of a rod.
+
+    A shape is a record here and a class in model/sections.py that says what its area and second moments are.
+
+    Attributes:
+        radius_key: the key of the radius by which a round section touches and meets a stream; None of others.
+    """
+
+    radius_key: ClassVar[str | None] = None
 
     shear_correction: Positive = Field(
         1.0, description="k in the shear stiffness k G A, without unit; 1 as in report (1.21)"
@@ -102,6 +110,8 @@ class Circle(SectionRecord):
 section = { shape = "circle", radius = { base = 2.0e-3, tip = 1.0e-3 } }     # tapered
 """
 
+    radius_key: ClassVar[str] = "radius"
+
     shape: Literal["circle"] = Field(description="solid circle")
     radius: Size = Field(description="radius, m; a list of two goes linearly from base to tip")
 
@@ -113,6 +123,8 @@ class Annulus(SectionRecord):
     example: ClassVar[str] = """\
 section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
 """
+
+    radius_key: ClassVar[str] = "outer_radius"
 
     shape: Literal["annulus"] = Field(description="circular tube")
     outer_radius: Size = Field(description="outer radius, m; a list of two goes linearly from base to tip")
@@ -347,6 +359,12 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         if held and admitted <= IN_PLANE:
             problem = f"{shown(name)} bends in a plane and its tip is held"
             yield Fault((), problem, "admit torsion, or its base could leave the plane")
+
+
+def is_round(section: Any) -> bool:
+    """Whether the table of a section has the shape of a round one."""
+    record = SECTIONS.record_of(section) if isinstance(section, Mapping) else None
+    return record is not None and record.radius_key is not None
 
 
 def _elasticity_given_once(rod: Table) -> Iterator[Fault]:

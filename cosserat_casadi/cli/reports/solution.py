@@ -19,7 +19,7 @@ from cosserat_casadi.cli.reports.format import (
     title_line,
 )
 from cosserat_casadi.control.inverse_result import Inverse
-from cosserat_casadi.control.target_errors import Gap
+from cosserat_casadi.control.targets import Gap
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.scene.spelling import counted

@@ -1,0 +1,68 @@
+"""What holds the tip of a rod: a support in the world, or a joint at a body.
+
+A kind differs from others in the directions that it holds, and in nothing else. A member is one class: it gives
+:meth:`TipHolder.held`, and everything follows from these directions: multipliers, wrenches, what remains of them where
+rods stay in a plane, whether the tip slides, and how a figure marks it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any, Generic, TypeVar
+
+from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.maths.numbers import Scalar, as_vector, known
+from cosserat_casadi.maths.pose import IDENTITY, NumericPose
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, JointRecord, SupportRecord
+from cosserat_casadi.scene.families import Kind, Kinds
+
+RecordType = TypeVar("RecordType", bound=JointRecord | SupportRecord)
+
+
+class TipHolder(Kind, ABC, Generic[RecordType]):
+    """One kind of support or joint. The methods take its frozen record of the scene."""
+
+    @abstractmethod
+    def held(self, record: RecordType, rotation: FloatArray) -> HeldDirections:
+        """Directions along and about which the tip is held.
+
+        Directions in the axes of the tip turn with the place: ``HeldDirections(…, turn_with_place=True)``.
+
+        Args:
+            record: the record of the scene.
+            rotation: turns the axes of the tip, as the record orients it, into those of the world or of the body,
+                shape (3, 3); the identity where the record leaves the orientation free.
+        """
+
+    def axis(self, record: RecordType) -> Sequence[Scalar] | None:
+        """Axis, in the world or in the body, that the held directions turn with where a parameter moves it."""
+        axis: Sequence[Scalar] | None = getattr(record, "axis", None)
+        return axis
+
+    def directions(self, record: RecordType) -> HeldDirections:
+        """Directions that are held at the place of the record."""
+        return self.held(record, place_of(record).rotation)
+
+
+class Support(TipHolder[RecordType]):
+    """One kind of support."""
+
+    family = SUPPORTS
+    kinds = Kinds(SUPPORTS)
+
+
+class Joint(TipHolder[RecordType]):
+    """One kind of joint."""
+
+    family = JOINTS
+    kinds = Kinds(JOINTS)
+
+
+def place_of(record: JointRecord | SupportRecord) -> NumericPose:
+    """Pose of the tip in the world or in the body; without rotation where its record leaves that free."""
+    orientation: Any = record.orientation
+    if orientation is None:
+        orientation = IDENTITY.quaternion
+    return NumericPose(known(as_vector(record.position)), known(as_vector(orientation)))

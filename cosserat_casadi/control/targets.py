@@ -1,0 +1,231 @@
+"""Kinds of targets: what is to be where, how far a state is from it, and how a figure marks it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.pose import POSE_SIZE
+from cosserat_casadi.maths.pose_change import rotation_angles
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.families import Kind, Kinds, register
+from cosserat_casadi.scene.targets import TARGETS, FrameTarget, TargetRecord
+
+RecordType = TypeVar("RecordType", bound=TargetRecord)
+FrameType = TypeVar("FrameType", bound=FrameTarget)
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Error of one target: how far it is missed.
+
+    Attributes:
+        what: the target in words.
+        position: distance in m, of a curve the largest over its points.
+        angle: angle between the target's orientation and the actual one, rad; None where the orientation is free.
+        position_error: estimated error of the discrete model that the distance was measured on, m; None where it was
+            not estimated.
+        angle_error: likewise of the angle, rad.
+    """
+
+    what: str
+    position: float
+    angle: float | None
+    position_error: float | None = None
+    angle_error: float | None = None
+
+    def reached(self, length: float, tolerance: float) -> bool:
+        """Whether the discrete model meets the target: position relative to a length, and angle, to a tolerance."""
+        angle_reached = self.angle is None or self.angle <= tolerance
+        return angle_reached and self.position <= tolerance * length
+
+    def within(self, length: float, tolerance: float) -> bool:
+        """Whether the target is met: the gap and, where it was estimated, the error of the model that it is of."""
+        error_within = self.position_error is None or self.position_error <= tolerance * length
+        return error_within and self.reached(length, tolerance)
+
+
+def length_of(model: Model, target: TargetRecord) -> float:
+    """Length that a target's distance is measured by, m: that of its rod, for a body that of the longest rod."""
+    lengths = {rod.name: rod.length for rod in model.scene.rods}
+    rod = getattr(target, "rod", None)
+    if rod is None:
+        return max(lengths.values())
+    return lengths[rod]
+
+
+class Target(Kind, ABC, Generic[RecordType]):
+    """One kind of target. The methods take ``target``, the frozen record of the scene."""
+
+    family = TARGETS
+    kinds = Kinds(TARGETS)
+
+    def wanted(self, target: RecordType) -> FloatArray:
+        """Position and quaternion that the target asks for, which a table of targets may vary; zeros by default."""
+        return np.zeros(POSE_SIZE)
+
+    @abstractmethod
+    def error(self, target: RecordType, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+        """Errors without unit and without the weight of the target, k×1; zero where it is met.
+
+        Positions count relative to :func:`length_of`, orientations by the chord 2 sin(θ/2) of their angle θ.
+
+        Args:
+            target: the record; what :meth:`wanted` gives of it is not read.
+            model: the model.
+            wanted: as :meth:`wanted` gives it, 7×1.
+            x: unknowns.
+            inputs: stacked inputs.
+        """
+
+    @abstractmethod
+    def gap(self, target: RecordType, solution: Solution) -> Gap:
+        """How far a solution is from the target."""
+
+    def model_error(self, target: RecordType, solution: Solution) -> float | None:
+        """Estimated error of a solution where the target is: position relative to the length of the rod, and rad.
+
+        Returns:
+            None where it was not estimated; by default that of the shapes of all rods.
+        """
+        return solution.shape_error_estimate
+
+    def points(self, target: RecordType) -> Sequence[Sequence[float]]:
+        """Points that a figure marks, world axes, m; none by default."""
+        return []
+
+
+TARGET_KINDS = Target.kinds
+"""Targets by the word of the scene format."""
+
+
+class _OfFrame(Target[FrameType]):
+    """Where one section of a rod, or one body, is to be."""
+
+    def wanted(self, target: Any) -> FloatArray:
+        """Its position, and zeros for the orientation."""
+        return np.array([*target.position, 0.0, 0.0, 0.0, 0.0])
+
+    def error(self, target: Any, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+        """Distance over the length, 3×1."""
+        position, _ = self._pose(target, model, x, inputs)
+        return (position - wanted[:3]) / length_of(model, target)
+
+    def gap(self, target: Any, solution: Solution) -> Gap:
+        """The distance."""
+        what, position, _ = self._reached(target, solution)
+        return Gap(what, float(np.linalg.norm(position - np.array(target.position))), None)
+
+    def model_error(self, target: Any, solution: Solution) -> float | None:
+        """That of the tips, of which a body is held; of a section in between that of the shapes."""
+        if target.rod is not None and target.at != 1.0:
+            return solution.shape_error_estimate
+        return solution.error_estimate
+
+    def points(self, target: Any) -> Sequence[Sequence[float]]:
+        """Its position."""
+        return [target.position]
+
+    def _pose(self, target: Any, model: Model, x: Matrix, inputs: Matrix) -> list[Matrix]:
+        """Position and quaternion of what the target is for."""
+        if target.rod is None:
+            outputs = model.body[str(target.body)](x, inputs)
+        elif target.at == 1.0:
+            # The tip needs no interpolation.
+            outputs = model.tip[target.rod](x, inputs)
+        else:
+            outputs = model.shape[target.rod](x, inputs, target.at)
+        return list(outputs[:2])
+
+    def _reached(self, target: Any, solution: Solution) -> tuple[str, FloatArray, FloatArray]:
+        """What the target is for in words, with its position, shape (3,), and quaternion, shape (1, 4)."""
+        if target.rod is None:
+            what = f"body {target.body}"
+            pose = solution.body(target.body)
+        else:
+            section = "tip" if target.at == 1.0 else f"section X = {target.at:g}"
+            what = f"{section} of {target.rod}"
+            pose = solution.pose(np.array([target.at]), target.rod)
+        return what, pose.position[0], pose.quaternion
+
+
+@final
+@register
+class PositionOfFrame(_OfFrame[scenes.PositionTarget]):
+    """A position; the orientation is free."""
+
+    record = scenes.PositionTarget
+
+
+@final
+@register
+class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
+    """A position and an orientation."""
+
+    record = scenes.PoseTarget
+
+    def wanted(self, target: scenes.PoseTarget) -> FloatArray:
+        """Its position and quaternion."""
+        return np.array([*target.position, *target.quaternion])
+
+    def error(self, target: scenes.PoseTarget, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+        """Distance over the length, and the chord of the angle along its axis, 6×1."""
+        position, quaternion = self._pose(target, model, x, inputs)
+        position_error = (position - wanted[:3]) / length_of(model, target)
+        return ca.vertcat(position_error, 2 * _half_rotation(wanted[3:], quaternion))
+
+    def gap(self, target: scenes.PoseTarget, solution: Solution) -> Gap:
+        """The distance and the angle."""
+        what, position, quaternion = self._reached(target, solution)
+        distance = float(np.linalg.norm(position - np.array(target.position)))
+        angles = rotation_angles(np.array([target.quaternion]), quaternion)
+        return Gap(what, distance, float(angles[0]))
+
+
+@final
+@register
+class PointsAlongRod(Target[scenes.CurveTarget]):
+    """Points along a rod, which count together as much as one point."""
+
+    record = scenes.CurveTarget
+
+    def error(self, target: scenes.CurveTarget, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+        """Differences over the length and over the root of their number, 3k×1."""
+        shape = model.shape[target.rod]
+        differences = []
+        for X, point in zip(target.at, target.points, strict=True):
+            position = shape(x, inputs, X)[0]
+            differences.append(position - ca.DM(point))
+        stacked: Matrix = ca.vertcat(*differences)
+        scaled: Matrix = stacked / (length_of(model, target) * np.sqrt(len(target.at)))
+        return scaled
+
+    def gap(self, target: scenes.CurveTarget, solution: Solution) -> Gap:
+        """The largest distance."""
+        pose = solution.pose(np.array(target.at), target.rod)
+        differences = pose.position - np.array(target.points)
+        distances = np.linalg.norm(differences, axis=1)
+        what = f"{len(target.at)} points along {target.rod}"
+        return Gap(what, float(distances.max()), None)
+
+    def points(self, target: scenes.CurveTarget) -> Sequence[Sequence[float]]:
+        """Its points."""
+        return target.points
+
+
+def _half_rotation(wanted: Matrix, quaternion: Matrix) -> Matrix:
+    """Vector part of the rotation from the wanted orientation to the actual one: sin(θ/2) times its axis."""
+    conjugate = quaternion_conjugate(ca.MX(wanted))
+    # A planar rod leaves entries of its quaternion structurally zero.
+    actual = ca.densify(ca.MX(quaternion))
+    difference = quaternion_product(conjugate, actual)
+    return difference[1:]
