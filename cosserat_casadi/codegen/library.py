@@ -35,6 +35,7 @@ from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
@@ -198,6 +199,7 @@ def _words(
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
+        "judged_paths": _judged_paths(model, names),
         **status_words(names),
         **input_words(model, names),
         **result_struct_words(model, names),
@@ -244,6 +246,14 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "max_reuses": newton.MAX_REUSES,
         "stack_kb": f"{np.ceil(stack_bytes(generated, without_workspace) / 500) / 2:g}",
     }
+
+
+def _judged_paths(model: Model, names: Names) -> str:
+    """What looks at the paths of tendons where a solve has ended; nothing of it where no strain changes one."""
+    if model.path_stretch is None:
+        return resource("templates", "no_paths.c.in")
+    words = {"name": names.name, "paths": model.path_stretch.size1_out(0), "vanished": VANISHED}
+    return render("path_stretch.c.in", words)
 
 
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:

@@ -32,6 +32,10 @@ class Outcome(Enum):
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
         "and forces that only push."
     )
+    PATH_VANISHED = (
+        "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond "
+        "that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis."
+    )
 
     @property
     def label(self) -> str:

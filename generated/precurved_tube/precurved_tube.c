@@ -72,6 +72,14 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* No tendon has a path that the strains change. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  (void)x;
+  (void)inputs;
+  (void)work;
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
@@ -165,6 +173,8 @@ const char *precurved_tube_status_text(precurved_tube_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case PRECURVED_TUBE_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case PRECURVED_TUBE_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -187,6 +197,8 @@ const char *precurved_tube_status_label(precurved_tube_status status) {
       return "not_in_equilibrium";
     case PRECURVED_TUBE_LOST_TRACK:
       return "lost_track";
+    case PRECURVED_TUBE_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

@@ -72,6 +72,19 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* The end of a solve in view of the tendons: their paths have length left where the rods were followed to. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  real stretches[4];
+  ARGUMENTS(tendon_robot_k_path_stretch, x, inputs);
+  RESULTS(stretches);
+  if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
+  CALL(tendon_robot_k_path_stretch);
+  for (int i = 0; i < 4; i++) {
+    if (stretches[i] <= (real)0.001) return SOLVER_PATH_VANISHED;
+  }
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
@@ -205,6 +218,8 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case TENDON_ROBOT_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case TENDON_ROBOT_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -227,6 +242,8 @@ const char *tendon_robot_status_label(tendon_robot_status status) {
       return "not_in_equilibrium";
     case TENDON_ROBOT_LOST_TRACK:
       return "lost_track";
+    case TENDON_ROBOT_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

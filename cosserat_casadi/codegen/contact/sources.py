@@ -22,6 +22,7 @@ from cosserat_casadi.codegen.status import contact_status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
 
@@ -172,6 +173,7 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "stride": passage.STRIDE,
         "most_looks": passage.MOST_LOOKS,
         "deep": passage.DEEP,
+        "vanished": VANISHED,
         "fastest": FASTEST,
         "closest": CLOSEST,
         "beside_end": BESIDE_END,

@@ -138,6 +138,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
     return {
         **basics,
         **dense_words(render, basics),
+        "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **tube_status_words(names),
         **words_of_inputs(input_entries(robot), names),
