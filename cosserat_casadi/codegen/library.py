@@ -46,6 +46,9 @@ SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singula
 TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 """Budget of a turn of a control loop where the caller names none; turns that go well take two to five iterations."""
 
+SETTLING_ITERATIONS = 10
+"""Most Newton steps from a point on a path, found as exactly as the path needs, to a solution; two are usual."""
+
 SHARED = (
     "solver.h",
     "solver_newton.c",
@@ -53,6 +56,7 @@ SHARED = (
     "solver.c",
     "solver_sensitivity.c",
     "solver_track.c",
+    "solver_recover.c",
 )
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
@@ -69,6 +73,7 @@ ROLES = {
     "solver_path.c": "growing loads, and one input after another",
     "solver_sensitivity.c": "derivatives of a solution",
     "solver_track.c": "a turn of a control loop",
+    "solver_recover.c": "a turn of its way back",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
     "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
@@ -291,6 +296,8 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
         "default_iterations": TRACK_ITERATIONS,
         "default_continuation_steps": TRACK_STEPS,
+        "settling_iterations": SETTLING_ITERATIONS,
+        "settling_residuals": SETTLING_ITERATIONS + 2,
         **SINGLE,
     }
 

@@ -97,7 +97,7 @@ typedef struct {
   follower_reissner_real load_factor;     /* share of the load that x carries; 1 where converged */
 } follower_reissner_info;
 
-/* Budget of one call of follower_reissner_track. */
+/* Budget of one call of follower_reissner_track, or of follower_reissner_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -138,6 +138,7 @@ typedef struct {
   follower_reissner_real trial_residual[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real predicted[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real correction[FOLLOWER_REISSNER_UNKNOWNS];
+  follower_reissner_real reached[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real d_x_d_inputs[FOLLOWER_REISSNER_UNKNOWNS * 6];
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real kernel_reals[1576];
@@ -148,10 +149,11 @@ typedef struct {
 #define FOLLOWER_REISSNER_WORKSPACE_SIZE sizeof(follower_reissner_workspace)
 int follower_reissner_workspace_size(void);
 
-/* What follower_reissner_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What follower_reissner_track and follower_reissner_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   follower_reissner_jacobian_factors jacobian;
   follower_reissner_real inputs[6];
+  follower_reissner_real step;
   int has_inputs;
   int has_jacobian;
 } follower_reissner_memory;
@@ -191,9 +193,12 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   follower_reissner_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -201,6 +206,18 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
 follower_reissner_status follower_reissner_track(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
                              const follower_reissner_options *options, follower_reissner_real *d_x_d_inputs,
                              follower_reissner_real *d_poses_d_inputs, follower_reissner_workspace *workspace, follower_reissner_info *info);
+
+/* One turn of the way back, where follower_reissner_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and follower_reissner_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and follower_reissner_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+follower_reissner_status follower_reissner_recover(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
+                               const follower_reissner_options *options, follower_reissner_workspace *workspace, follower_reissner_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void follower_reissner_evaluate(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_results *results);

@@ -86,6 +86,7 @@ static solver_status with_paths(solver_status end, const real *x, const real *in
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP

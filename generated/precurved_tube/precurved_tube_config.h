@@ -14,6 +14,7 @@
 #define solver_follow precurved_tube_follow
 #define solver_solve_sensitivity precurved_tube_solve_sensitivity
 #define solver_track precurved_tube_track
+#define solver_recover precurved_tube_recover
 #define solver_residual precurved_tube_residual
 #define solver_residual_jacobian precurved_tube_residual_jacobian
 #define solver_input_jacobian precurved_tube_input_jacobian
@@ -35,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 10
 
 #ifdef PRECURVED_TUBE_SINGLE
 #define SOLVER_SINGLE

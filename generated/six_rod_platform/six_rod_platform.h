@@ -164,7 +164,7 @@ typedef struct {
   six_rod_platform_real load_factor;     /* share of the load that x carries; 1 where converged */
 } six_rod_platform_info;
 
-/* Budget of one call of six_rod_platform_track. */
+/* Budget of one call of six_rod_platform_track, or of six_rod_platform_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -205,6 +205,7 @@ typedef struct {
   six_rod_platform_real trial_residual[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real predicted[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real correction[SIX_ROD_PLATFORM_UNKNOWNS];
+  six_rod_platform_real reached[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real d_x_d_inputs[SIX_ROD_PLATFORM_UNKNOWNS * 12];
   six_rod_platform_real d_pose_d_x[7 * SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real entries[2737];
@@ -221,10 +222,11 @@ typedef struct {
 #define SIX_ROD_PLATFORM_WORKSPACE_SIZE sizeof(six_rod_platform_workspace)
 int six_rod_platform_workspace_size(void);
 
-/* What six_rod_platform_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What six_rod_platform_track and six_rod_platform_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   six_rod_platform_jacobian_factors jacobian;
   six_rod_platform_real inputs[12];
+  six_rod_platform_real step;
   int has_inputs;
   int has_jacobian;
 } six_rod_platform_memory;
@@ -265,9 +267,12 @@ six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platfor
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   six_rod_platform_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -275,6 +280,18 @@ six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platfor
 six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
                              const six_rod_platform_options *options, six_rod_platform_real *d_x_d_inputs,
                              six_rod_platform_real *d_poses_d_inputs, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
+
+/* One turn of the way back, where six_rod_platform_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and six_rod_platform_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and six_rod_platform_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+six_rod_platform_status six_rod_platform_recover(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
+                               const six_rod_platform_options *options, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void six_rod_platform_evaluate(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_results *results);

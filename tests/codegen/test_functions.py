@@ -201,4 +201,4 @@ def test_every_status_has_its_own_sentence(library: Library) -> None:
     sentences = [text(status).decode() for status in range(len(OUTCOMES))]
     assert len(set(sentences)) == len(OUTCOMES)
     assert sentences == [outcome.value for outcome in OUTCOMES]
-    assert text(8) == text(-1) == b"No such status."
+    assert text(len(OUTCOMES)) == text(-1) == b"No such status."

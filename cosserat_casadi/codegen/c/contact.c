@@ -163,14 +163,18 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
   const contact_options chosen = options ? *options : DEFAULT_OPTIONS;
   contact_info found = no_result();
   contact_status status = CONTACT_NOT_FINITE;
+  contact_state reached = *state;
   if (all_finite(inputs, INPUTS)) {
     recall(memory, work);
-    status = is_known(state) ? follow(inputs, state, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
+    status = is_known(state) ? follow(inputs, &reached, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
+  }
+  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, &reached, d_poses_d_inputs, work);
+  if (status == CONTACT_CONVERGED) {
+    *state = reached;
+    remember(memory, work);
   }
   found.status = status;
   if (info) *info = found;
-  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, state, d_poses_d_inputs, work);
-  remember(memory, work);
   return status;
 }
 

@@ -51,7 +51,10 @@ LIMITS = replace(ContinuationSettings(), longest=0.5)
 OWN = ("tubes_sensitivity.c", "tubes_turn.c")
 """Files of the folder ``c`` for tubes alone."""
 
-VERBATIM = (*(file for file in SHARED if file != "solver_sensitivity.c"), "linear_dense.c", *OWN)
+OTHERS = ("solver_sensitivity.c", "solver_recover.c")
+"""Files of the solver that tubes do without."""
+
+VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 KIND = "tubes"
