@@ -32,6 +32,7 @@ from cosserat_casadi.codegen.structs import (
     result_struct_words,
 )
 from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.model.build import Model
@@ -42,12 +43,6 @@ from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSetting
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
-
-TRACK_ITERATIONS, TRACK_STEPS = 40, 20
-"""Budget of a turn of a control loop where the caller names none; turns that go well take two to five iterations."""
-
-SETTLING_ITERATIONS = 10
-"""Most Newton steps from a point on a path, found as exactly as the path needs, to a solution; two are usual."""
 
 SHARED = (
     "solver.h",
@@ -116,6 +111,7 @@ def library_sources(
     stability: bool = False,
     motion: MotionInC | None = None,
     rows: InLanes | None = None,
+    budget: TurnBudget = ALWAYS,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -129,8 +125,14 @@ def library_sources(
         stability: whether it holds the stability of equilibria.
         motion: the equations of motion, where the folder has them.
         rows: what solves batches side by side, where the folder has it.
+        budget: what a turn of a control loop may take by default.
     """
     words = _words(model, names, parts, generated, error_estimate, motion, rows)
+    words |= {
+        "default_iterations": budget.iterations,
+        "default_continuation_steps": budget.steps,
+        "budget_note": budget.note,
+    }
     held = {
         "derivatives": derivatives,
         "stability": stability,
@@ -294,8 +296,8 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
-        "default_iterations": TRACK_ITERATIONS,
-        "default_continuation_steps": TRACK_STEPS,
+        "default_iterations": ALWAYS.iterations,
+        "default_continuation_steps": ALWAYS.steps,
         "settling_iterations": SETTLING_ITERATIONS,
         "settling_residuals": SETTLING_ITERATIONS + 2,
         **SINGLE,

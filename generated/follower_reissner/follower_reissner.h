@@ -214,7 +214,7 @@ follower_reissner_status follower_reissner_track(const follower_reissner_real *i
    there, there may be a limit point or a buckling load; other inputs may, and follower_reissner_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 follower_reissner_status follower_reissner_recover(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
                                const follower_reissner_options *options, follower_reissner_workspace *workspace, follower_reissner_info *info);

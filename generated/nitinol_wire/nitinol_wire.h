@@ -211,7 +211,7 @@ nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_
    there, there may be a limit point or a buckling load; other inputs may, and nitinol_wire_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 nitinol_wire_status nitinol_wire_recover(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_memory *memory,
                                const nitinol_wire_options *options, nitinol_wire_workspace *workspace, nitinol_wire_info *info);

@@ -209,7 +209,7 @@ planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_s
    there, there may be a limit point or a buckling load; other inputs may, and planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 planar_strip_status planar_strip_recover(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_memory *memory,
                                const planar_strip_options *options, planar_strip_workspace *workspace, planar_strip_info *info);

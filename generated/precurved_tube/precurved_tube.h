@@ -211,7 +211,7 @@ precurved_tube_status precurved_tube_track(const precurved_tube_real *inputs, pr
    there, there may be a limit point or a buckling load; other inputs may, and precurved_tube_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 precurved_tube_status precurved_tube_recover(const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_memory *memory,
                                const precurved_tube_options *options, precurved_tube_workspace *workspace, precurved_tube_info *info);

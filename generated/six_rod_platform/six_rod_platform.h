@@ -288,7 +288,7 @@ six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inpu
    there, there may be a limit point or a buckling load; other inputs may, and six_rod_platform_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 six_rod_platform_status six_rod_platform_recover(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
                                const six_rod_platform_options *options, six_rod_platform_workspace *workspace, six_rod_platform_info *info);

@@ -231,7 +231,7 @@ tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_r
    there, there may be a limit point or a buckling load; other inputs may, and tendon_robot_solve from all zeros. NOT_IN_EQUILIBRIUM:
    nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 12 residuals, m + c + 12 Jacobians and c + 1 rates, and
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
 tendon_robot_status tendon_robot_recover(const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_memory *memory,
                                const tendon_robot_options *options, tendon_robot_workspace *workspace, tendon_robot_info *info);

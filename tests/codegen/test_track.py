@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import Outcome
-from cosserat_casadi.codegen.library import SETTLING_ITERATIONS, TRACK_ITERATIONS, TRACK_STEPS
 from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS
 from tests.codegen.libraries import QUICK, Exported, Recipe, run
 from tests.codegen.test_hard_cases import deep_arch
 from tests.scenes import cable_lengths
@@ -53,8 +53,8 @@ WRAPPED = [f"-Wl,--wrap=cables_k_{kernel}" for kernel in ("residual", "jacobian"
 def cables(
     made: Exported,
     inputs: np.ndarray,
-    iterations: int = TRACK_ITERATIONS,
-    steps: int = TRACK_STEPS,
+    iterations: int = ALWAYS.iterations,
+    steps: int = ALWAYS.steps,
     *,
     derivatives: bool = True,
 ) -> dict[str, Any]:
@@ -170,7 +170,7 @@ def recovered(made: Exported, inputs: np.ndarray, iterations: int, steps: int) -
     return ends
 
 
-@pytest.mark.parametrize("budget", [(6, 2), (12, 6), (TRACK_ITERATIONS, TRACK_STEPS)])
+@pytest.mark.parametrize("budget", [(6, 2), (12, 6), (ALWAYS.iterations, ALWAYS.steps)])
 def test_a_lost_track_is_found_again_while_inputs_move_on(library: Library, budget: tuple[int, int]) -> None:
     """Lengths jump by 3 cm, and go on moving: each turn comes nearer, and in the end the loop goes on."""
     near = cable_lengths(2e-4, 100)
