@@ -35,7 +35,9 @@ from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
@@ -305,8 +307,21 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
 
 
 def input_words(model: Model, names: Names) -> dict[str, str]:
-    """What the templates say of the inputs of a model: macros, struct, table, default values."""
-    return words_of_inputs(input_entries(model), names)
+    """What the templates say of the inputs of a model: macros, struct, ranges, table, default values."""
+    words = words_of_inputs(input_entries(model), names)
+    if model.inputs.size:
+        lower, upper = ranges_of_inputs(model.scene, model.inputs)
+        ends = {"lower": _ends(lower, names), "upper": _ends(upper, names)}
+        named = {"name": names.name, "MACRO": names.macro, **ends}
+        words["inputs_struct"] += render("ranges.h.in", named)
+        words["inputs_functions"] += render("ranges.c.in", named)
+    return words
+
+
+def _ends(values: FloatArray, names: Names) -> str:
+    """Ends of ranges as an initialiser of an array."""
+    infinite = {np.inf: "HUGE_VAL", -np.inf: "-HUGE_VAL"}
+    return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
 
 
 def words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:
