@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cas
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
+from cosserat_casadi.codegen.kernels import QUIET, kernel_sources, kernels, sources
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
@@ -228,4 +228,5 @@ def _side_by_side(model: Model, names: Names) -> InLanes:
 def _derivative_source(model: Model, names: Names) -> dict[str, str]:
     file = f"{names.name}_derivatives.c"
     # casadi.external expects the integers that CasADi itself was built with.
-    return {file: sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]}
+    written = sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]
+    return {file: QUIET + written}
