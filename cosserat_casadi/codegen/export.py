@@ -29,6 +29,7 @@ from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
@@ -168,7 +169,7 @@ def folder_files(
         **by_hand,
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        "scene.toml": scene_text(model.scene),
+        "scene.toml": scene_text(with_discretisation(model.scene, model.discretisation)),
     }
     if derivatives:
         files |= _derivative_source(model, names)

@@ -97,7 +97,7 @@ ROLES = {
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
     "CMakeLists.txt": "library, demo, install, `find_package`",
     "manifest.json": "the same facts as data",
-    "scene.toml": "the scene all of this was made from",
+    "scene.toml": "the scene all of this was made from, with its modes and nodes",
 }
 """What each file is for."""
 

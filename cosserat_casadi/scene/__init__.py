@@ -4,7 +4,7 @@ A new kind of load, actuator, support or joint is a record that derives from the
 ``@LOADS.register``.
 """
 
-from cosserat_casadi.scene.accuracy import Accuracy
+from cosserat_casadi.scene.accuracy import Accuracy, RodDiscretisation
 from cosserat_casadi.scene.actuators import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
 from cosserat_casadi.scene.constraints import (
     JOINTS,
@@ -118,6 +118,7 @@ __all__ = [
     "Rectangle",
     "RevoluteJoint",
     "Rod",
+    "RodDiscretisation",
     "Scene",
     "Section",
     "Simulation",

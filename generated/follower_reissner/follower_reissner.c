@@ -150,6 +150,30 @@ void follower_reissner_unpack(const follower_reissner_real *inputs, follower_rei
   memcpy(named->thruster_moment, inputs + FOLLOWER_REISSNER_INPUT_THRUSTER_MOMENT, sizeof named->thruster_moment);
 }
 
+static const follower_reissner_real LEAST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const follower_reissner_real LARGEST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int follower_reissner_in_range(const follower_reissner_real *inputs) {
+  for (int i = 0; i < FOLLOWER_REISSNER_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int follower_reissner_clamp(follower_reissner_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < FOLLOWER_REISSNER_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void follower_reissner_evaluate(const real *x, const real *inputs, follower_reissner_results *named) {
   follower_reissner_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }

@@ -49,6 +49,13 @@ void follower_reissner_pack(const follower_reissner_inputs *named, follower_reis
 void follower_reissner_unpack(const follower_reissner_real *inputs, follower_reissner_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int follower_reissner_in_range(const follower_reissner_real *inputs);
+int follower_reissner_clamp(follower_reissner_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   follower_reissner_real position[3];

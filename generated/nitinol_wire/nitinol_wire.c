@@ -149,6 +149,30 @@ void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *n
   memcpy(named->push_force, inputs + NITINOL_WIRE_INPUT_PUSH_FORCE, sizeof named->push_force);
 }
 
+static const nitinol_wire_real LEAST_INPUTS[NITINOL_WIRE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const nitinol_wire_real LARGEST_INPUTS[NITINOL_WIRE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int nitinol_wire_in_range(const nitinol_wire_real *inputs) {
+  for (int i = 0; i < NITINOL_WIRE_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int nitinol_wire_clamp(nitinol_wire_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < NITINOL_WIRE_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void nitinol_wire_evaluate(const real *x, const real *inputs, nitinol_wire_results *named) {
   nitinol_wire_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }

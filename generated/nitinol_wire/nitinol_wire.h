@@ -49,6 +49,13 @@ void nitinol_wire_pack(const nitinol_wire_inputs *named, nitinol_wire_real *inpu
 void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int nitinol_wire_in_range(const nitinol_wire_real *inputs);
+int nitinol_wire_clamp(nitinol_wire_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   nitinol_wire_real position[3];

@@ -148,6 +148,30 @@ void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *n
   memcpy(named->push_moment, inputs + PLANAR_STRIP_INPUT_PUSH_MOMENT, sizeof named->push_moment);
 }
 
+static const planar_strip_real LEAST_INPUTS[PLANAR_STRIP_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const planar_strip_real LARGEST_INPUTS[PLANAR_STRIP_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int planar_strip_in_range(const planar_strip_real *inputs) {
+  for (int i = 0; i < PLANAR_STRIP_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int planar_strip_clamp(planar_strip_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < PLANAR_STRIP_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void planar_strip_evaluate(const real *x, const real *inputs, planar_strip_results *named) {
   planar_strip_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }

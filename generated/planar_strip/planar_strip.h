@@ -49,6 +49,13 @@ void planar_strip_pack(const planar_strip_inputs *named, planar_strip_real *inpu
 void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int planar_strip_in_range(const planar_strip_real *inputs);
+int planar_strip_clamp(planar_strip_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   planar_strip_real position[3];

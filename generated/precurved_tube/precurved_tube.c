@@ -150,6 +150,30 @@ void precurved_tube_unpack(const precurved_tube_real *inputs, precurved_tube_inp
   memcpy(named->tissue_moment, inputs + PRECURVED_TUBE_INPUT_TISSUE_MOMENT, sizeof named->tissue_moment);
 }
 
+static const precurved_tube_real LEAST_INPUTS[PRECURVED_TUBE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const precurved_tube_real LARGEST_INPUTS[PRECURVED_TUBE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int precurved_tube_in_range(const precurved_tube_real *inputs) {
+  for (int i = 0; i < PRECURVED_TUBE_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int precurved_tube_clamp(precurved_tube_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < PRECURVED_TUBE_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void precurved_tube_evaluate(const real *x, const real *inputs, precurved_tube_results *named) {
   precurved_tube_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }

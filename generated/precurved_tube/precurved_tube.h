@@ -49,6 +49,13 @@ void precurved_tube_pack(const precurved_tube_inputs *named, precurved_tube_real
 void precurved_tube_unpack(const precurved_tube_real *inputs, precurved_tube_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int precurved_tube_in_range(const precurved_tube_real *inputs);
+int precurved_tube_clamp(precurved_tube_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   precurved_tube_real position[3];

@@ -67,6 +67,13 @@ void six_rod_platform_pack(const six_rod_platform_inputs *named, six_rod_platfor
 void six_rod_platform_unpack(const six_rod_platform_real *inputs, six_rod_platform_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int six_rod_platform_in_range(const six_rod_platform_real *inputs);
+int six_rod_platform_clamp(six_rod_platform_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   six_rod_platform_real position[3];

@@ -191,6 +191,30 @@ void tendon_robot_unpack(const tendon_robot_real *inputs, tendon_robot_inputs *n
   memcpy(named->upper_south_tension, inputs + TENDON_ROBOT_INPUT_UPPER_SOUTH_TENSION, sizeof named->upper_south_tension);
 }
 
+static const tendon_robot_real LEAST_INPUTS[TENDON_ROBOT_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, 0, 0, 0, 0};
+static const tendon_robot_real LARGEST_INPUTS[TENDON_ROBOT_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int tendon_robot_in_range(const tendon_robot_real *inputs) {
+  for (int i = 0; i < TENDON_ROBOT_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int tendon_robot_clamp(tendon_robot_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < TENDON_ROBOT_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void tendon_robot_evaluate(const real *x, const real *inputs, tendon_robot_results *named) {
   tendon_robot_tip(x, inputs, named->tip.position, named->tip.quaternion);
   tendon_robot_actuator_lower_east(x, inputs, &named->tension_lower_east, &named->length_lower_east, 0);

@@ -61,6 +61,13 @@ void tendon_robot_pack(const tendon_robot_inputs *named, tendon_robot_real *inpu
 void tendon_robot_unpack(const tendon_robot_real *inputs, tendon_robot_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int tendon_robot_in_range(const tendon_robot_real *inputs);
+int tendon_robot_clamp(tendon_robot_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   tendon_robot_real position[3];
