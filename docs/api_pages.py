@@ -149,6 +149,7 @@ CONCEPTS = (
             "stability_margin",
             "motion_stage",
             "MotionStage",
+            "StageEquations",
             "Collocation",
             "radau",
             "gauss",

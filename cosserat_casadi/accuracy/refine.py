@@ -42,8 +42,7 @@ from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise
-from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
@@ -284,28 +283,21 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
 
 def _with_fixed(solver: SceneSolver) -> Solution:
     """The solution on the discretisation that the scene asks for, with its error estimated by a finer one."""
-    accuracy = solver.scene.accuracy
-    modes = DEFAULT_MODES if accuracy.modes is None else accuracy.modes
-    most_modes = modes if isinstance(modes, int) else max(modes)
-    nodes = nodes_for(most_modes) if accuracy.nodes is None else accuracy.nodes
-    transport = accuracy.rotation or solver.reference_transport
-    discretisation = discretise(solver.scene, modes, nodes, transport)
+    unnamed = None if solver.scene.accuracy.rotation else solver.reference_transport
+    discretisation = discretise(solver.scene, transport=unnamed)
     meant = _meant(solver)
     solution = solver.relax(solver.solve(discretisation, meant))
     if not solution.converged:
         return solution
     turn = largest_turn(solution)
     visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
-    finer_modes: int | tuple[int, ...]
-    if isinstance(modes, int):
-        finer_modes = max(modes + FINER_MODES, visible_from)
-    else:
-        finer_modes = tuple(max(count + FINER_MODES, visible_from) for count in modes)
-    most_finer_modes = max(most_modes + FINER_MODES, visible_from)
-    resolving_nodes = nodes_for_turn(most_finer_modes, max(turn, solver.unloaded_turn))
-    finer_nodes = max(nodes + FINER_NODES, resolving_nodes)
-    # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
-    finer = discretise(solver.scene, finer_modes, finer_nodes, solver.reference_transport)
+    finer = {}
+    for name, fixed in discretisation.items():
+        finer_modes = tuple(max(count + FINER_MODES, visible_from) for count in fixed.modes)
+        resolving_nodes = nodes_for_turn(max(finer_modes), max(turn, solver.unloaded_turn))
+        finer_nodes = max(fixed.nodes + FINER_NODES, resolving_nodes)
+        # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
+        finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
     reference = solver.solve(finer, meant or solution)
     if not reference.converged:
         return _unresolved(solution)

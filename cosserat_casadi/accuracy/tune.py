@@ -154,6 +154,7 @@ def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
         modes=None,
         nodes=None,
         rotation=None,
+        of_rods=None,
         chosen_for=None,
     )
 
@@ -169,6 +170,7 @@ def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
         modes=modes,
         nodes=chosen.nodes,
         rotation=chosen.transport,
+        of_rods=None,
     )
 
 

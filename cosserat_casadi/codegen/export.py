@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import os
 import re
+from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
@@ -13,7 +16,7 @@ from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cas
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
+from cosserat_casadi.codegen.kernels import QUIET, kernel_sources, kernels, sources
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
@@ -21,11 +24,14 @@ from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
+from cosserat_casadi.codegen.turn_budget import ALWAYS, costs_of, fitting
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
 
 
@@ -40,6 +46,7 @@ def export(
     stability: bool = False,
     batches: bool = False,
     load_cases: FloatArray | None = None,
+    period: float | None = None,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
@@ -57,14 +64,17 @@ def export(
             compiler takes about twice as long.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
+        period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
+            measured with the compiler of this machine, or foreseen where there is none.
 
     Returns:
         the folder.
 
     Raises:
-        ExportError: the name, the folder, a motion, the stability or the contact of this scene is refused; nothing was
+        ExportError: the name, the folder, a motion, the stability, the contact or the period is refused; nothing was
             written.
     """
+    check_period(model.scene, period)
     asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
     check_contact(model.scene, asked)
     check_load_cases(model.scene, load_cases)
@@ -77,7 +87,7 @@ def export(
         names = scene_names(chosen, without_contacts(model.scene))
         files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
     else:
-        files = folder_files(model, chosen, error_estimate, **asked)
+        files = folder_files(model, chosen, error_estimate, **asked, period=period)
     write_folder(folder, files, stale)
     return folder
 
@@ -115,6 +125,7 @@ def folder_files(
     dynamics: bool = False,
     stability: bool = False,
     batches: bool = False,
+    period: float | None = None,
 ) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
 
@@ -126,6 +137,7 @@ def folder_files(
         dynamics: as for :func:`export`.
         stability: as for :func:`export`.
         batches: as for :func:`export`.
+        period: as for :func:`export`.
 
     Raises:
         ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
@@ -136,7 +148,8 @@ def folder_files(
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names)
-    by_hand = library_sources(
+    by_hand_within = partial(
+        library_sources,
         model,
         names,
         parts,
@@ -147,20 +160,44 @@ def folder_files(
         motion=motion,
         rows=_side_by_side(model, names) if batches else None,
     )
+    by_hand = by_hand_within()
+    budget = ALWAYS
+    if period is not None:
+        budget = fitting(costs_of(model, names, {**by_hand, **generated}), period)
+        by_hand = by_hand_within(budget=budget)
     files = {
         **by_hand,
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        "scene.toml": scene_text(model.scene),
+        "scene.toml": scene_text(with_discretisation(model.scene, model.discretisation)),
     }
     if derivatives:
         files |= _derivative_source(model, names)
     described = manifest(model, names, functions, error_estimate)
     if motion is not None:
         described["motion"] = motion_entry(model)
+    described["turn"] = budget.entry
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files
+
+
+def check_period(scene: Scene, period: float | None) -> None:
+    """Refuse a period that is none, or for a library whose turns are not bounded by a period.
+
+    Raises:
+        ExportError: it is no positive number of seconds, or the scene is in exact contact.
+    """
+    if period is None:
+        return
+    problems = []
+    if not (period > 0.0 and np.isfinite(period)):
+        problems.append(Problem("--period", f"must be a positive number of seconds, got {period:g}"))
+    if scene.touches_exactly:
+        problem = "is not known for a scene in exact contact, whose turns try arrangements of contacts"
+        problems.append(Problem("--period", problem, "leave it out, and give NAME_track a budget"))
+    if problems:
+        raise ExportError(*problems)
 
 
 def check_batches(model: Model) -> None:
@@ -192,4 +229,5 @@ def _side_by_side(model: Model, names: Names) -> InLanes:
 def _derivative_source(model: Model, names: Names) -> dict[str, str]:
     file = f"{names.name}_derivatives.c"
     # casadi.external expects the integers that CasADi itself was built with.
-    return {file: sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]}
+    written = sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]
+    return {file: QUIET + written}

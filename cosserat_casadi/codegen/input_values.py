@@ -27,11 +27,15 @@ class ListedValue:
         name: as the scene spells it.
         unit: SI unit, "1" without.
         default: the scene's value, shape (components, places along the rod or degrees).
+        lower: least value of each entry, stacked, shape (size,); -inf where there is none.
+        upper: largest value; likewise.
     """
 
     name: str
     unit: str
     default: FloatArray
+    lower: FloatArray
+    upper: FloatArray
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
         """What is wrong with a value but for its range, which the scene judges."""
@@ -60,6 +64,16 @@ class ListedInputs(ListedValues):
     what = "an input"
     several = "inputs"
 
+    @cached_property
+    def lower(self) -> FloatArray:
+        """Least values by what inputs are and by the bounds of the scene, shape (size,); -inf where there is none."""
+        return np.concatenate([np.zeros(0), *(entry.lower for entry in self.entries)])
+
+    @cached_property
+    def upper(self) -> FloatArray:
+        """Largest values, shape (size,); inf where there is none."""
+        return np.concatenate([np.zeros(0), *(entry.upper for entry in self.entries)])
+
     def stacked(self, values: ArgumentValues = None, name: str = "inputs") -> FloatArray:
         """All inputs as one vector, shape (size,).
 
@@ -83,5 +97,14 @@ def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ..
     values = []
     for entry in entries:
         default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
-        values.append(ListedValue(entry["name"], entry["unit"], default))
+        lower = _ends(entry.get("lower"), -np.inf, default.size)
+        upper = _ends(entry.get("upper"), np.inf, default.size)
+        values.append(ListedValue(entry["name"], entry["unit"], default, lower, upper))
     return tuple(values)
+
+
+def _ends(listed: Sequence[float | None] | None, none: float, size: int) -> FloatArray:
+    """Ends of the range of each entry; where the manifest has none, this value."""
+    if listed is None:
+        return np.full(size, none)
+    return np.array([none if value is None else value for value in listed], dtype=float)

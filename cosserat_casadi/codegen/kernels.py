@@ -169,7 +169,16 @@ BEFORE_END = '#ifdef __cplusplus\n} /* extern "C" */'
 ENDING = '} /* extern "C" */\n#endif\n'
 """How every file of CasADi ends."""
 
-PROLOGUE = """#ifdef {macro}_SINGLE
+QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+"""
+
+PROLOGUE = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "The solver looks for values that are not finite: compile without -ffast-math."
+#endif
+#ifdef {macro}_SINGLE
 #define casadi_real float
 #endif
 /* Kernels are seen by the library alone. */
@@ -201,7 +210,7 @@ def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = N
     generated = sources(functions, stem, "int")
     source = without_unused_tables(_without_queries(generated[f"{stem}.c"]))
     prototypes = re.sub(rf"^[^#\n]*_({_queries()})\(.*\);\n", "", generated[f"{stem}.h"], flags=re.M)
-    files = {f"{stem}.c": PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
+    files = {f"{stem}.c": QUIET + PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
     if own:
         written = sources_in_fours(own, stem)
         files[f"{stem}.c"] += written.source

@@ -32,18 +32,19 @@ from cosserat_casadi.codegen.structs import (
     result_struct_words,
 )
 from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
+from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
-
-TRACK_ITERATIONS, TRACK_STEPS = 40, 20
-"""Budget of a turn of a control loop where the caller names none; turns that go well take two to five iterations."""
 
 SHARED = (
     "solver.h",
@@ -52,6 +53,7 @@ SHARED = (
     "solver.c",
     "solver_sensitivity.c",
     "solver_track.c",
+    "solver_recover.c",
 )
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
@@ -68,6 +70,7 @@ ROLES = {
     "solver_path.c": "growing loads, and one input after another",
     "solver_sensitivity.c": "derivatives of a solution",
     "solver_track.c": "a turn of a control loop",
+    "solver_recover.c": "a turn of its way back",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
     "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
@@ -94,7 +97,7 @@ ROLES = {
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
     "CMakeLists.txt": "library, demo, install, `find_package`",
     "manifest.json": "the same facts as data",
-    "scene.toml": "the scene all of this was made from",
+    "scene.toml": "the scene all of this was made from, with its modes and nodes",
 }
 """What each file is for."""
 
@@ -110,6 +113,7 @@ def library_sources(
     stability: bool = False,
     motion: MotionInC | None = None,
     rows: InLanes | None = None,
+    budget: TurnBudget = ALWAYS,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -123,8 +127,14 @@ def library_sources(
         stability: whether it holds the stability of equilibria.
         motion: the equations of motion, where the folder has them.
         rows: what solves batches side by side, where the folder has it.
+        budget: what a turn of a control loop may take by default.
     """
     words = _words(model, names, parts, generated, error_estimate, motion, rows)
+    words |= {
+        "default_iterations": budget.iterations,
+        "default_continuation_steps": budget.steps,
+        "budget_note": budget.note,
+    }
     held = {
         "derivatives": derivatives,
         "stability": stability,
@@ -198,6 +208,7 @@ def _words(
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
+        "judged_paths": _judged_paths(model, names),
         **status_words(names),
         **input_words(model, names),
         **result_struct_words(model, names),
@@ -246,6 +257,14 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
     }
 
 
+def _judged_paths(model: Model, names: Names) -> str:
+    """What looks at the paths of tendons where a solve has ended; nothing of it where no strain changes one."""
+    if model.path_stretch is None:
+        return resource("templates", "no_paths.c.in")
+    words = {"name": names.name, "paths": model.path_stretch.size1_out(0), "vanished": VANISHED}
+    return render("path_stretch.c.in", words)
+
+
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
     room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
@@ -279,15 +298,30 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
-        "default_iterations": TRACK_ITERATIONS,
-        "default_continuation_steps": TRACK_STEPS,
+        "default_iterations": ALWAYS.iterations,
+        "default_continuation_steps": ALWAYS.steps,
+        "settling_iterations": SETTLING_ITERATIONS,
+        "settling_residuals": SETTLING_ITERATIONS + 2,
         **SINGLE,
     }
 
 
 def input_words(model: Model, names: Names) -> dict[str, str]:
-    """What the templates say of the inputs of a model: macros, struct, table, default values."""
-    return words_of_inputs(input_entries(model), names)
+    """What the templates say of the inputs of a model: macros, struct, ranges, table, default values."""
+    words = words_of_inputs(input_entries(model), names)
+    if model.inputs.size:
+        lower, upper = ranges_of_inputs(model.scene, model.inputs)
+        ends = {"lower": _ends(lower, names), "upper": _ends(upper, names)}
+        named = {"name": names.name, "MACRO": names.macro, **ends}
+        words["inputs_struct"] += render("ranges.h.in", named)
+        words["inputs_functions"] += render("ranges.c.in", named)
+    return words
+
+
+def _ends(values: FloatArray, names: Names) -> str:
+    """Ends of ranges as an initialiser of an array."""
+    infinite = {np.inf: "HUGE_VAL", -np.inf: "-HUGE_VAL"}
+    return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
 
 
 def words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:

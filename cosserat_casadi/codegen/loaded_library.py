@@ -9,7 +9,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.codegen.input_values import ListedInputs, listed_values
+import numpy as np
+
+from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -34,6 +36,31 @@ class LoadedLibrary:
     def defaults(self) -> FloatArray:
         """The scene's own inputs, stacked."""
         return self.inputs.pack()
+
+    def in_range(self, inputs: ArgumentValues = None) -> bool:
+        """Whether every input is in its range, by what it is and by the bounds of the scene.
+
+        Args:
+            inputs: by name or stacked; the scene's own by default.
+
+        Raises:
+            SceneError: names of inputs are not those of the scene.
+            ValueError: the inputs are of the wrong size.
+        """
+        given = self.inputs.stacked(inputs)
+        return bool(np.all((given >= self.inputs.lower) & (given <= self.inputs.upper)))
+
+    def clamp(self, inputs: ArgumentValues = None) -> FloatArray:
+        """All inputs, stacked, those beyond their ranges moved to the ends of these; what is no number stays.
+
+        Args:
+            inputs: by name or stacked; the scene's own by default.
+
+        Raises:
+            SceneError: names of inputs are not those of the scene.
+            ValueError: the inputs are of the wrong size.
+        """
+        return np.clip(self.inputs.stacked(inputs), self.inputs.lower, self.inputs.upper)
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:

@@ -18,8 +18,10 @@ from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
@@ -140,7 +142,16 @@ def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: 
 
 def input_entries(model: Model) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
-    return [_stacked_entry(entry, indices, axes=entry.axes) for entry, indices in model.inputs]
+    lower, upper = ranges_of_inputs(model.scene, model.inputs)
+    return [
+        _stacked_entry(entry, indices, axes=entry.axes, lower=_ends(lower[indices]), upper=_ends(upper[indices]))
+        for entry, indices in model.inputs
+    ]
+
+
+def _ends(values: FloatArray) -> list[float | None]:
+    """Ends of ranges; None where there is none, for JSON knows no infinity."""
+    return [value if np.isfinite(value) else None for value in values.tolist()]
 
 
 def parameter_entries(model: Model) -> list[dict[str, Any]]:

@@ -98,7 +98,7 @@ def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tup
     """
     jacobian = factors + reuses * (size + 1)
     point = 3 * size + 1
-    vectors = 6 * size + 2 * inputs
+    vectors = 7 * size + 2 * inputs
     derivatives = size * inputs + 7 * size
     reals = 2 * jacobian + 3 * point + vectors + derivatives + extra + room[0]
     integers = 2 * (size + 3) + room[1]

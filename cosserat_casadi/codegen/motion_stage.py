@@ -24,7 +24,7 @@ from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import bare_second, differentiated, exact_second, jacobian_of, poses_of, written
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.motion.stage import MotionStage
+from cosserat_casadi.motion.stage import MotionStage, StageEquations
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,12 @@ class CompiledMotionStage:
     """What a solver evaluates of a stage in motion, in C.
 
     Attributes:
-        equations: with the arguments and the residual of :attr:`MotionStage.equations`.
+        equations: as :attr:`MotionStage.equations`.
         poses: (state, inputs), with parameters (state, inputs, p), ↦ for every rod and body ``tip_…`` or ``body_…``,
             shape (7,): position, m, and quaternion w x y z.
     """
 
-    equations: ca.Function
+    equations: StageEquations
     poses: ca.Function
 
 
@@ -70,7 +70,8 @@ def compiled_motion_stage(
     for function in (*equations, *poses):
         texts |= sources([function], function.name(), "long long int")
     library = os.fspath(compiled_texts(name, texts, found, progress=progress))
-    return CompiledMotionStage(ca.external(equations[0].name(), library), ca.external(poses[0].name(), library))
+    compiled_equations = StageEquations(ca.external(equations[0].name(), library))
+    return CompiledMotionStage(compiled_equations, ca.external(poses[0].name(), library))
 
 
 def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:

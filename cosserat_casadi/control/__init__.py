@@ -7,7 +7,7 @@ from cosserat_casadi.control.inverse_accuracy import inverse_scene
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.targets import Gap
-from cosserat_casadi.motion.stage import MotionStage, motion_stage
+from cosserat_casadi.motion.stage import MotionStage, StageEquations, motion_stage
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "Inverse",
     "Lifted",
     "MotionStage",
+    "StageEquations",
     "embedded",
     "gauss",
     "inverse",

@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.stage import MotionStage
+from cosserat_casadi.motion.stage import MotionStage, StageEquations
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Condensing:
         SceneError: the equations of the stage take parameters.
     """
 
-    def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+    def __init__(self, stage: MotionStage, equations: StageEquations, stages: int, steered: Sequence[int]) -> None:
         if stage.model.parameters.size:
             problem = "the equations of the stage take parameters, and a horizon is condensed for given ones"
             raise SceneError(Problem("parameters", problem, "make the stage of model.at(…)"))
@@ -94,8 +94,8 @@ class Condensing:
         self._stages = stages
         self._steered = list(steered)
         arguments = stage.symbols
-        slopes = equations.jacobian()(*arguments, ca.DM(stage.unknowns_size, 1))
-        results = [equations(*arguments), *slopes]
+        slopes = equations.function.jacobian()(*arguments, ca.DM(stage.unknowns_size, 1))
+        results = [equations.function(*arguments), *slopes]
         self._widths = [result.shape[1] for result in results]
         column = ca.vertcat(*[ca.vec(ca.densify(result)) for result in results])
         self._evaluate = RepeatedCall(ca.Function("stages", arguments, [column]).map(stages))

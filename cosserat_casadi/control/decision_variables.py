@@ -11,6 +11,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.input_ranges import narrowed
 
 UNFELT = 1e-9
 """Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""
@@ -53,26 +54,11 @@ def decision_variables(model: Model) -> DecisionVariables:
     if not chosen:
         remedy = "list them in inputs, or give each its range in [[bounds]]"
         raise SceneError(Problem("inputs", "no input is named that could be found", remedy))
-    lower, upper = bounds_of_inputs(model)
+    lower, upper = narrowed(layout, model.scene.bounds)
     _refuse_empty_ranges(model, lower, upper)
     all_indices = np.arange(layout.size)
     indices = np.concatenate([all_indices[layout.slices[name]] for name in chosen])
     return DecisionVariables(indices, lower[indices], upper[indices])
-
-
-def bounds_of_inputs(model: Model) -> tuple[FloatArray, FloatArray]:
-    """Least and largest values of the stacked inputs by what they are and by ``[[bounds]]``, infinite where none is."""
-    layout = model.inputs
-    lower = _physical_lower(model)
-    upper = np.full(layout.size, np.inf)
-    for bound in model.scene.bounds:
-        # A bound is of all entries of a vector alike.
-        entries = layout.slices[bound.input]
-        if bound.lower is not None:
-            lower[entries] = np.maximum(lower[entries], bound.lower)
-        if bound.upper is not None:
-            upper[entries] = bound.upper
-    return lower, upper
 
 
 def scales(model: Model, variables: DecisionVariables, start: Solution) -> FloatArray:
@@ -100,15 +86,6 @@ def _chosen_names(model: Model) -> list[str]:
     if not changeable and scene.inputs is not None:
         changeable = scene.inputs
     return [name for name in model.inputs.names if name in changeable]
-
-
-def _physical_lower(model: Model) -> FloatArray:
-    """Least values that an input can have by what it is, shape (inputs,)."""
-    layout = model.inputs
-    lower = np.full(layout.size, -np.inf)
-    for entry, indices in layout:
-        lower[indices] = entry.lower
-    return lower
 
 
 def _refuse_empty_ranges(model: Model, lower: FloatArray, upper: FloatArray) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.enrichment import nodes_for
@@ -35,23 +36,44 @@ def discretise(
         SceneError: the scene has tubes, or two places on a rod are too near each other to compute with.
     """
     refuse_tubes(scene)
-    if modes is None:
-        modes = scene.accuracy.modes
-    if modes is None:
-        modes = DEFAULT_MODES
-    if nodes is None:
-        nodes = scene.accuracy.nodes
-    transport = transport or scene.accuracy.rotation or DEFAULT_TRANSPORT
     chosen = {}
     for rod in scene.rods:
-        modes_of_rod = _per_strain(modes, len(rod.admitted))
-        intervals = nodes
-        if intervals is None:
-            intervals = nodes_for(max(modes_of_rod))
+        fixed = scene.accuracy.of_rod(rod.name)
+        wanted_modes = modes or fixed.modes or DEFAULT_MODES
+        modes_of_rod = _per_strain(wanted_modes, len(rod.admitted))
+        intervals = nodes or fixed.nodes or nodes_for(max(modes_of_rod))
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
-        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, transport)
+        integrator = transport or fixed.rotation or DEFAULT_TRANSPORT
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator)
     return chosen
+
+
+def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
+    """The scene with modes, nodes and rotation fixed, so that :func:`discretise` gives the same again.
+
+    Args:
+        scene: the scene.
+        chosen: of every rod; their elements end where the scene makes them.
+    """
+    numbers = {name: _described(own) for name, own in chosen.items()}
+    first = next(iter(numbers.values()))
+    counts = {len(own.modes) for own in chosen.values()}
+    if len(counts) > 1 and not isinstance(first["modes"], int):
+        # A list suits rods of as many strains alone.
+        first = {**first, "modes": max(first["modes"])}
+    others = tuple(scenes.RodDiscretisation(rod=name, **own) for name, own in numbers.items() if own != first)
+    given = scene.accuracy.model_dump(by_alias=True, exclude_unset=True)
+    given = {key: value for key, value in given.items() if key != "of_rods"} | first
+    if others:
+        given["of_rods"] = others
+    return scene.model_copy(update={"accuracy": scenes.Accuracy(**given)})
+
+
+def _described(chosen: Discretisation) -> dict[str, Any]:
+    """A discretisation in the words of the scene format: one number of modes where all strains have as many."""
+    modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
+    return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport}
 
 
 def _per_strain(modes: int | Sequence[int], strains: int) -> tuple[int, ...]:

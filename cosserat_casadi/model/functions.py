@@ -26,6 +26,7 @@ from cosserat_casadi.model.function_table import (
 )
 from cosserat_casadi.model.interpolation import interpolation_weights
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
+from cosserat_casadi.model.path_stretch import path_stretches
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
@@ -139,6 +140,16 @@ class ModelFunctions:
         Where rods are deeper inside obstacles than their widths it is their depth in widths, if that is more.
         """
         return [resolution_index(written)]
+
+    @scene_function(Output("path_stretch"), kernel="path_stretch")
+    def path_stretch(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ length per length of the rod that each tendon's path has left where it has least.
+
+        One number for each tendon whose path can change; at zero the rod has pressed it to nothing, below it is turned
+        inside out. None without such tendons.
+        """
+        stretches = path_stretches(written.system)
+        return [ca.vertcat(*stretches.values())] if stretches else None
 
     @scene_function(Output("depth"))
     def contact_depth(self, written: Expressions) -> list[Matrix] | None:

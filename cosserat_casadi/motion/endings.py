@@ -84,7 +84,7 @@ def snapping_cables(history: History) -> list[str]:
 
 def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
-    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
+    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, MotionOutcome.PATH_VANISHED):
         return str(outcome.value)
     if outcome is MotionOutcome.CONTACT_UNSETTLED:
         return f"{outcome.value} {unsettled(history)}"

@@ -14,6 +14,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.vanished_paths import first_vanished
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checks import check_simulation
@@ -332,6 +333,16 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
+def told_vanished(history: History, duration: float) -> str:
+    """When the path of a tendon has first no length left, in a sentence; empty where that is never so."""
+    times = watched_times(history, duration)
+    x, inputs = history.rough_positions(times)
+    vanished = first_vanished(history.model, x, inputs)
+    if vanished is None:
+        return ""
+    return f"It is the path of '{vanished.tendon}', from t = {times[vanished.state]:.6g} s on."
+
+
 def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
@@ -344,10 +355,14 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
     duration = simulator.simulation.duration
+    vanished = told_vanished(history, duration)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
         message = message_of(history, outcome) + too_deep(history, duration)
+    elif vanished:
+        outcome = MotionOutcome.PATH_VANISHED
+        message = f"{outcome.value} {vanished}"
     elif entered:
         outcome = MotionOutcome.CONTACT_UNSETTLED
         message = entered

@@ -40,6 +40,45 @@ class Instants:
 
 
 @dataclass(frozen=True)
+class StageEquations:
+    """The equations of motion at all instants of a stage.
+
+    Arguments beyond the third have their names in a call: a rate and the parameters in each other's place would pass
+    wherever they are of one size.
+
+    Attributes:
+        function: (state, unknowns, inputs, inputs_rate), with parameters (state, unknowns, inputs, p, inputs_rate),
+            ↦ residual, without unit.
+    """
+
+    function: ca.Function
+
+    def __call__(
+        self, state: Matrix, unknowns: Matrix, inputs: Matrix, *, inputs_rate: Matrix, p: Matrix | None = None
+    ) -> Matrix:
+        """Residual at all instants, shape (unknowns_size,), without unit; zero in a motion.
+
+        Args:
+            state: at the beginning of the stage, shape (state_size,).
+            unknowns: of the stage, shape (unknowns_size,).
+            inputs: stacked inputs at its beginning.
+            inputs_rate: their rates in it, units per second.
+            p: stacked parameters, of a stage that takes them.
+
+        Raises:
+            ValueError: parameters are given to a stage that takes none, or are missing.
+        """
+        takes_parameters = PARAMETERS in self.function.name_in()
+        if takes_parameters and p is None:
+            raise ValueError("this stage takes parameters: give them as p")
+        if not takes_parameters and p is not None:
+            raise ValueError("this stage takes no parameters: leave p out, or make it with parameters=True")
+        parameters = [p] if takes_parameters else []
+        residual: Matrix = self.function(state, unknowns, inputs, *parameters, inputs_rate)
+        return residual
+
+
+@dataclass(frozen=True)
 class MotionStage:
     """A model over one stage.
 
@@ -122,16 +161,12 @@ class MotionStage:
         return ca.Function("next_state", [state, unknowns], [following], ["state", "unknowns"], ["next_state"])
 
     @cached_property
-    def equations(self) -> ca.Function:
-        """(state, unknowns, inputs, inputs_rate) ↦ residual of the equations of motion at all instants, without unit.
-
-        With parameters (state, unknowns, inputs, p, inputs_rate).
-        ``inputs`` are those at the beginning of the stage, ``inputs_rate`` their rates in it, units per second.
-        """
-        return self.equations_by(self.model.inverse_dynamics, "equations")
+    def equations(self) -> StageEquations:
+        """The equations of motion at all instants: (state, unknowns, inputs, inputs_rate=…, p=…) ↦ residual."""
+        return StageEquations(self.equations_by(self.model.inverse_dynamics, "equations"))
 
     def equations_by(self, inverse_dynamics: ca.Function, name: str) -> ca.Function:
-        """As :attr:`equations`, with a function that evaluates the equations of motion at an instant.
+        """The function of :attr:`equations`, by a function that evaluates the equations of motion at an instant.
 
         Args:
             inverse_dynamics: with the arguments and the result of that of the model.

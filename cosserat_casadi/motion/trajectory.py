@@ -53,6 +53,10 @@ class MotionOutcome(Enum):
         "beyond the rod, or the tolerance too tight for what vibrates; damp the rod."
     )
     CONTACT_UNSETTLED = "The motion ended early: contact did not settle."
+    PATH_VANISHED = (
+        "A motion of the discrete model was computed, but the rod is bent so far on its way that the path of a tendon "
+        "has no length left in it: lessen the loads, or move the path nearer to the axis."
+    )
 
     @property
     def label(self) -> str:

@@ -8,7 +8,8 @@ from enum import Enum
 class Outcome(Enum):
     """Every way a solve can end. Only CONVERGED carries a result to build on.
 
-    The order is that of the numbers in C and in the tables of sweeps: new members come last.
+    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before the one of
+    contact, for which C has libraries of their own.
     """
 
     CONVERGED = "Equilibrium found: the residual is below its tolerance."
@@ -27,6 +28,10 @@ class Outcome(Enum):
     LOST_TRACK = (
         "The solution of the last turn could not be followed to these inputs within the bounds of one turn: "
         "move the inputs less in a turn, or solve anew."
+    )
+    PATH_VANISHED = (
+        "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond "
+        "that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis."
     )
     CONTACT_UNSETTLED = (
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi.control.decision_variables import bounds_of_inputs
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.scene.inputs import column_suffixes
 
@@ -47,7 +47,7 @@ class Slider:
 def sliders(model: Model) -> list[Slider]:
     """A slider for each entry of the stacked inputs, in their order."""
     defaults = model.pack()
-    lower, upper = bounds_of_inputs(model)
+    lower, upper = ranges_of_inputs(model.scene, model.inputs)
     made = []
     for entry, span in model.inputs:
         given = np.isfinite(lower[span]) & np.isfinite(upper[span])

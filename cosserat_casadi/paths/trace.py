@@ -49,6 +49,10 @@ class PathOutcome(Enum):
         "The path of the discrete model reached its end, but the rod is not resolved to the tolerance asked for: "
         "fix more modes and nodes, or allow a larger tolerance."
     )
+    PATH_VANISHED = (
+        "The rod cannot follow the path of the discrete model: it is bent so far that a tendon has no length left "
+        "along it."
+    )
 
     @property
     def label(self) -> str:

@@ -76,23 +76,40 @@ class RoutedCable(Lossless):
             added(gz, product(kx, dy), negative(product(ky, dx))),
         )
 
+    @property
+    def is_parallel(self) -> bool:
+        """Whether the cable stays parallel to the rod: its direction is ±1 along the axis, and |T| bends nowhere."""
+        x, y, _ = self.tangent
+        return x is None and y is None
+
     @cached_property
     def stretch(self) -> Matrix:
-        """|T|, 1×k. A cable that stays parallel to the rod needs no root."""
+        """|T|, 1×k."""
         x, y, z = self.tangent
-        if x is None and y is None and z is not None:
-            return z
-        squares = added(*[product(row, row) for row in self.tangent])
+        if self.is_parallel:
+            assert z is not None, "a cable has a tangent"
+            return ca.fabs(z)
+        squares = added(*[product(row, row) for row in (x, y, z)])
         assert squares is not None, "a cable has a tangent"
         return ca.sqrt(squares)
+
+    @property
+    def stretch_along(self) -> Row:
+        """T_z per length of the rod, 1×k: negative where the sections turn matter inside out."""
+        along = self.tangent[2]
+        if along is None:
+            return None
+        rates = self.shape.rod.grid.rates_in(self._node_elements)
+        if rates is not None:
+            along = along / as_matrix(rates).T
+        if self.shape.ratio is not None:
+            along = along / self.shape.ratio
+        return along
 
     @cached_property
     def direction(self) -> tuple[Row, Row, Row]:
         """T = T/|T|, three rows."""
         x, y, z = self.tangent
-        if x is None and y is None:
-            ones = ca.DM.ones(1, len(self.routing.nodes))
-            return None, None, ones
         return (
             _quotient(x, self.stretch),
             _quotient(y, self.stretch),
@@ -149,9 +166,8 @@ class RoutedCable(Lossless):
 
         With T linear in the strains, ∂²|T| = (∂_aT·∂_bT − ∂_a|T| ∂_b|T|) / |T|.
         """
-        # A cable parallel to the rod has a length that is linear in the strains.
-        x, y, _ = self.tangent
-        if x is None and y is None:
+        # The length of a cable parallel to the rod is linear in the strains on either side of a vanishing path.
+        if self.is_parallel:
             return None
         metric = self._metric(a, b)
         along = negative(product(self.lever[a], self.lever[b]))

@@ -216,7 +216,7 @@ class RubbingCable(RoutedCable):
     def _direction_rate(self, c: int) -> Rows:
         """∂t/∂ξ_c = (∂T/∂ξ_c − t ∂|T|/∂ξ_c) / |T|, three rows; None for one that vanishes."""
         # A cable parallel to the rod stays so.
-        if self.direction[0] is None and self.direction[1] is None:
+        if self.is_parallel:
             return None, None, None
         stretched = self.lever[c]
         rows: list[Row] = []
@@ -227,10 +227,8 @@ class RubbingCable(RoutedCable):
         return x, y, z
 
     def _along(self, row: Row) -> Row:
-        """Derivative of a field with X, 1×k; a constant has none."""
-        if row is None:
-            return None
-        if isinstance(row, ca.DM) and float(ca.mmax(row)) == float(ca.mmin(row)):
+        """Derivative of a component of t with X, 1×k; that of a cable parallel to the rod has none."""
+        if row is None or self.is_parallel:
             return None
         return row @ self._differentiate.T
 

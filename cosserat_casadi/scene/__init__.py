@@ -4,7 +4,7 @@ A new kind is a record that derives from the one of its family, and a class of t
 `cosserat_casadi.model.registry.register` makes both known.
 """
 
-from cosserat_casadi.scene.accuracy import Accuracy
+from cosserat_casadi.scene.accuracy import Accuracy, RodDiscretisation
 from cosserat_casadi.scene.actuators import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
 from cosserat_casadi.scene.constraints import (
     JOINTS,
@@ -118,6 +118,7 @@ __all__ = [
     "Rectangle",
     "RevoluteJoint",
     "Rod",
+    "RodDiscretisation",
     "Scene",
     "Section",
     "Simulation",

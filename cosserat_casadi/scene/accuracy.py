@@ -39,6 +39,29 @@ def _ascending(value: str) -> str:
 Range = Annotated[str, AfterValidator(_ascending)]
 
 
+Nodes = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
+Rotation = Literal["magnus4", "magnus6", "magnus8", "permuted"]
+
+
+class RodDiscretisation(Record):
+    """What a rod is computed with where that differs from the others."""
+
+    example: ClassVar[str] = """\
+[accuracy]
+modes = 4
+nodes = 10
+rotation = "magnus6"
+of_rods = [{ rod = "finger", modes = [6, 6, 2], nodes = 14, rotation = "magnus6" }]
+"""
+
+    rod: str = Field(description="name of the rod")
+    modes: ModesChoice = Field(
+        description="polynomial modes per strain component, a whole number or a list of one per admitted strain"
+    )
+    nodes: Nodes = Field(description="intervals of the Chebyshev grid, a whole number")
+    rotation: Rotation = Field(description="how the rotation is integrated, as of all rods")
+
+
 class Accuracy(Record):
     """How exact the result is to be, or with what it is computed."""
 
@@ -57,26 +80,34 @@ shape = true
     modes: ModesChoice | None = Field(
         None, description="polynomial modes per strain component, a whole number or a list of one per admitted strain"
     )
-    nodes: Annotated[Whole, Field(ge=2, le=MOST_NODES)] | None = Field(
-        None, description="intervals of the Chebyshev grid, a whole number"
-    )
-    rotation: Literal["magnus4", "magnus6", "magnus8", "permuted"] | None = Field(
+    nodes: Nodes | None = Field(None, description="intervals of the Chebyshev grid, a whole number")
+    rotation: Rotation | None = Field(
         None,
         description="how the rotation is integrated: products of exponentials of order 4, 6 or 8, or the literal "
         "'permuted' linear system",
     )
 
+    of_rods: tuple[RodDiscretisation, ...] = Field(
+        (), description="modes, nodes and rotation of single rods, as `cosserat export` writes them where rods differ"
+    )
     chosen_for: Annotated[tuple[Range, ...], NotEmpty()] | None = Field(
         None,
         description="what modes and nodes were chosen for, as `cosserat tune` writes it: 'column=low:high' of inputs "
         "and parameters, in their units",
     )
 
+    def of_rod(self, name: str) -> Accuracy | RodDiscretisation:
+        """What fixes modes, nodes and rotation of a rod: its own entry, else what holds for all."""
+        own = [entry for entry in self.of_rods if entry.rod == name]
+        return own[0] if own else self
+
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Ranges are those of modes and nodes."""
+        """Ranges are those of modes and nodes; what differs in single rods differs from what all have."""
         if "chosen_for" in given and "modes" not in given:
             yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
+        if given.get("of_rods") and not {"modes", "nodes", "rotation"} <= given.keys():
+            yield Fault(("of_rods",), "stands without modes, nodes and rotation of the others", "give all three")
 
     @property
     def fixed(self) -> bool:

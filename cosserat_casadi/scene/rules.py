@@ -208,6 +208,32 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
             yield Fault(path, problem, "one support for each tip")
 
 
+def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
+    """What single rods are computed with is of rods of the scene, once each, with one number for each strain."""
+    accuracy = scene.get("accuracy")
+    if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("of_rods"), list):
+        return
+    rods = scene.named("rods")
+    first: dict[str, int] = {}
+    for i, own in enumerate(accuracy["of_rods"]):
+        name = own.get("rod") if isinstance(own, Mapping) else None
+        if not isinstance(name, str):
+            continue
+        path: Path = ("accuracy", "of_rods", i)
+        if name not in rods:
+            yield Fault((*path, "rod"), f"no rod is named {shown(name)}", listing(rods, "rods"))
+            continue
+        if first.setdefault(name, i) != i:
+            yield Fault((*path, "rod"), f"of_rods[{first[name]}] is of {shown(name)} already")
+        _, rod = rods[name]
+        admitted = len(admitted_strains(rod.get("strain")))
+        modes = own.get("modes")
+        # Zero stands for a faulty entry, which has a fault of its own.
+        if isinstance(modes, list) and admitted and modes and admitted != len(modes):
+            problem = f"must have one entry per strain, got {len(modes)} where the rod admits {admitted}"
+            yield Fault((*path, "modes"), problem)
+
+
 def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
     """The modes that are listed are as many as the strains of each rod."""
     accuracy = scene.get("accuracy")
@@ -286,6 +312,7 @@ RULES: tuple[Rule, ...] = (
     overlapping_supports,
     own_rules,
     miscounted_modes,
+    discretised_rods_that_are_not,
     tube_faults,
     inputs_that_are_not,
     parameters_that_are_not,

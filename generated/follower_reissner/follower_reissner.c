@@ -72,12 +72,21 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* No tendon has a path that the strains change. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  (void)x;
+  (void)inputs;
+  (void)work;
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP
@@ -141,6 +150,30 @@ void follower_reissner_unpack(const follower_reissner_real *inputs, follower_rei
   memcpy(named->thruster_moment, inputs + FOLLOWER_REISSNER_INPUT_THRUSTER_MOMENT, sizeof named->thruster_moment);
 }
 
+static const follower_reissner_real LEAST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const follower_reissner_real LARGEST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int follower_reissner_in_range(const follower_reissner_real *inputs) {
+  for (int i = 0; i < FOLLOWER_REISSNER_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int follower_reissner_clamp(follower_reissner_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < FOLLOWER_REISSNER_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void follower_reissner_evaluate(const real *x, const real *inputs, follower_reissner_results *named) {
   follower_reissner_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }
@@ -165,6 +198,8 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case FOLLOWER_REISSNER_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case FOLLOWER_REISSNER_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -187,6 +222,8 @@ const char *follower_reissner_status_label(follower_reissner_status status) {
       return "not_in_equilibrium";
     case FOLLOWER_REISSNER_LOST_TRACK:
       return "lost_track";
+    case FOLLOWER_REISSNER_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

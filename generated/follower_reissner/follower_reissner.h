@@ -49,6 +49,13 @@ void follower_reissner_pack(const follower_reissner_inputs *named, follower_reis
 void follower_reissner_unpack(const follower_reissner_real *inputs, follower_reissner_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int follower_reissner_in_range(const follower_reissner_real *inputs);
+int follower_reissner_clamp(follower_reissner_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   follower_reissner_real position[3];
@@ -85,7 +92,8 @@ typedef enum {
   FOLLOWER_REISSNER_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   FOLLOWER_REISSNER_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  FOLLOWER_REISSNER_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  FOLLOWER_REISSNER_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  FOLLOWER_REISSNER_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } follower_reissner_status;
 
 typedef struct {
@@ -96,7 +104,7 @@ typedef struct {
   follower_reissner_real load_factor;     /* share of the load that x carries; 1 where converged */
 } follower_reissner_info;
 
-/* Budget of one call of follower_reissner_track. */
+/* Budget of one call of follower_reissner_track, or of follower_reissner_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -137,6 +145,7 @@ typedef struct {
   follower_reissner_real trial_residual[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real predicted[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real correction[FOLLOWER_REISSNER_UNKNOWNS];
+  follower_reissner_real reached[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real d_x_d_inputs[FOLLOWER_REISSNER_UNKNOWNS * 6];
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real kernel_reals[1576];
@@ -147,10 +156,11 @@ typedef struct {
 #define FOLLOWER_REISSNER_WORKSPACE_SIZE sizeof(follower_reissner_workspace)
 int follower_reissner_workspace_size(void);
 
-/* What follower_reissner_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What follower_reissner_track and follower_reissner_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   follower_reissner_jacobian_factors jacobian;
   follower_reissner_real inputs[6];
+  follower_reissner_real step;
   int has_inputs;
   int has_jacobian;
 } follower_reissner_memory;
@@ -190,9 +200,12 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   follower_reissner_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -200,6 +213,18 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
 follower_reissner_status follower_reissner_track(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
                              const follower_reissner_options *options, follower_reissner_real *d_x_d_inputs,
                              follower_reissner_real *d_poses_d_inputs, follower_reissner_workspace *workspace, follower_reissner_info *info);
+
+/* One turn of the way back, where follower_reissner_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and follower_reissner_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and follower_reissner_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+follower_reissner_status follower_reissner_recover(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
+                               const follower_reissner_options *options, follower_reissner_workspace *workspace, follower_reissner_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void follower_reissner_evaluate(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_results *results);

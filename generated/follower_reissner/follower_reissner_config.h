@@ -14,6 +14,7 @@
 #define solver_follow follower_reissner_follow
 #define solver_solve_sensitivity follower_reissner_solve_sensitivity
 #define solver_track follower_reissner_track
+#define solver_recover follower_reissner_recover
 #define solver_residual follower_reissner_residual
 #define solver_residual_jacobian follower_reissner_residual_jacobian
 #define solver_input_jacobian follower_reissner_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED FOLLOWER_REISSNER_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK FOLLOWER_REISSNER_LOST_TRACK
+#define SOLVER_PATH_VANISHED FOLLOWER_REISSNER_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS FOLLOWER_REISSNER_UNKNOWNS
 #define SOLVER_INPUTS FOLLOWER_REISSNER_INPUTS
@@ -34,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef FOLLOWER_REISSNER_SINGLE
 #define SOLVER_SINGLE

@@ -71,12 +71,21 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* No tendon has a path that the strains change. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  (void)x;
+  (void)inputs;
+  (void)work;
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP
@@ -140,6 +149,30 @@ void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *n
   memcpy(named->push_force, inputs + NITINOL_WIRE_INPUT_PUSH_FORCE, sizeof named->push_force);
 }
 
+static const nitinol_wire_real LEAST_INPUTS[NITINOL_WIRE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const nitinol_wire_real LARGEST_INPUTS[NITINOL_WIRE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int nitinol_wire_in_range(const nitinol_wire_real *inputs) {
+  for (int i = 0; i < NITINOL_WIRE_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int nitinol_wire_clamp(nitinol_wire_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < NITINOL_WIRE_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void nitinol_wire_evaluate(const real *x, const real *inputs, nitinol_wire_results *named) {
   nitinol_wire_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }
@@ -164,6 +197,8 @@ const char *nitinol_wire_status_text(nitinol_wire_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case NITINOL_WIRE_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case NITINOL_WIRE_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -186,6 +221,8 @@ const char *nitinol_wire_status_label(nitinol_wire_status status) {
       return "not_in_equilibrium";
     case NITINOL_WIRE_LOST_TRACK:
       return "lost_track";
+    case NITINOL_WIRE_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

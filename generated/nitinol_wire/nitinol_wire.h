@@ -49,6 +49,13 @@ void nitinol_wire_pack(const nitinol_wire_inputs *named, nitinol_wire_real *inpu
 void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int nitinol_wire_in_range(const nitinol_wire_real *inputs);
+int nitinol_wire_clamp(nitinol_wire_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   nitinol_wire_real position[3];
@@ -82,7 +89,8 @@ typedef enum {
   NITINOL_WIRE_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   NITINOL_WIRE_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   NITINOL_WIRE_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  NITINOL_WIRE_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  NITINOL_WIRE_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  NITINOL_WIRE_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } nitinol_wire_status;
 
 typedef struct {
@@ -93,7 +101,7 @@ typedef struct {
   nitinol_wire_real load_factor;     /* share of the load that x carries; 1 where converged */
 } nitinol_wire_info;
 
-/* Budget of one call of nitinol_wire_track. */
+/* Budget of one call of nitinol_wire_track, or of nitinol_wire_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -134,6 +142,7 @@ typedef struct {
   nitinol_wire_real trial_residual[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real predicted[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real correction[NITINOL_WIRE_UNKNOWNS];
+  nitinol_wire_real reached[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real d_x_d_inputs[NITINOL_WIRE_UNKNOWNS * 6];
   nitinol_wire_real d_pose_d_x[7 * NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real kernel_reals[1336];
@@ -144,10 +153,11 @@ typedef struct {
 #define NITINOL_WIRE_WORKSPACE_SIZE sizeof(nitinol_wire_workspace)
 int nitinol_wire_workspace_size(void);
 
-/* What nitinol_wire_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What nitinol_wire_track and nitinol_wire_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   nitinol_wire_jacobian_factors jacobian;
   nitinol_wire_real inputs[6];
+  nitinol_wire_real step;
   int has_inputs;
   int has_jacobian;
 } nitinol_wire_memory;
@@ -187,9 +197,12 @@ nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inpu
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   nitinol_wire_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -197,6 +210,18 @@ nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inpu
 nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_memory *memory,
                              const nitinol_wire_options *options, nitinol_wire_real *d_x_d_inputs,
                              nitinol_wire_real *d_poses_d_inputs, nitinol_wire_workspace *workspace, nitinol_wire_info *info);
+
+/* One turn of the way back, where nitinol_wire_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and nitinol_wire_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and nitinol_wire_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+nitinol_wire_status nitinol_wire_recover(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_memory *memory,
+                               const nitinol_wire_options *options, nitinol_wire_workspace *workspace, nitinol_wire_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void nitinol_wire_evaluate(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_results *results);

@@ -14,6 +14,7 @@
 #define solver_follow nitinol_wire_follow
 #define solver_solve_sensitivity nitinol_wire_solve_sensitivity
 #define solver_track nitinol_wire_track
+#define solver_recover nitinol_wire_recover
 #define solver_residual nitinol_wire_residual
 #define solver_residual_jacobian nitinol_wire_residual_jacobian
 #define solver_input_jacobian nitinol_wire_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED NITINOL_WIRE_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM NITINOL_WIRE_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK NITINOL_WIRE_LOST_TRACK
+#define SOLVER_PATH_VANISHED NITINOL_WIRE_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS NITINOL_WIRE_UNKNOWNS
 #define SOLVER_INPUTS NITINOL_WIRE_INPUTS
@@ -34,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef NITINOL_WIRE_SINGLE
 #define SOLVER_SINGLE

@@ -70,12 +70,21 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* No tendon has a path that the strains change. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  (void)x;
+  (void)inputs;
+  (void)work;
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP
@@ -139,6 +148,30 @@ void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *n
   memcpy(named->push_moment, inputs + PLANAR_STRIP_INPUT_PUSH_MOMENT, sizeof named->push_moment);
 }
 
+static const planar_strip_real LEAST_INPUTS[PLANAR_STRIP_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const planar_strip_real LARGEST_INPUTS[PLANAR_STRIP_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int planar_strip_in_range(const planar_strip_real *inputs) {
+  for (int i = 0; i < PLANAR_STRIP_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int planar_strip_clamp(planar_strip_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < PLANAR_STRIP_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void planar_strip_evaluate(const real *x, const real *inputs, planar_strip_results *named) {
   planar_strip_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }
@@ -163,6 +196,8 @@ const char *planar_strip_status_text(planar_strip_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case PLANAR_STRIP_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case PLANAR_STRIP_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -185,6 +220,8 @@ const char *planar_strip_status_label(planar_strip_status status) {
       return "not_in_equilibrium";
     case PLANAR_STRIP_LOST_TRACK:
       return "lost_track";
+    case PLANAR_STRIP_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

@@ -49,6 +49,13 @@ void planar_strip_pack(const planar_strip_inputs *named, planar_strip_real *inpu
 void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int planar_strip_in_range(const planar_strip_real *inputs);
+int planar_strip_clamp(planar_strip_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   planar_strip_real position[3];
@@ -80,7 +87,8 @@ typedef enum {
   PLANAR_STRIP_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   PLANAR_STRIP_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   PLANAR_STRIP_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  PLANAR_STRIP_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  PLANAR_STRIP_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  PLANAR_STRIP_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } planar_strip_status;
 
 typedef struct {
@@ -91,7 +99,7 @@ typedef struct {
   planar_strip_real load_factor;     /* share of the load that x carries; 1 where converged */
 } planar_strip_info;
 
-/* Budget of one call of planar_strip_track. */
+/* Budget of one call of planar_strip_track, or of planar_strip_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -132,6 +140,7 @@ typedef struct {
   planar_strip_real trial_residual[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real predicted[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real correction[PLANAR_STRIP_UNKNOWNS];
+  planar_strip_real reached[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real d_x_d_inputs[PLANAR_STRIP_UNKNOWNS * 6];
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
   planar_strip_real kernel_reals[307];
@@ -142,10 +151,11 @@ typedef struct {
 #define PLANAR_STRIP_WORKSPACE_SIZE sizeof(planar_strip_workspace)
 int planar_strip_workspace_size(void);
 
-/* What planar_strip_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What planar_strip_track and planar_strip_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   planar_strip_jacobian_factors jacobian;
   planar_strip_real inputs[6];
+  planar_strip_real step;
   int has_inputs;
   int has_jacobian;
 } planar_strip_memory;
@@ -185,9 +195,12 @@ planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inpu
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   planar_strip_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -195,6 +208,18 @@ planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inpu
 planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_memory *memory,
                              const planar_strip_options *options, planar_strip_real *d_x_d_inputs,
                              planar_strip_real *d_poses_d_inputs, planar_strip_workspace *workspace, planar_strip_info *info);
+
+/* One turn of the way back, where planar_strip_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and planar_strip_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+planar_strip_status planar_strip_recover(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_memory *memory,
+                               const planar_strip_options *options, planar_strip_workspace *workspace, planar_strip_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void planar_strip_evaluate(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_results *results);

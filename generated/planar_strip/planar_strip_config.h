@@ -14,6 +14,7 @@
 #define solver_follow planar_strip_follow
 #define solver_solve_sensitivity planar_strip_solve_sensitivity
 #define solver_track planar_strip_track
+#define solver_recover planar_strip_recover
 #define solver_residual planar_strip_residual
 #define solver_residual_jacobian planar_strip_residual_jacobian
 #define solver_input_jacobian planar_strip_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED PLANAR_STRIP_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM PLANAR_STRIP_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK PLANAR_STRIP_LOST_TRACK
+#define SOLVER_PATH_VANISHED PLANAR_STRIP_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS PLANAR_STRIP_UNKNOWNS
 #define SOLVER_INPUTS PLANAR_STRIP_INPUTS
@@ -34,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef PLANAR_STRIP_SINGLE
 #define SOLVER_SINGLE

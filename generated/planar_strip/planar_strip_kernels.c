@@ -1,3 +1,10 @@
+/* All kernels have the arguments of CasADi, whether they need them or not. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "The solver looks for values that are not finite: compile without -ffast-math."
+#endif
 #ifdef PLANAR_STRIP_SINGLE
 #define casadi_real float
 #endif

@@ -2,10 +2,13 @@
 
    The library's own source includes, in this order: its configuration, its kernels, this header, the equations of the
    scene, one of linear_dense.c and linear_blocks.c, and the parts of the solver: solver_newton.c, solver_path.c, solver.c,
-   solver_sensitivity.c, solver_track.c. All is one translation unit, so that nothing but the functions of the library's
-   header is visible to a linker. */
+   solver_sensitivity.c, solver_track.c, solver_recover.c but for tubes. All is one translation unit, so that nothing but
+   the functions of the library's header is visible to a linker. */
 #ifndef SOLVER_UNKNOWNS
 #error "This file is a part of the library's own source: compile that one."
+#endif
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "The solver looks for values that are not finite: compile without -ffast-math."
 #endif
 
 #include <math.h>
@@ -113,6 +116,7 @@ typedef struct {
 typedef struct {
   int max_steps;
   int max_iterations;
+  real first_step; /* as a share of the path; zero for the usual one */
 } path_limits;
 
 /* Where a continuation stands: the last two points and room for the next, the Jacobian of the last and room for one. */
@@ -124,4 +128,5 @@ typedef struct {
   updated_jacobian *jacobian;
   updated_jacobian *spare;
   int has_jacobian;
+  real step; /* to go on with, zero where none is long enough */
 } progress;

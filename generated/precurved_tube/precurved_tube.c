@@ -72,12 +72,21 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* No tendon has a path that the strains change. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  (void)x;
+  (void)inputs;
+  (void)work;
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP
@@ -141,6 +150,30 @@ void precurved_tube_unpack(const precurved_tube_real *inputs, precurved_tube_inp
   memcpy(named->tissue_moment, inputs + PRECURVED_TUBE_INPUT_TISSUE_MOMENT, sizeof named->tissue_moment);
 }
 
+static const precurved_tube_real LEAST_INPUTS[PRECURVED_TUBE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+static const precurved_tube_real LARGEST_INPUTS[PRECURVED_TUBE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int precurved_tube_in_range(const precurved_tube_real *inputs) {
+  for (int i = 0; i < PRECURVED_TUBE_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int precurved_tube_clamp(precurved_tube_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < PRECURVED_TUBE_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void precurved_tube_evaluate(const real *x, const real *inputs, precurved_tube_results *named) {
   precurved_tube_tip(x, inputs, named->tip.position, named->tip.quaternion);
 }
@@ -165,6 +198,8 @@ const char *precurved_tube_status_text(precurved_tube_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case PRECURVED_TUBE_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case PRECURVED_TUBE_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -187,6 +222,8 @@ const char *precurved_tube_status_label(precurved_tube_status status) {
       return "not_in_equilibrium";
     case PRECURVED_TUBE_LOST_TRACK:
       return "lost_track";
+    case PRECURVED_TUBE_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

@@ -49,6 +49,13 @@ void precurved_tube_pack(const precurved_tube_inputs *named, precurved_tube_real
 void precurved_tube_unpack(const precurved_tube_real *inputs, precurved_tube_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int precurved_tube_in_range(const precurved_tube_real *inputs);
+int precurved_tube_clamp(precurved_tube_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   precurved_tube_real position[3];
@@ -82,7 +89,8 @@ typedef enum {
   PRECURVED_TUBE_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   PRECURVED_TUBE_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   PRECURVED_TUBE_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  PRECURVED_TUBE_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  PRECURVED_TUBE_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  PRECURVED_TUBE_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } precurved_tube_status;
 
 typedef struct {
@@ -93,7 +101,7 @@ typedef struct {
   precurved_tube_real load_factor;     /* share of the load that x carries; 1 where converged */
 } precurved_tube_info;
 
-/* Budget of one call of precurved_tube_track. */
+/* Budget of one call of precurved_tube_track, or of precurved_tube_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -134,6 +142,7 @@ typedef struct {
   precurved_tube_real trial_residual[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real predicted[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real correction[PRECURVED_TUBE_UNKNOWNS];
+  precurved_tube_real reached[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real d_x_d_inputs[PRECURVED_TUBE_UNKNOWNS * 6];
   precurved_tube_real d_pose_d_x[7 * PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real kernel_reals[1705];
@@ -144,10 +153,11 @@ typedef struct {
 #define PRECURVED_TUBE_WORKSPACE_SIZE sizeof(precurved_tube_workspace)
 int precurved_tube_workspace_size(void);
 
-/* What precurved_tube_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What precurved_tube_track and precurved_tube_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   precurved_tube_jacobian_factors jacobian;
   precurved_tube_real inputs[6];
+  precurved_tube_real step;
   int has_inputs;
   int has_jacobian;
 } precurved_tube_memory;
@@ -187,9 +197,12 @@ precurved_tube_status precurved_tube_solve_sensitivity(const precurved_tube_real
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   precurved_tube_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -197,6 +210,18 @@ precurved_tube_status precurved_tube_solve_sensitivity(const precurved_tube_real
 precurved_tube_status precurved_tube_track(const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_memory *memory,
                              const precurved_tube_options *options, precurved_tube_real *d_x_d_inputs,
                              precurved_tube_real *d_poses_d_inputs, precurved_tube_workspace *workspace, precurved_tube_info *info);
+
+/* One turn of the way back, where precurved_tube_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and precurved_tube_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and precurved_tube_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+precurved_tube_status precurved_tube_recover(const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_memory *memory,
+                               const precurved_tube_options *options, precurved_tube_workspace *workspace, precurved_tube_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void precurved_tube_evaluate(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_results *results);

@@ -14,6 +14,7 @@
 #define solver_follow precurved_tube_follow
 #define solver_solve_sensitivity precurved_tube_solve_sensitivity
 #define solver_track precurved_tube_track
+#define solver_recover precurved_tube_recover
 #define solver_residual precurved_tube_residual
 #define solver_residual_jacobian precurved_tube_residual_jacobian
 #define solver_input_jacobian precurved_tube_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED PRECURVED_TUBE_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM PRECURVED_TUBE_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK PRECURVED_TUBE_LOST_TRACK
+#define SOLVER_PATH_VANISHED PRECURVED_TUBE_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS PRECURVED_TUBE_UNKNOWNS
 #define SOLVER_INPUTS PRECURVED_TUBE_INPUTS
@@ -34,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef PRECURVED_TUBE_SINGLE
 #define SOLVER_SINGLE

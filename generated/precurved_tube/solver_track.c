@@ -16,6 +16,7 @@ static int follow_last_turn(const solver_memory *memory, const solver_options *o
   const path_limits limits = {
       .max_steps = options->max_continuation_steps,
       .max_iterations = options->max_iterations,
+      .first_step = 0,
   };
   const newton_limits start_limits = {
       .max_iterations = options->max_iterations - info->iterations,
@@ -34,37 +35,54 @@ static int follow_last_turn(const solver_memory *memory, const solver_options *o
   return 1;
 }
 
-solver_status solver_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
-                           real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
-  const solver_options chosen = options ? *options : DEFAULT_OPTIONS;
+/* From x at the inputs of the last turn to the solution for new ones; x is left as it was where that is not reached within
+   the budget. */
+static solver_status reach(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
+                           workspace *work, solver_info *found) {
   /* Half of the budget is left to the continuation. */
   const newton_limits limits = {
-      .max_iterations = (chosen.max_iterations + 1) / 2,
-      .max_jacobians = chosen.max_iterations,
+      .max_iterations = (options->max_iterations + 1) / 2,
+      .max_jacobians = options->max_iterations,
       .max_halvings = 0,
       .inexact = 0,
       .reuse_jacobian = memory->has_jacobian,
   };
-  solver_info found = no_result();
-  if (!all_finite(inputs, INPUTS) || !all_finite(x, N)) return finish(x, inputs, &found, info, work);
   work->updated_jacobians[0].factors = memory->jacobian;
   work->updated_jacobians[0].count = 0;
-  if (!correct(&limits, inputs, x, work, &found) && !follow_last_turn(memory, &chosen, inputs, x, work, &found)) {
-    found.status = SOLVER_LOST_TRACK;
-    found.load_factor = 0;
-    return finish(x, inputs, &found, info, work);
+  if (!correct(&limits, inputs, x, work, found) && !follow_last_turn(memory, options, inputs, x, work, found)) {
+    return SOLVER_LOST_TRACK;
   }
-  for (int i = 0; i < INPUTS; i++) memory->inputs[i] = inputs[i];
-  memory->has_inputs = 1;
-  solver_status end = finish(x, inputs, &found, info, work);
+  return finish(x, inputs, found, 0, work);
+}
+
+/* The end of a turn that has no solution: of what x is, for these inputs. */
+static solver_status refuse(solver_status end, const real *inputs, const real *x, workspace *work, solver_info *found,
+                            solver_info *info) {
+  found->status = end;
+  found->load_factor = 0;
+  found->residual_norm = residual_left(x, inputs, work);
+  if (info) *info = *found;
+  return end;
+}
+
+solver_status solver_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
+                           real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
+  const solver_options chosen = options ? *options : DEFAULT_OPTIONS;
+  real *reached = work->reached;
+  solver_info found = no_result();
+  if (!all_finite(inputs, INPUTS) || !all_finite(x, N)) return refuse(SOLVER_NOT_FINITE, inputs, x, work, &found, info);
+  memcpy(reached, x, sizeof work->reached);
+  solver_status end = reach(memory, &chosen, inputs, reached, work, &found);
   /* Without derivatives the Jacobian of an earlier turn serves on, as long as Newton takes few steps with it. */
   const int has_served = memory->has_jacobian && found.jacobians == 0 && found.iterations <= RENEW_ABOVE;
-  if (end == SOLVER_CONVERGED && has_served && !d_x_d_inputs && !d_poses_d_inputs) return end;
-  memory->has_jacobian = 0;
-  if (end == SOLVER_CONVERGED) end = derivatives(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
-  if (end == SOLVER_CONVERGED) {
-    memory->jacobian = work->updated_jacobians[0].factors;
-    memory->has_jacobian = 1;
-  }
+  const int serves_on = has_served && !d_x_d_inputs && !d_poses_d_inputs;
+  if (end == SOLVER_CONVERGED && !serves_on) end = derivatives(inputs, reached, d_x_d_inputs, d_poses_d_inputs, work);
+  if (end != SOLVER_CONVERGED) return refuse(end, inputs, x, work, &found, info);
+  memcpy(x, reached, sizeof work->reached);
+  for (int i = 0; i < INPUTS; i++) memory->inputs[i] = inputs[i];
+  memory->has_inputs = 1;
+  if (!serves_on) memory->jacobian = work->updated_jacobians[0].factors;
+  memory->has_jacobian = 1;
+  if (info) *info = found;
   return end;
 }

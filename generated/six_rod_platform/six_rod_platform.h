@@ -67,6 +67,13 @@ void six_rod_platform_pack(const six_rod_platform_inputs *named, six_rod_platfor
 void six_rod_platform_unpack(const six_rod_platform_real *inputs, six_rod_platform_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int six_rod_platform_in_range(const six_rod_platform_real *inputs);
+int six_rod_platform_clamp(six_rod_platform_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   six_rod_platform_real position[3];
@@ -152,7 +159,8 @@ typedef enum {
   SIX_ROD_PLATFORM_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   SIX_ROD_PLATFORM_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  SIX_ROD_PLATFORM_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  SIX_ROD_PLATFORM_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  SIX_ROD_PLATFORM_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } six_rod_platform_status;
 
 typedef struct {
@@ -163,7 +171,7 @@ typedef struct {
   six_rod_platform_real load_factor;     /* share of the load that x carries; 1 where converged */
 } six_rod_platform_info;
 
-/* Budget of one call of six_rod_platform_track. */
+/* Budget of one call of six_rod_platform_track, or of six_rod_platform_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -204,6 +212,7 @@ typedef struct {
   six_rod_platform_real trial_residual[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real predicted[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real correction[SIX_ROD_PLATFORM_UNKNOWNS];
+  six_rod_platform_real reached[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real d_x_d_inputs[SIX_ROD_PLATFORM_UNKNOWNS * 12];
   six_rod_platform_real d_pose_d_x[7 * SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real entries[2737];
@@ -220,10 +229,11 @@ typedef struct {
 #define SIX_ROD_PLATFORM_WORKSPACE_SIZE sizeof(six_rod_platform_workspace)
 int six_rod_platform_workspace_size(void);
 
-/* What six_rod_platform_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What six_rod_platform_track and six_rod_platform_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   six_rod_platform_jacobian_factors jacobian;
   six_rod_platform_real inputs[12];
+  six_rod_platform_real step;
   int has_inputs;
   int has_jacobian;
 } six_rod_platform_memory;
@@ -264,9 +274,12 @@ six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platfor
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   six_rod_platform_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -274,6 +287,18 @@ six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platfor
 six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
                              const six_rod_platform_options *options, six_rod_platform_real *d_x_d_inputs,
                              six_rod_platform_real *d_poses_d_inputs, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
+
+/* One turn of the way back, where six_rod_platform_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and six_rod_platform_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and six_rod_platform_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+six_rod_platform_status six_rod_platform_recover(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
+                               const six_rod_platform_options *options, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void six_rod_platform_evaluate(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_results *results);

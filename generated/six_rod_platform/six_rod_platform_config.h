@@ -14,6 +14,7 @@
 #define solver_follow six_rod_platform_follow
 #define solver_solve_sensitivity six_rod_platform_solve_sensitivity
 #define solver_track six_rod_platform_track
+#define solver_recover six_rod_platform_recover
 #define solver_residual six_rod_platform_residual
 #define solver_residual_jacobian six_rod_platform_residual_jacobian
 #define solver_input_jacobian six_rod_platform_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED SIX_ROD_PLATFORM_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK SIX_ROD_PLATFORM_LOST_TRACK
+#define SOLVER_PATH_VANISHED SIX_ROD_PLATFORM_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS SIX_ROD_PLATFORM_UNKNOWNS
 #define SOLVER_INPUTS SIX_ROD_PLATFORM_INPUTS
@@ -39,6 +41,7 @@
 #define SOLVER_MAX_ORDER 28
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef SIX_ROD_PLATFORM_SINGLE
 #define SOLVER_SINGLE

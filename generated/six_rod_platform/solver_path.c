@@ -2,7 +2,11 @@
 
    cosserat_casadi/numerics/continuation.py holds the same algorithm in Python. */
 
-static const path_limits LONG_PATH = {.max_steps = MAX_STEPS, .max_iterations = MAX_STEPS * (MAX_ITERATIONS + 1)};
+static const path_limits LONG_PATH = {
+    .max_steps = MAX_STEPS,
+    .max_iterations = MAX_STEPS * (MAX_ITERATIONS + 1),
+    .first_step = 0,
+};
 
 /* The loads at t; the inputs lie in the workspace until the next call. */
 static loads loads_at(const load_path *path, real t, workspace *work) {
@@ -140,16 +144,19 @@ static progress begin_path(int has_jacobian, workspace *work) {
       .jacobian = work->updated_jacobians,
       .spare = work->updated_jacobians + 1,
       .has_jacobian = has_jacobian,
+      .step = 0,
   };
   return now;
 }
 
 /* From the equilibrium at t = 0 in points[0], with its tangent and, where it is known, its Jacobian in
-   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end. */
+   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end, and the step to go on with, zero
+   where none is long enough. */
 static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
                             solver_info *info) {
   progress now = begin_path(has_jacobian, work);
   real step = path->grows_load ? FIRST_STEP : 1;
+  if (limits->first_step > 0) step = limits->first_step;
   for (int k = 0; k < limits->max_steps && info->iterations < limits->max_iterations; k++) {
     step = admissible_step(&now, step);
     if (step == 0) break;
@@ -180,6 +187,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     }
   }
   info->load_factor = now.point->t;
+  now.step = step;
   return now;
 }
 

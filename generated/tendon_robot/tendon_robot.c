@@ -72,12 +72,26 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
+/* The end of a solve in view of the tendons: their paths have length left where the rods were followed to. */
+static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+  real stretches[4];
+  ARGUMENTS(tendon_robot_k_path_stretch, x, inputs);
+  RESULTS(stretches);
+  if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
+  CALL(tendon_robot_k_path_stretch);
+  for (int i = 0; i < 4; i++) {
+    if (stretches[i] <= (real)0.001) return SOLVER_PATH_VANISHED;
+  }
+  return end;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"
 #include "solver_track.c"
+#include "solver_recover.c"
 /* ---- Many load cases ---- */
 
 #ifdef _OPENMP
@@ -177,6 +191,30 @@ void tendon_robot_unpack(const tendon_robot_real *inputs, tendon_robot_inputs *n
   memcpy(named->upper_south_tension, inputs + TENDON_ROBOT_INPUT_UPPER_SOUTH_TENSION, sizeof named->upper_south_tension);
 }
 
+static const tendon_robot_real LEAST_INPUTS[TENDON_ROBOT_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, 0, 0, 0, 0};
+static const tendon_robot_real LARGEST_INPUTS[TENDON_ROBOT_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+int tendon_robot_in_range(const tendon_robot_real *inputs) {
+  for (int i = 0; i < TENDON_ROBOT_INPUTS; i++) {
+    if (!(inputs[i] >= LEAST_INPUTS[i] && inputs[i] <= LARGEST_INPUTS[i])) return 0;
+  }
+  return 1;
+}
+
+int tendon_robot_clamp(tendon_robot_real *inputs) {
+  int moved = 0;
+  for (int i = 0; i < TENDON_ROBOT_INPUTS; i++) {
+    if (inputs[i] < LEAST_INPUTS[i]) {
+      inputs[i] = LEAST_INPUTS[i];
+      moved++;
+    } else if (inputs[i] > LARGEST_INPUTS[i]) {
+      inputs[i] = LARGEST_INPUTS[i];
+      moved++;
+    }
+  }
+  return moved;
+}
+
 void tendon_robot_evaluate(const real *x, const real *inputs, tendon_robot_results *named) {
   tendon_robot_tip(x, inputs, named->tip.position, named->tip.quaternion);
   tendon_robot_actuator_lower_east(x, inputs, &named->tension_lower_east, &named->length_lower_east, 0);
@@ -205,6 +243,8 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case TENDON_ROBOT_LOST_TRACK:
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
+    case TENDON_ROBOT_PATH_VANISHED:
+      return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
   }
   return "No such status.";
 }
@@ -227,6 +267,8 @@ const char *tendon_robot_status_label(tendon_robot_status status) {
       return "not_in_equilibrium";
     case TENDON_ROBOT_LOST_TRACK:
       return "lost_track";
+    case TENDON_ROBOT_PATH_VANISHED:
+      return "path_vanished";
   }
   return "unknown";
 }

@@ -61,6 +61,13 @@ void tendon_robot_pack(const tendon_robot_inputs *named, tendon_robot_real *inpu
 void tendon_robot_unpack(const tendon_robot_real *inputs, tendon_robot_inputs *named);
 
 
+/* Ranges of the inputs by what they are, a tension not below zero and a length above, and by the bounds of the scene. The
+   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one all the same.
+   in_range: 1 where every entry is in its range, 0 where one is not, or is no number. clamp moves every entry that is beyond
+   its range to the end of it and returns how many it moved; what is no number stays. */
+int tendon_robot_in_range(const tendon_robot_real *inputs);
+int tendon_robot_clamp(tendon_robot_real *inputs);
+
 /* Position (m) and quaternion. */
 typedef struct {
   tendon_robot_real position[3];
@@ -102,7 +109,8 @@ typedef enum {
   TENDON_ROBOT_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
   TENDON_ROBOT_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
   TENDON_ROBOT_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
-  TENDON_ROBOT_LOST_TRACK         = 7  /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  TENDON_ROBOT_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
+  TENDON_ROBOT_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } tendon_robot_status;
 
 typedef struct {
@@ -113,7 +121,7 @@ typedef struct {
   tendon_robot_real load_factor;     /* share of the load that x carries; 1 where converged */
 } tendon_robot_info;
 
-/* Budget of one call of tendon_robot_track. */
+/* Budget of one call of tendon_robot_track, or of tendon_robot_recover. */
 typedef struct {
   int max_iterations;           /* Newton steps; default 40 */
   int max_continuation_steps;   /* points between the last inputs and the new ones; default 20 */
@@ -154,6 +162,7 @@ typedef struct {
   tendon_robot_real trial_residual[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real predicted[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real correction[TENDON_ROBOT_UNKNOWNS];
+  tendon_robot_real reached[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real d_x_d_inputs[TENDON_ROBOT_UNKNOWNS * 10];
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real kernel_reals[2232];
@@ -164,10 +173,11 @@ typedef struct {
 #define TENDON_ROBOT_WORKSPACE_SIZE sizeof(tendon_robot_workspace)
 int tendon_robot_workspace_size(void);
 
-/* What tendon_robot_track keeps from one call to the next. Fill it with zeros before the first. */
+/* What tendon_robot_track and tendon_robot_recover keep from one call to the next. Fill it with zeros before the first. */
 typedef struct {
   tendon_robot_jacobian_factors jacobian;
   tendon_robot_real inputs[10];
+  tendon_robot_real step;
   int has_inputs;
   int has_jacobian;
 } tendon_robot_memory;
@@ -207,9 +217,12 @@ tendon_robot_status tendon_robot_solve_sensitivity(const tendon_robot_real *inpu
    Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
    for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
-   reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
-   ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+   reach the inputs either, within the budget: LOST_TRACK, and the next turn may ask for something nearer, or
+   tendon_robot_recover be called. SINGULAR: the solution is at a limit or bifurcation point, or so far off that nothing is known
+   of it to rounding, and has no derivatives; a turn that keeps its Jacobian does not look for that.
+
+   The result is that of info->status. On anything but CONVERGED x and memory are as they were: the last solution and what
+   belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
@@ -217,6 +230,18 @@ tendon_robot_status tendon_robot_solve_sensitivity(const tendon_robot_real *inpu
 tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_memory *memory,
                              const tendon_robot_options *options, tendon_robot_real *d_x_d_inputs,
                              tendon_robot_real *d_poses_d_inputs, tendon_robot_workspace *workspace, tendon_robot_info *info);
+
+/* One turn of the way back, where tendon_robot_track has lost its track: from the last solution along the straight line to these
+   inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
+   status. CONVERGED: these are the inputs asked for, and tendon_robot_track goes on. LOST_TRACK: call again, with the inputs of
+   that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
+   there, there may be a limit point or a buckling load; other inputs may, and tendon_robot_solve from all zeros. NOT_IN_EQUILIBRIUM:
+   nothing was tracked yet, or x is not what it was.
+
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
+   at the end the index of resolution once. options and info may be null. */
+tendon_robot_status tendon_robot_recover(const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_memory *memory,
+                               const tendon_robot_options *options, tendon_robot_workspace *workspace, tendon_robot_info *info);
 
 /* All poses, efforts and conjugates at once, by name. */
 void tendon_robot_evaluate(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_results *results);

@@ -14,6 +14,7 @@
 #define solver_follow tendon_robot_follow
 #define solver_solve_sensitivity tendon_robot_solve_sensitivity
 #define solver_track tendon_robot_track
+#define solver_recover tendon_robot_recover
 #define solver_residual tendon_robot_residual
 #define solver_residual_jacobian tendon_robot_residual_jacobian
 #define solver_input_jacobian tendon_robot_input_jacobian
@@ -26,6 +27,7 @@
 #define SOLVER_UNRESOLVED TENDON_ROBOT_UNRESOLVED
 #define SOLVER_NOT_IN_EQUILIBRIUM TENDON_ROBOT_NOT_IN_EQUILIBRIUM
 #define SOLVER_LOST_TRACK TENDON_ROBOT_LOST_TRACK
+#define SOLVER_PATH_VANISHED TENDON_ROBOT_PATH_VANISHED
 
 #define SOLVER_UNKNOWNS TENDON_ROBOT_UNKNOWNS
 #define SOLVER_INPUTS TENDON_ROBOT_INPUTS
@@ -34,6 +36,7 @@
 
 #define SOLVER_DEFAULT_ITERATIONS 40
 #define SOLVER_DEFAULT_CONTINUATION_STEPS 20
+#define SOLVER_SETTLING_ITERATIONS 4
 
 #ifdef TENDON_ROBOT_SINGLE
 #define SOLVER_SINGLE

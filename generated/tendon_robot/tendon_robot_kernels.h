@@ -27,6 +27,11 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
 #define tendon_robot_k_resolution_index_SZ_W 0
+int tendon_robot_k_path_stretch(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_path_stretch_SZ_ARG 2
+#define tendon_robot_k_path_stretch_SZ_RES 1
+#define tendon_robot_k_path_stretch_SZ_IW 0
+#define tendon_robot_k_path_stretch_SZ_W 0
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3

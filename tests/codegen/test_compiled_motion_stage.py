@@ -64,9 +64,10 @@ def test_stage_vs_plain(make: Callable[[], Model], longest: int, monkeypatch: py
     stage = motion_stage(make(), 0.03)
     compiled = compiled_motion_stage(stage, f"moving_{make.__name__}")
     at = somewhere(stage)
-    assert_allclose(compiled.equations(*at), stage.equations(*at), rtol=1e-11, atol=1e-12)
-    found = slopes_of(compiled.equations, at)
-    for block, expected in zip(found, slopes_of(stage.equations, at), strict=True):
+    compiled_equations, equations = compiled.equations.function, stage.equations.function
+    assert_allclose(compiled_equations(*at), equations(*at), rtol=1e-11, atol=1e-12)
+    found = slopes_of(compiled_equations, at)
+    for block, expected in zip(found, slopes_of(equations, at), strict=True):
         assert_allclose(block.full(), expected.full(), rtol=1e-9, atol=1e-10)
     pose_at = [at[0], at[2]]
     expected_pose = plain_poses(stage)
@@ -111,14 +112,14 @@ def test_second_derivatives_vs_plain() -> None:
     stage = motion_stage(build(scene_from_dict(tables), moving=True), 0.03, radau(1))
     poses = plain_poses(stage)
     exact = compiled_motion_stage(stage, "exact_motion", curvature=True)
-    expected = hessian(stage.equations, poses, stage)
-    assert_allclose(hessian(exact.equations, exact.poses, stage), expected, rtol=1e-9, atol=1e-11)
+    expected = hessian(stage.equations.function, poses, stage)
+    assert_allclose(hessian(exact.equations.function, exact.poses, stage), expected, rtol=1e-9, atol=1e-11)
     bare = compiled_motion_stage(stage, "bare_motion")
     at = somewhere(stage)
     by_state, by_inputs = (block.full() for block in slopes_of(poses, [at[0], at[2]]))
     count = stage.model.inputs.size
     slopes = np.hstack([by_state, np.zeros((7, stage.unknowns_size)), by_inputs, np.zeros((7, count))])[:3]
-    assert_allclose(hessian(bare.equations, bare.poses, stage), slopes.T @ slopes, rtol=1e-10, atol=1e-12)
+    assert_allclose(hessian(bare.equations.function, bare.poses, stage), slopes.T @ slopes, rtol=1e-10, atol=1e-12)
 
 
 def test_equations_stay_out_of_gauss_newton_hessians() -> None:

@@ -198,7 +198,7 @@ def test_every_status_has_its_own_sentence(library: Library) -> None:
     made = library("planar")
     text = made.handle.planar_status_text
     text.restype = ctypes.c_char_p
-    sentences = [text(status).decode() for status in range(8)]
-    assert len(set(sentences)) == 8
+    sentences = [text(status).decode() for status in range(len(OUTCOMES))]
+    assert len(set(sentences)) == len(OUTCOMES)
     assert sentences == [outcome.value for outcome in OUTCOMES]
-    assert text(8) == text(-1) == b"No such status."
+    assert text(len(OUTCOMES)) == text(-1) == b"No such status."

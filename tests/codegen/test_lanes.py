@@ -10,14 +10,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import Compiled, ExportError, Model, Scene, build, export, load
+from cosserat_casadi import Compiled, ExportError, Model, Outcome, Scene, build, export, load
 from cosserat_casadi.codegen import compiler, lanes, rows
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
 from tests.commands import cosserat
 from tests.conftest import ROOT
+from tests.equilibrium.test_vanished_paths import on_grid, pulled
 from tests.scenes import push, rod, scene
 
 CONVERGED, NOT_FINITE = 0, 2
@@ -96,6 +98,14 @@ def test_tendons_are_the_same() -> None:
     found = assert_same(library, inputs)
     assert_array_equal(found[:, 0], CONVERGED)
     assert np.ptp(found[:, -1]) > 1e-3
+
+
+def test_paths_that_vanish_are_told_alike() -> None:
+    """Tensions around the one at which a planar rod has pressed its tendon's path to nothing."""
+    library = libraries(on_grid(pulled("planar", 50.0), modes=2, nodes=8))
+    found = assert_same(library, np.array([80.0, 90.0, 95.0, 99.8, 100.2, 110.0, 120.0])[:, None])
+    vanished = OUTCOMES.index(Outcome.PATH_VANISHED)
+    assert_array_equal(found[:, 0], [CONVERGED] * 4 + [vanished] * 3)
 
 
 def test_judged_rows_are_the_same() -> None:

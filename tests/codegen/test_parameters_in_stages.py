@@ -63,7 +63,9 @@ def test_compiled_stages(model: Model, near: Solution) -> None:
     compiled = compiled_motion_stage(in_motion, "pmoving")
     somewhere = [0.1 * np.ones(size) for word, size in in_motion.sizes.items() if word != "p"]
     somewhere.insert(3, p)
-    assert_allclose(compiled.equations(*somewhere), in_motion.equations(*somewhere), rtol=1e-11, atol=1e-11)
+    assert_allclose(
+        compiled.equations.function(*somewhere), in_motion.equations.function(*somewhere), rtol=1e-11, atol=1e-11
+    )
 
 
 def test_stage_in_motion(model: Model) -> None:
@@ -76,9 +78,9 @@ def test_stage_in_motion(model: Model) -> None:
     at[3] = 1.02 * model.parameters.pack()
     plain, slopes, *_ = equations_functions(stage, "moving", curvature=False)
     fixed = motion_stage(model.at(at[3]), 0.02)
-    assert_allclose(plain(*at), fixed.equations(at[0], at[1], at[2], at[4]), rtol=1e-10, atol=1e-10)
+    assert_allclose(plain(*at), fixed.equations(*at[:3], inputs_rate=at[4]), rtol=1e-10, atol=1e-10)
     found = slopes(*at, ca.DM(stage.unknowns_size, 1))
-    for block, wanted in zip(found, slopes_of(stage.equations, at), strict=True):
+    for block, wanted in zip(found, slopes_of(stage.equations.function, at), strict=True):
         assert_allclose(block.full(), wanted, rtol=0, atol=1e-10 * max(1.0, np.abs(wanted).max()))
     poses, pose_slopes, *_ = poses_functions(stage, "poses", curvature=False)
     assert poses.name_in() == ["state", "inputs", "p"]

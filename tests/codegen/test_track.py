@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cosserat_casadi.codegen.library import TRACK_ITERATIONS, TRACK_STEPS
-from tests.codegen.libraries import QUICK, Exported, run
+from cosserat_casadi import Outcome
+from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS
+from tests.codegen.libraries import QUICK, Exported, Recipe, run
+from tests.codegen.test_hard_cases import deep_arch
 from tests.scenes import cable_lengths
 
 Library = Callable[[str], Exported]
@@ -50,8 +53,8 @@ WRAPPED = [f"-Wl,--wrap=cables_k_{kernel}" for kernel in ("residual", "jacobian"
 def cables(
     made: Exported,
     inputs: np.ndarray,
-    iterations: int = TRACK_ITERATIONS,
-    steps: int = TRACK_STEPS,
+    iterations: int = ALWAYS.iterations,
+    steps: int = ALWAYS.steps,
     *,
     derivatives: bool = True,
 ) -> dict[str, Any]:
@@ -123,3 +126,68 @@ def test_track_that_is_lost_leaves_everything_as_it_was(library: Library) -> Non
 @pytest.mark.parametrize("budget", [(0, 0), (1, 0), (0, 5), (1, 1), (2, 3)])
 def test_no_budget_is_too_small_to_be_kept(library: Library, budget: tuple[int, int]) -> None:
     assert cables(library("cables"), cable_lengths(6e-4, 50), *budget)["failures"] == 0
+
+
+ABSURD = [1e6, 1e8, 1e12, 1e100, -1e6, -1e9]
+"""Forces, N, or lengths, m, beyond all that a rod is made for."""
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "tendons", "cables", "robot"])
+def test_absurd_turns_leave_everything_as_it_was(library: Library, name: str) -> None:
+    """One status of a turn, and the solution before is there for the next."""
+    made = library(name)
+    own = made.model.pack()
+    turns = np.array([own, *[own + size * (np.arange(len(own)) == i) for i in range(len(own)) for size in ABSURD]])
+    found = printed(made.program("absurd.c", *QUICK), turns)
+    assert (found["two_statuses"], found["moved"], found["lost_after"]) == (0, 0, 0)
+    assert found["refused"] > 0
+
+
+def printed(program: Any, inputs: np.ndarray, *words: object) -> dict[str, Any]:
+    """What a program prints of turns at these inputs."""
+    text = f"{len(inputs)}\n" + "\n".join(" ".join(map(repr, row)) for row in inputs.tolist())
+    command = [str(program), *map(str, words)]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=True, timeout=100)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+CONVERGED, STALLED, LOST = (
+    1 + OUTCOMES.index(o) for o in (Outcome.CONVERGED, Outcome.LOAD_STALLED, Outcome.LOST_TRACK)
+)
+
+
+def recovered(made: Exported, inputs: np.ndarray, iterations: int, steps: int) -> list[int]:
+    """Ends of turns: of track positive, of recover, which is called while the track is lost, negative; from 1 on."""
+    wrapped = [f"-Wl,--wrap={made.name}_k_{kernel}" for kernel in ("residual", "jacobian", "rate")]
+    found = printed(made.program("recover.c", *QUICK, *wrapped), inputs, iterations, steps)
+    # The bounds that the header states, and that x goes with the memory's inputs.
+    assert found["residuals"] <= iterations + steps + SETTLING_ITERATIONS + 2
+    assert found["jacobians"] <= iterations + steps + SETTLING_ITERATIONS + 2
+    assert found["rates"] <= steps + 1
+    assert found["worst"] < 1e-11
+    ends: list[int] = found["ends"]
+    return ends
+
+
+@pytest.mark.parametrize("budget", [(6, 2), (12, 6), (ALWAYS.iterations, ALWAYS.steps)])
+def test_a_lost_track_is_found_again_while_inputs_move_on(library: Library, budget: tuple[int, int]) -> None:
+    """Lengths jump by 3 cm, and go on moving: each turn comes nearer, and in the end the loop goes on."""
+    near = cable_lengths(2e-4, 100)
+    near[5:] += [0.03, -0.015, -0.015]
+    ends = recovered(library("cables"), near, *budget)
+    assert ends[:6] == [CONVERGED] * 5 + [LOST]
+    assert set(ends[6:50]) <= {CONVERGED, -CONVERGED, -LOST}
+    assert ends[50:] == [CONVERGED] * 50
+
+
+def test_a_line_that_leads_nowhere_is_told(export_recipe: Callable[[str, Recipe], Exported]) -> None:
+    """Beyond 8.97 N, its limit load, an arch has no equilibrium near; back below it the loop goes on."""
+    beyond = np.array([0.0, 0.0, -9.5])
+    below = np.array([0.0, 0.0, -5.0])
+    turns = np.array([np.zeros(3), *[beyond] * 30, *[below] * 12])
+    ends = recovered(export_recipe("hard_arch", Recipe(deep_arch(), 6, 10)), turns, 12, 6)
+    assert -STALLED in ends[:31]
+    assert -CONVERGED not in ends[:31]
+    assert -CONVERGED in ends[31:]
+    assert ends[-1] == CONVERGED

@@ -117,7 +117,7 @@ def optimum(wanted: Task) -> Swing:
         unknowns = opti.variable(stage.unknowns_size)
         opti.set_initial(unknowns, stage.still(wanted.near.x))
         opti.subject_to(opti.bounded(-RATE, rates, RATE))
-        opti.subject_to(stage.equations(states[-1], unknowns, tensions[-1], rates) == 0)
+        opti.subject_to(stage.equations(states[-1], unknowns, tensions[-1], inputs_rate=rates) == 0)
         following = opti.variable(stage.state_size)
         opti.set_initial(following, wanted.start)
         opti.subject_to(following == stage.next_state(states[-1], unknowns))

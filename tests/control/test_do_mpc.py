@@ -98,7 +98,7 @@ def test_do_mpc_vs_nlp_in_motion() -> None:
     unknowns = described.set_variable("_z", "unknowns", shape=(stage.unknowns_size, 1))
     described.set_rhs("state", stage.next_state(state, unknowns))
     described.set_rhs("tensions", tensions + swing.STEP * rates)
-    described.set_alg("motion", stage.equations(state, unknowns, tensions, rates))
+    described.set_alg("motion", stage.equations(state, unknowns, tensions, inputs_rate=rates))
     described.setup()
     controller = do_mpc.controller.MPC(described)
     controller.settings.n_horizon = swing.STAGES

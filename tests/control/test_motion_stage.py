@@ -54,7 +54,7 @@ def compare_with_the_simulator(family: str, method: Collocation) -> None:
         rows.append(model.inverse_dynamics(*at).full()[:, 0])
     scaled = np.where(differential, duration**2 * unknowns, unknowns).ravel()
     state = stage.state(start.x, start.v)
-    found = stage.equations(state, scaled, drawn.inputs, drawn.inputs_rate).full()[:, 0]
+    found = stage.equations(state, scaled, drawn.inputs, inputs_rate=drawn.inputs_rate).full()[:, 0]
     assert_allclose(found, np.concatenate(rows), rtol=1e-10, atol=1e-11)
     end = end_of(method, differential, start, duration, unknowns, duration)
     following = stage.next_state(state, scaled).full()[:, 0]
@@ -110,7 +110,7 @@ def test_fatrop_vs_ipopt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         constraints.append(tensions[k + 1] - tensions[k] - STEP * rates)
         if k == 0:
             constraints += [states[k] - wanted.start, tensions[k] - wanted.near.inputs]
-        constraints.append(compiled.equations(states[k], unknowns, tensions[k], rates))
+        constraints.append(compiled.equations(states[k], unknowns, tensions[k], inputs_rate=rates))
         cost += wanted.effort(rates)
     variables += [states[-1], tensions[-1]]
     lower += [*[-np.inf] * stage.state_size, *[0.0] * count]
@@ -146,7 +146,7 @@ def test_stages_of_a_rod_at_rest_stay_at_rest() -> None:
     unknowns = stage.still(wanted.near.x)
     still = np.zeros(stage.model.inputs.size)
     assert_allclose(stage.next_state(wanted.start, unknowns).full()[:, 0], wanted.start, rtol=0, atol=0)
-    residual = stage.equations(wanted.start, unknowns, wanted.near.inputs, still)
+    residual = stage.equations(wanted.start, unknowns, wanted.near.inputs, inputs_rate=still)
     assert_allclose(residual, 0.0, rtol=0, atol=1e-11)
 
 
@@ -169,4 +169,23 @@ def test_parameters_have_the_values_of_the_scene() -> None:
     stage = motion_stage(build(scene, plain.stage.model.discretisation, moving=True), STEP)
     rng = np.random.default_rng(1)
     arguments = [rng.normal(scale=0.1, size=symbol.shape) for symbol in plain.stage.symbols]
-    assert_allclose(stage.equations(*arguments), plain.stage.equations(*arguments), rtol=1e-10, atol=1e-10)
+    found, expected = (own.equations.function(*arguments) for own in (stage, plain.stage))
+    assert_allclose(found, expected, rtol=1e-10, atol=1e-10)
+
+
+def test_what_is_like_in_size_is_given_by_name() -> None:
+    """Rates beyond the third argument have a name, so have parameters, which not every stage takes."""
+    plain = task()
+    at = plain.start, plain.stage.still(plain.near.x), plain.near.inputs
+    still = np.zeros(plain.stage.model.inputs.size)
+    with pytest.raises(TypeError, match="positional argument"):
+        plain.stage.equations(*at, still)  # type: ignore[misc]
+    with pytest.raises(ValueError, match="takes no parameters: leave p out"):
+        plain.stage.equations(*at, inputs_rate=still, p=[1.0])
+    scene = plain.stage.model.scene.model_copy(update={"parameters": ("arm.material.youngs_modulus",)})
+    of_parameters = build(scene, plain.stage.model.discretisation, moving=True)
+    stage = motion_stage(of_parameters, STEP, parameters=True)
+    with pytest.raises(ValueError, match="give them as p"):
+        stage.equations(*at, inputs_rate=still)
+    found = stage.equations(*at, inputs_rate=still, p=of_parameters.parameters.pack())
+    assert_allclose(found, plain.stage.equations(*at, inputs_rate=still), rtol=1e-10, atol=1e-10)

@@ -59,7 +59,7 @@ def test_rockit_vs_nlp_in_motion() -> None:
     unknowns, rates = ocp.control(stage.unknowns_size), ocp.control(count)
     ocp.set_next(state, stage.next_state(state, unknowns))
     ocp.set_next(tensions, tensions + swing.STEP * rates)
-    ocp.subject_to(stage.equations(state, unknowns, tensions, rates) == 0, include_last=False)
+    ocp.subject_to(stage.equations(state, unknowns, tensions, inputs_rate=rates) == 0, include_last=False)
     ocp.subject_to(ocp.at_t0(state) == wanted.start)
     ocp.subject_to(ocp.at_t0(tensions) == wanted.near.inputs)
     ocp.subject_to(tensions >= 0, include_first=False)

@@ -26,6 +26,11 @@ def scene(after="", *, rods=None, before=""):
     return f"schema = 1\n{before}\n{rod() if rods is None else rods}\n{after}\n"
 
 
+def of_rods(name, modes, others='modes = 2\nnodes = 4\nrotation = "magnus4"'):
+    own = f'{{ rod = "{name}", modes = {modes}, nodes = 4, rotation = "magnus4" }}'
+    return f"[accuracy]\n{others}\nof_rods = [{own}]"
+
+
 def section(text):
     return scene(rods=rod(f"material = {{ youngs_modulus = 1.0, shear_modulus = 1.0 }}\nsection = {{ {text} }}"))
 
@@ -88,6 +93,9 @@ BAD = [
     ("modes_real", scene("[accuracy]\nmodes = 6.0"), "accuracy.modes", "must be a whole number, got 6.0"),
     ("modes_many", scene("[accuracy]\nmodes = [6, 6, 201]"), "accuracy.modes[2]", "must be <= 200"),
     ("modes_count", scene("[accuracy]\nmodes = [6, 6]"), "accuracy.modes", "got 2 where rods[0] admits 3"),
+    ("of_rods_of_no_rod", scene(of_rods("x", 2)), "accuracy.of_rods[0].rod", "no rod is named 'x'"),
+    ("of_rods_count", scene(of_rods("finger", [2, 2])), "accuracy.of_rods[0].modes", "got 2 where the rod admits 3"),
+    ("of_rods_alone", scene(of_rods("finger", 2, "")), "accuracy.of_rods", "stands without modes, nodes and rotation"),
     ("modes_empty", scene("[accuracy]\nmodes = []"), "accuracy.modes", "at least one"),
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
     ("shape_one", scene("[accuracy]\nshape = 1"), "accuracy.shape", "must be true or false, got 1"),

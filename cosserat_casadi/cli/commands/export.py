@@ -19,7 +19,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
-from cosserat_casadi.codegen.export import check_batches, check_export
+from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
@@ -68,6 +68,10 @@ def export(
         list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="The same as a range of an input.")
     ] = None,
     samples: Annotated[int, typer.Option(min=1, max=10_000, help="Load cases spread over the ranges.")] = 32,
+    period: Annotated[
+        float | None,
+        typer.Option(help="Seconds that the longest turn of a control loop may take.", show_default=False),
+    ] = None,
     settings: Settings = None,
 ) -> None:
     """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
@@ -91,6 +95,7 @@ def export(
             "--batches": batches,
             "--over": over is not None,
             "--range": bool(ranges),
+            "--period": period is not None,
         }
         _refuse_without_sources(asked)
     else:
@@ -112,11 +117,13 @@ def export(
             "--range": bool(ranges),
             "--page": page is not None,
             "--fmu": fmu is not None,
+            "--period": period is not None,
         }
         _refuse_for_tubes(unknown)
         assert output is not None
         export_tube_scene(exported_scene, output, name)
         return
+    check_period(exported_scene, period)
     cases = None
     if output is not None:
         asked_of_contact = {
@@ -163,6 +170,7 @@ def export(
             stability=stability,
             batches=batches,
             load_cases=cases,
+            period=period,
         )
         print_export(console, solution, output)
     if fmu is not None:

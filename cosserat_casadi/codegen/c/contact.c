@@ -35,16 +35,16 @@ static void move_inputs(const real *from, const real *to, const contact_options 
   real done = 0;
   real step = 1;
   real *inputs = work->path_inputs;
-  real index = 0;
+  real index[2] = {0, 1}; /* of resolution; the least stretch of a tendon's path */
   {
     const arrangement *at = ARRANGEMENT + work->solved[0].arrangement;
-    call(at->nodes, work->solved[0].z, from, work->nodes_before, &index, work);
+    call(at->nodes, work->solved[0].z, from, work->nodes_before, index, work);
   }
   while (info->parts < options->max_parts && info->iterations < options->max_iterations) {
     const real end = done + step > 1 - MIN_STEP ? 1 : done + step;
     for (int i = 0; i < INPUTS; i++) inputs[i] = end == 1 ? to[i] : (1 - end) * from[i] + end * to[i];
     info->parts++;
-    const int found = settle(inputs, options->max_iterations, &index, work, info);
+    const int found = settle(inputs, options->max_iterations, index, work, info);
     const arrangement *before = ARRANGEMENT + work->solved[0].arrangement;
     if (found < 0 || !is_near(before, work->solved[0].z, ARRANGEMENT + work->solved[found].arrangement,
                               work->solved[found].z, work)) {
@@ -59,7 +59,8 @@ static void move_inputs(const real *from, const real *to, const contact_options 
     info->load_factor = done;
     if (done == 1) {
       /* Nodes or modes too few for so bent a rod give equations whose solution is not one of the rod. */
-      info->status = index <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
+      info->status = index[0] <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
+      if (info->status == CONTACT_CONVERGED && index[1] <= VANISHED) info->status = CONTACT_PATH_VANISHED;
       return;
     }
     step *= 2;
@@ -162,14 +163,18 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
   const contact_options chosen = options ? *options : DEFAULT_OPTIONS;
   contact_info found = no_result();
   contact_status status = CONTACT_NOT_FINITE;
+  contact_state reached = *state;
   if (all_finite(inputs, INPUTS)) {
     recall(memory, work);
-    status = is_known(state) ? follow(inputs, state, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
+    status = is_known(state) ? follow(inputs, &reached, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
+  }
+  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, &reached, d_poses_d_inputs, work);
+  if (status == CONTACT_CONVERGED) {
+    *state = reached;
+    remember(memory, work);
   }
   found.status = status;
   if (info) *info = found;
-  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, state, d_poses_d_inputs, work);
-  remember(memory, work);
   return status;
 }
 

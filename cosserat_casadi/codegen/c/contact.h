@@ -10,6 +10,9 @@
 #ifndef CONTACT_ARRANGEMENTS
 #error "This file is a part of the library's own source: compile that one."
 #endif
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "The solver looks for values that are not finite: compile without -ffast-math."
+#endif
 
 #include <math.h>
 #include <string.h>

@@ -122,7 +122,7 @@ solver_status tubes_track(const real *inputs, real *x, solver_memory *memory, co
   memcpy(kept, x, sizeof kept);
   work->memory = *memory;
   solver_status end = solver_track(inputs, x, memory, options, d_x_d_inputs, d_poses_d_inputs, work, &found);
-  if (end == SOLVER_CONVERGED || end == SOLVER_UNRESOLVED) {
+  if (end == SOLVER_CONVERGED) {
     found.determinant = determinant_at_end(inputs, x, d_x_d_inputs || d_poses_d_inputs, memory, work);
     const int sign = sign_of(found.determinant);
     if (memory->sign != 0 && sign != memory->sign) {

@@ -27,6 +27,9 @@ from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
+SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
+"""Ends after which the state is a solution for the inputs, if of the discrete equations alone."""
+
 
 class ContactInfo(Info):
     """The struct in C that says how a call ended: what there is of every solve, then what there is of contact."""
@@ -125,7 +128,7 @@ class CompiledContact(LoadedLibrary):
         state = self._room()
         self._function("start")(state)
         info = ContactInfo(load_factor=1.0)
-        return self._answer(Outcome.CONVERGED, state, info, None)
+        return self._answer(Outcome.CONVERGED, state, info, solved=True)
 
     def solve(
         self, inputs: ArgumentValues = None, start: CompiledContactSolution | None = None
@@ -145,7 +148,8 @@ class CompiledContact(LoadedLibrary):
         state = self._room() if start is None else self._state(start)
         info = ContactInfo()
         status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
-        return self._answer(CONTACT_OUTCOMES[status], state, info, None)
+        outcome = CONTACT_OUTCOMES[status]
+        return self._answer(outcome, state, info, solved=outcome in SOLVED)
 
     def track(
         self,
@@ -175,11 +179,9 @@ class CompiledContact(LoadedLibrary):
         track = self._function("track")
         status = track(pointer(given), state, None, options, pointer(columns), self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
-        derivatives = columns if outcome is Outcome.CONVERGED else None
-        # At a limit point there is a solution without derivatives.
-        if outcome is Outcome.SINGULAR:
-            outcome = CONTACT_OUTCOMES[info.status]
-        return self._answer(outcome, state, info, derivatives)
+        # After any other end the state is that of the turn before, for its inputs.
+        solved = outcome is Outcome.CONVERGED
+        return self._answer(outcome, state, info, columns if solved else None, solved=solved)
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -188,14 +190,19 @@ class CompiledContact(LoadedLibrary):
         return None if status != 0 else by_tip(self.rods, columns)
 
     def _answer(
-        self, outcome: Outcome, state: Any, info: ContactInfo, derivatives: FloatArray | None
+        self,
+        outcome: Outcome,
+        state: Any,
+        info: ContactInfo,
+        derivatives: FloatArray | None = None,
+        *,
+        solved: bool,
     ) -> CompiledContactSolution:
-        found = outcome in (Outcome.CONVERGED, Outcome.UNRESOLVED)
         return CompiledContactSolution(
             outcome=outcome,
             arrangement=self._arrangement_of(state),
-            tips=self._tips(state) if found else {},
-            contacts=self._contacts(state) if found else (),
+            tips=self._tips(state) if solved else {},
+            contacts=self._contacts(state) if solved else (),
             iterations=info.iterations,
             jacobians=info.jacobians,
             residual_norm=info.residual_norm,

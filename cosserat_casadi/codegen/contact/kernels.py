@@ -23,6 +23,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.functions import resolution_index
+from cosserat_casadi.model.path_stretch import path_stretches
 from cosserat_casadi.model.system import System
 
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
@@ -51,7 +52,7 @@ class ArrangementKernels:
         tips = self._tips()
         plain = {
             "residual": [written.residual],
-            "nodes": [self._nodes(), self._resolution_index()],
+            "nodes": [self._nodes(), self._indices()],
             "tips": [tips],
             "contacts": [self._resultants(), self._point_forces()],
         }
@@ -117,10 +118,13 @@ class ArrangementKernels:
             positions.append(ca.repmat(base.position, 1, shape.rod.grid.size) + rotation @ shape.position)
         return ca.horzcat(*positions)
 
-    def _resolution_index(self) -> Matrix:
+    def _indices(self) -> Matrix:
+        """Index of resolution, and the least stretch of a tendon's path; one where there is none."""
         system = self._written.system
         symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
-        return resolution_index(Expressions(system.discrete, "", symbols))
+        index = resolution_index(Expressions(system.discrete, "", symbols))
+        least: Matrix = ca.mmin(ca.vertcat(1, *path_stretches(system).values()))
+        return ca.vertcat(index, least)
 
     def _tips(self) -> Matrix:
         """Position and quaternion of the tip of every rod, stacked."""

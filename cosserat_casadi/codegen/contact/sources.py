@@ -22,6 +22,8 @@ from cosserat_casadi.codegen.status import contact_status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import with_discretisation
+from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
 
@@ -96,7 +98,7 @@ def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: fl
         "README.md": render("contact_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
-        "scene.toml": scene_text(chosen.scene),
+        "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
     }
     files[MANIFEST] = json.dumps(_manifest(model, chosen, names, files, error_estimate), indent=1, ensure_ascii=False)
     files[MANIFEST] += "\n"
@@ -172,6 +174,7 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "stride": passage.STRIDE,
         "most_looks": passage.MOST_LOOKS,
         "deep": passage.DEEP,
+        "vanished": VANISHED,
         "fastest": FASTEST,
         "closest": CLOSEST,
         "beside_end": BESIDE_END,

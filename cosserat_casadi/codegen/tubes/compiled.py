@@ -24,6 +24,9 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 
+SOLVED = (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED)
+"""Ends after which x is a solution for the inputs, if of the discrete equations alone."""
+
 
 class TubeInfo(Info):
     """The struct in C that says how a call ended: what there is of every solve, then what there is of tubes."""
@@ -114,7 +117,8 @@ class CompiledTubes(LoadedLibrary):
         x = self._start(start)
         info = TubeInfo()
         status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        return self._answer(STATUSES[status], given, x, info)
+        end = STATUSES[status]
+        return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
@@ -132,7 +136,8 @@ class CompiledTubes(LoadedLibrary):
         info = TubeInfo()
         arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         status = self._function("follow")(*arguments)
-        return self._answer(STATUSES[status], given, x, info)
+        end = STATUSES[status]
+        return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def track(
         self,
@@ -168,7 +173,8 @@ class CompiledTubes(LoadedLibrary):
         )
         end = STATUSES[status]
         found = by_tip(self.tubes, columns) if derivatives and end is TubeStatus.CONVERGED else None
-        return self._answer(end, given, x, info, derivatives=found, memory=memory.raw)
+        solved = end is TubeStatus.CONVERGED
+        return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -189,10 +195,10 @@ class CompiledTubes(LoadedLibrary):
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
     def _answer(
-        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, **more: Any
+        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
     ) -> CompiledTubesSolution:
         tips: dict[str, FloatArray] = {}
-        if status in (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED):
+        if solved:
             poses = np.zeros((len(self.tubes), POSE_SIZE))
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))

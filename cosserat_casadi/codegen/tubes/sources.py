@@ -19,8 +19,6 @@ from cosserat_casadi.codegen.folder import write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import (
     SHARED,
-    TRACK_ITERATIONS,
-    TRACK_STEPS,
     comment,
     solver_constants,
     version_words,
@@ -33,6 +31,7 @@ from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
 from cosserat_casadi.codegen.status import tube_status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -51,7 +50,10 @@ LIMITS = replace(ContinuationSettings(), longest=0.5)
 OWN = ("tubes_sensitivity.c", "tubes_turn.c")
 """Files of the folder ``c`` for tubes alone."""
 
-VERBATIM = (*(file for file in SHARED if file != "solver_sensitivity.c"), "linear_dense.c", *OWN)
+OTHERS = ("solver_sensitivity.c", "solver_recover.c")
+"""Files of the solver that tubes do without."""
+
+VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 KIND = "tubes"
@@ -138,6 +140,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
     return {
         **basics,
         **dense_words(render, basics),
+        "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **tube_status_words(names),
         **words_of_inputs(input_entries(robot), names),
@@ -150,8 +153,8 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "first": 1.0,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
-        "default_iterations": TRACK_ITERATIONS,
-        "default_continuation_steps": TRACK_STEPS,
+        "default_iterations": ALWAYS.iterations,
+        "default_continuation_steps": ALWAYS.steps,
         "further_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
         "batch_config": "",

@@ -55,11 +55,10 @@ int main(int count, char **words) {
     residuals = jacobians = rates = 0;
     const @{name}_status end = @{name}_track(inputs, x, &memory, &options, derivatives, 0, &workspace, &info);
     if (end != info.status) return 1;
-    if (end == @{MACRO}_LOST_TRACK) {
-      lost++;
+    if (end != @{MACRO}_CONVERGED) {
       moved_when_lost += memcmp(before, x, sizeof x) != 0 || memcmp(&memory, &memory_before, sizeof memory) != 0;
-    } else if (end != @{MACRO}_CONVERGED) {
-      failures++;
+      if (end == @{MACRO}_LOST_TRACK) lost++;
+      else failures++;
     }
     most_residuals = (int)largest(most_residuals, residuals);
     most_jacobians = (int)largest(most_jacobians, jacobians);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 8 };
+enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 9 };
 
 static @{name}_workspace workspace;
 
@@ -73,7 +73,7 @@ static void check(@{name}_status said, const double *inputs, const double *start
   int i, moved = 0;
   if (took > longest) longest = took;
   if (took > 1) fail("took more than a second", inputs, start, q, info);
-  if (said != info->status || (int)said < 0 || said > @{MACRO}_UNRESOLVED) fail("no such status", inputs, start, q, info);
+  if (said != info->status || (int)said < 0 || said >= STATUSES) fail("no such status", inputs, start, q, info);
   if (info->iterations < 0 || info->jacobians < 0) fail("negative count", inputs, start, q, info);
   if (info->iterations > most_iterations) most_iterations = info->iterations;
   counts[said]++;
@@ -81,7 +81,7 @@ static void check(@{name}_status said, const double *inputs, const double *start
   if (moved && !finite(q, N)) fail("wrote unknowns that are not finite", inputs, start, q, info);
   if (!(info->load_factor >= 0 && info->load_factor <= 1)) fail("load factor", inputs, start, q, info);
   if (said != @{MACRO}_CONVERGED) {
-    if (info->load_factor == 1 && said != @{MACRO}_UNRESOLVED) fail("whole load without convergence", inputs, start, q, info);
+    if (info->load_factor == 1 && said != @{MACRO}_UNRESOLVED && said != @{MACRO}_PATH_VANISHED) fail("whole load without convergence", inputs, start, q, info);
     return;
   }
   if (info->load_factor != 1) fail("converged short of the load", inputs, start, q, info);
@@ -123,18 +123,22 @@ static void track(const double *inputs, const double *start) {
   const @{name}_options *chosen = uniform() < 0.5 ? 0 : &options;
   @{name}_info info;
   double q[N], d_q[N * INPUTS], d_tip[7 * INPUTS], begun;
+  static @{name}_memory before;
+  before = memory;
   memcpy(q, start, sizeof q);
   begun = seconds();
   const @{name}_status said = @{name}_track(inputs, q, &memory, chosen, d_q, d_tip, &workspace, &info);
   if (chosen && info.iterations > options.max_iterations) fail("more work than allowed", inputs, start, q, &info);
-  if (said == @{MACRO}_LOST_TRACK || said == @{MACRO}_NOT_FINITE) {
-    lost += said == @{MACRO}_LOST_TRACK;
-    if (said == @{MACRO}_LOST_TRACK && memcmp(q, start, sizeof q)) fail("lost, and moved", inputs, start, q, &info);
+  if (said != info.status) fail("two statuses of one turn", inputs, start, q, &info);
+  if (said == @{MACRO}_CONVERGED) {
+    tracked++;
+    check(said, inputs, start, q, &info, seconds() - begun);
     return;
   }
-  tracked += said == @{MACRO}_CONVERGED;
-  /* At a limit point the solution has no derivatives. */
-  check(said == @{MACRO}_SINGULAR ? info.status : said, inputs, start, q, &info, seconds() - begun);
+  lost += said == @{MACRO}_LOST_TRACK;
+  if (memcmp(q, start, sizeof q)) fail("no solution, and moved", inputs, start, q, &info);
+  if (memcmp(&memory, &before, sizeof memory)) fail("no solution, and other memory", inputs, start, q, &info);
+  if (info.load_factor != 0) fail("no solution, and a load", inputs, start, q, &info);
 }
 
 int main(int count, char **words) {

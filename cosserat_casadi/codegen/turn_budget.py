@@ -1,0 +1,198 @@
+"""How much a turn of a control loop may evaluate by default: what it always may, or what fits a period.
+
+A turn is bounded in evaluations. What one takes is measured by a program that is made of the sources to be written, or
+foreseen by the laws of accuracy/cost.py where there is no compiler.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
+from cosserat_casadi.codegen.compiler import FLAGS, find_compiler
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.structs import initialiser
+from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.model.build import Model
+
+MOST_ITERATIONS = 40
+"""Newton steps of a turn where no period is given; turns that go well take two to five."""
+
+SETTLING_ITERATIONS = 4
+"""Most Newton steps from a point on a path, found as exactly as the path needs, to a solution; two are usual."""
+
+FORESEEN_STEPS = 5.0
+"""A Newton step over residual and Jacobian of plain rods: tendons, joints, factorisation and substitution come beside.
+
+Of rods, robots with tendons and the six-rod platform, measured, it was 1 to 4.3.
+"""
+
+FORESEEN_POINTS = 1.0
+"""What a point of a path takes beside, likewise. It was 0.2 to 0.7."""
+
+FORESEEN_ENDS = 9.0
+"""What a turn ends with, likewise: another Jacobian, derivatives with inputs, those of the poses. It was 3 to 8.4."""
+
+TIME_LIMIT = 300.0
+"""Time, s, after which a compiler, or the program that measures, is given up."""
+
+
+@dataclass(frozen=True)
+class TurnCosts:
+    """What the parts of a turn take, µs.
+
+    Attributes:
+        step: residual, Jacobian and its factorisation: a Newton step.
+        point: the rate of the residual and the tangent, at a point of a path.
+        end: the verdict on the solution and its derivatives.
+        measured: whether on this machine; else foreseen.
+    """
+
+    step: float
+    point: float
+    end: float
+    measured: bool
+
+    def worst(self, iterations: int, steps: int) -> float:
+        """Longest turn, µs, of track or of recover.
+
+        Args:
+            iterations: Newton steps of its budget.
+            steps: points between the last inputs and the new ones.
+        """
+        evaluations = iterations + steps + SETTLING_ITERATIONS + 2
+        return evaluations * self.step + (steps + 1) * self.point + self.end
+
+
+@dataclass(frozen=True)
+class TurnBudget:
+    """What a turn may take by default.
+
+    Attributes:
+        iterations: Newton steps.
+        steps: points between the last inputs and the new ones.
+        period: time that a turn was to fit, s; None where none was given.
+        costs: of its parts; likewise.
+    """
+
+    iterations: int = MOST_ITERATIONS
+    steps: int = MOST_ITERATIONS // 2
+    period: float | None = None
+    costs: TurnCosts | None = None
+
+    @property
+    def note(self) -> str:
+        """What the header says of the time of a turn; empty without a period."""
+        if self.costs is None or self.period is None:
+            return ""
+        costs = self.costs
+        worst = costs.worst(self.iterations, self.steps)
+        how = "best of many on the machine of the export" if costs.measured else "foreseen, as there was no compiler"
+        period = 1e6 * self.period
+        return (
+            f"\n   The defaults are those whose longest turn, {worst:.4g} us, fits a period of {period:.4g} us:\n"
+            f"   (m + c + {SETTLING_ITERATIONS + 2}) x {costs.step:.4g} us + (c + 1) x {costs.point:.4g} us + "
+            f"{costs.end:.4g} us,\n   {how}. A slower machine asks for a period as much shorter."
+        )
+
+    @property
+    def entry(self) -> dict[str, object]:
+        """What the manifest says of it."""
+        described: dict[str, object] = {"max_iterations": self.iterations, "max_continuation_steps": self.steps}
+        if self.costs is not None:
+            worst = self.costs.worst(self.iterations, self.steps)
+            how = "measured" if self.costs.measured else "foreseen"
+            described |= {"period_s": self.period, "longest_us": float(f"{worst:.4g}"), "times": how}
+        return described
+
+
+ALWAYS = TurnBudget()
+"""Where no period is given."""
+
+
+def fitting(costs: TurnCosts, period: float) -> TurnBudget:
+    """The largest budget, up to the one without a period, whose longest turn fits.
+
+    Args:
+        costs: of the parts of a turn.
+        period: time that a turn may take, s.
+
+    Raises:
+        ExportError: not even one Newton step on the way and one at the end fit.
+    """
+    for iterations in range(MOST_ITERATIONS, 0, -1):
+        steps = (iterations + 1) // 2
+        if costs.worst(iterations, steps) <= 1e6 * period:
+            return TurnBudget(iterations, steps, period, costs)
+    problem = f"a turn of this scene may take {costs.worst(1, 1):.3g} us, which is longer"
+    raise ExportError(Problem("--period", problem, "give a longer one, or a larger tolerance, which takes fewer modes"))
+
+
+def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
+    """What the parts of a turn take: measured where there is a compiler, else foreseen.
+
+    Args:
+        model: what is exported.
+        names: what things are called.
+        files: sources and headers by name.
+
+    Raises:
+        ExportError: there is a compiler, but it fails, or its program does.
+    """
+    try:
+        compiler = find_compiler()
+    except ExportError:
+        return foreseen_costs(model)
+    return measured_costs(model, names, files, compiler)
+
+
+def measured_costs(model: Model, names: Names, files: Mapping[str, str], compiler: str) -> TurnCosts:
+    """As :func:`costs_of`, by a program that this compiler makes.
+
+    Raises:
+        ExportError: compiler or program fail, or take too long.
+    """
+    given = np.concatenate([model.inputs.pack(), model.parameters.pack()])
+    words = {"name": names.name, "given": ", ".join(initialiser(value, names) for value in given.tolist()) or "0"}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            (Path(folder) / name).write_text(text, encoding="utf-8")
+        (Path(folder) / "turn_cost.c").write_text(render("turn_cost.c.in", words), encoding="utf-8")
+        sources = ["turn_cost.c", f"{names.name}_kernels.c"]
+        _run([compiler, *FLAGS, *sources, "-lm", "-o", "turn_cost"], folder)
+        printed = json.loads(_run(["./turn_cost"], folder))
+    return TurnCosts(**printed, measured=True)
+
+
+def foreseen_costs(model: Model) -> TurnCosts:
+    """As :func:`costs_of`, by the laws of the cost of single rods."""
+    scene = model.scene
+    equations = 0.0
+    for name, rod in model.at().discrete.rods.items():
+        equations += foreseen_time(rod.properties, rod.discretisation, spread_on(scene, name))
+    return TurnCosts(FORESEEN_STEPS * equations, FORESEEN_POINTS * equations, FORESEEN_ENDS * equations, measured=False)
+
+
+def _run(command: list[str], folder: str) -> str:
+    try:
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, errors="replace", check=False, timeout=TIME_LIMIT
+        )
+    except subprocess.TimeoutExpired:
+        problem = f"{command[0]} took longer than {TIME_LIMIT:g} s to tell what a turn takes"
+        raise ExportError(Problem("--period", problem, "leave it out")) from None
+    except OSError as error:
+        problem = f"{command[0]} cannot be run: {error.strerror}"
+        raise ExportError(Problem("--period", problem, "leave it out")) from None
+    if done.returncode:
+        problem = f"{command[0]} failed to tell what a turn takes: {done.stderr.strip()[-800:]}"
+        raise ExportError(Problem("--period", problem, "leave it out"))
+    return done.stdout

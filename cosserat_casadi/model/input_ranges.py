@@ -1,0 +1,53 @@
+"""Ranges of the inputs: by what an input is, and by what the scene says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout
+
+
+def limits_of(scene: scenes.Scene) -> Iterator[scenes.Bound]:
+    """What the scene says of the ranges of its inputs."""
+    yield from scene.bounds
+
+
+def physical_lower(layout: InputLayout) -> FloatArray:
+    """Least values that inputs can have by what they are, shape (layout.size,); -inf where there is none."""
+    lower = np.full(layout.size, -np.inf)
+    for entry, indices in layout:
+        lower[indices] = entry.lower
+    return lower
+
+
+def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[FloatArray, FloatArray]:
+    """Least and largest values of the stacked inputs, in their units, shape (layout.size,) each; infinite without any.
+
+    Args:
+        layout: the inputs.
+        bounds: what narrows the ranges that inputs have by what they are.
+    """
+    lower = physical_lower(layout)
+    upper = np.full(layout.size, np.inf)
+    for bound in bounds:
+        # A bound is of all entries of a vector alike.
+        entries = layout.slices[bound.input]
+        if bound.lower is not None:
+            lower[entries] = np.maximum(lower[entries], bound.lower)
+        if bound.upper is not None:
+            upper[entries] = np.minimum(upper[entries], bound.upper)
+    return lower, upper
+
+
+def ranges_of_inputs(scene: scenes.Scene, layout: InputLayout) -> tuple[FloatArray, FloatArray]:
+    """Least and largest values of the stacked inputs by what they are and by what the scene says of them.
+
+    Args:
+        scene: with the inputs.
+        layout: its inputs.
+    """
+    return narrowed(layout, limits_of(scene))

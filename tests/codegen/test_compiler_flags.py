@@ -1,0 +1,50 @@
+"""What exported C says to compilers: nothing to -Wextra, and no to arithmetic without infinities."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.codegen.contact_libraries import exported_contact, over_bar
+from tests.codegen.libraries import Exported, attempt, run
+
+STRICT = ("-std=c99", "-O0", "-Wall", "-Wextra", "-Werror")
+
+
+def compiled_sources(folder: Path, name: str) -> list[Path]:
+    """Sources that a user compiles; the others are included by these."""
+    return sorted(folder.glob(f"{name}*.c"))
+
+
+@pytest.mark.parametrize("name", ["planar", "robot"])
+def test_folder_without_a_warning(library: Callable[[str], Exported], name: str, tmp_path: Path) -> None:
+    made = library(name)
+    for source in compiled_sources(made.folder, name):
+        run("gcc", *STRICT, "-c", source, "-o", tmp_path / "object.o")
+
+
+def test_folder_with_motions_without_a_warning(motion_library: Callable[[str], Exported], tmp_path: Path) -> None:
+    made = motion_library("planar")
+    for source in compiled_sources(made.folder, made.name):
+        run("gcc", *STRICT, "-c", source, "-o", tmp_path / "object.o")
+
+
+@pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
+def test_arithmetic_without_infinities_is_refused(
+    library: Callable[[str], Exported], tmp_path: Path, flag: str
+) -> None:
+    """The solver looks for what is not finite, and such a compiler would take that look away."""
+    folder = library("planar").folder
+    for file in ("planar.c", "planar_kernels.c"):
+        done = attempt("gcc", "-std=c99", flag, "-c", folder / file, "-o", tmp_path / "object.o")
+        assert done.returncode != 0
+        assert "compile without -ffast-math" in done.stderr
+
+
+def test_contact_without_infinities_is_refused(tmp_path: Path) -> None:
+    made = exported_contact(over_bar(), tmp_path / "bar", np.array([[0.0, 0.0, -1.0]]), 2, 4)
+    done = attempt("gcc", "-std=c99", "-ffast-math", "-c", made.folder / "bar.c", "-o", tmp_path / "object.o")
+    assert "compile without -ffast-math" in done.stderr
