@@ -38,7 +38,9 @@ def microseconds(model: Model, *, batches: bool) -> float:
     x = np.zeros((CASES, model.size))
     infos = (Info * CASES)()
     with tempfile.TemporaryDirectory() as folder:
-        library = ctypes.CDLL(str(load(export(model, Path(folder) / "batch", "batch", batches=batches)).library))
+        library = ctypes.CDLL(
+            str(load(export(model, Path(folder) / "batch", "batch", batches=batches, estimate_errors=False)).library)
+        )
     size = library.batch_batch_workspace_size() if batches else library.batch_workspace_size()
     work = room(size)
     best = np.inf

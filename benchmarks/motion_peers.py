@@ -85,7 +85,7 @@ def again(motion: Motion, tolerance: float) -> Run:
 def in_c(model: Model, step: float) -> Run:
     """The motion in steps of one size by the exported functions, called one by one from Python."""
     with TemporaryDirectory() as folder:
-        exported = load(export(model, folder, "released", dynamics=True))
+        exported = load(export(model, folder, "released", dynamics=True, estimate_errors=False))
     per_time = round(INTERVAL / step)
     inputs = exported.defaults
 

@@ -42,9 +42,11 @@ from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, Owner
+from cosserat_casadi.numerics.outcome import Outcome
 
 SCENE = "scene.toml"
 """File of an exported folder: the scene that it was made from."""
@@ -145,7 +147,38 @@ class Compiled(LoadedLibrary, CompiledMotion):
         info = Info()
         p = self.parameters.passed(parameters)
         self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
-        return solution_of(x, info)
+        return solution_of(x, info, self.tolerance)
+
+    @property
+    def tolerance(self) -> float | None:
+        """Wanted error of the scene; None where no tolerance has a meaning."""
+        if not self.manifest["tolerance_binds"]:
+            return None
+        return float(self.manifest["tolerance"])
+
+    def error_estimate(
+        self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
+    ) -> float | None:
+        """Estimated error of an equilibrium, from modes that the model lacks; None where x is no equilibrium.
+
+        Args:
+            inputs: by name or stacked.
+            x: unknowns.
+            parameters: by name or stacked; the scene's own by default.
+
+        Raises:
+            ValueError: an argument is of the wrong size.
+            SceneError: inputs or parameters are not those of the scene.
+            AttributeError: the folder was exported without the estimate.
+        """
+        given = self.inputs.stacked(inputs)
+        p = self.parameters.passed(parameters)
+        unknowns = vector(x, self.size, "x")
+        estimate = ctypes.c_double()
+        status = self._function("error_estimate")(
+            pointer(given), *p, pointer(unknowns), ctypes.byref(estimate), self._workspace()
+        )
+        return estimate.value if OUTCOMES[status] is Outcome.CONVERGED else None
 
     def follow(
         self,
@@ -177,7 +210,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         p = self.parameters.passed(parameters)
         work = self._workspace()
         self._function("follow")(pointer(old), *old_p, pointer(given), *p, pointer(x), work, ctypes.byref(info))
-        return solution_of(x, info)
+        return solution_of(x, info, self.tolerance)
 
     def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledSolution]:
         """Equilibria of many load cases.
@@ -205,7 +238,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         side_by_side = lanes_files(self._names.name)[0] in self.manifest["files"]
         work = room(self._function("batch_workspace_size")()) if side_by_side else self._workspace()
         self._function("solve_batch")(count, pointer(given), *passed, pointer(x), work, 1, infos)
-        return [solution_of(row, info) for row, info in zip(x, infos, strict=True)]
+        return [solution_of(row, info, self.tolerance) for row, info in zip(x, infos, strict=True)]
 
     def sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None

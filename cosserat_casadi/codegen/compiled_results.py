@@ -24,6 +24,7 @@ class Info(ctypes.Structure):
         ("jacobians", ctypes.c_int),
         ("residual_norm", ctypes.c_double),
         ("load_factor", ctypes.c_double),
+        ("error_estimate", ctypes.c_double),
     )
 
 
@@ -77,6 +78,9 @@ class CompiledSolution:
         jacobians: Jacobians factorised.
         residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
         load_factor: share of the load that x carries.
+        error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
+            lengths of cables over the length; 1 where it is not known, None where it was not estimated.
+        tolerance: wanted error of the scene; None where no tolerance has a meaning.
     """
 
     x: FloatArray
@@ -85,11 +89,24 @@ class CompiledSolution:
     jacobians: int
     residual_norm: float
     load_factor: float
+    error_estimate: float | None = None
+    tolerance: float | None = None
 
     @property
     def converged(self) -> bool:
         """Whether x is an equilibrium at the full load."""
         return self.outcome is Outcome.CONVERGED
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the tolerance; None where there is no estimate or no tolerance."""
+        if self.tolerance is None:
+            return None
+        if not self.converged:
+            return False
+        if self.error_estimate is None:
+            return None
+        return self.error_estimate <= self.tolerance
 
 
 @dataclass(frozen=True)
@@ -107,8 +124,15 @@ class Sensitivity:
     bodies: dict[str, FloatArray]
 
 
-def solution_of(x: FloatArray, info: Info) -> CompiledSolution:
+def solution_of(x: FloatArray, info: Info, tolerance: float | None = None) -> CompiledSolution:
     """A solution from its unknowns and the struct beside them."""
     return CompiledSolution(
-        x, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
+        x,
+        OUTCOMES[info.status],
+        info.iterations,
+        info.jacobians,
+        info.residual_norm,
+        info.load_factor,
+        error_estimate=None if info.error_estimate < 0 else info.error_estimate,
+        tolerance=tolerance,
     )

@@ -47,6 +47,7 @@ def export(
     batches: bool = False,
     load_cases: FloatArray | None = None,
     period: float | None = None,
+    estimate_errors: bool = True,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
@@ -66,6 +67,8 @@ def export(
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
         period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
             measured with the compiler of this machine, or foreseen where there is none.
+        estimate_errors: whether the library estimates the errors of its answers; the code of its kernels is about half
+            as long again. In exact contact it does not.
 
     Returns:
         the folder.
@@ -87,7 +90,7 @@ def export(
         names = scene_names(chosen, without_contacts(model.scene))
         files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
     else:
-        files = folder_files(model, chosen, error_estimate, **asked, period=period)
+        files = folder_files(model, chosen, error_estimate, **asked, period=period, estimate_errors=estimate_errors)
     write_folder(folder, files, stale)
     return folder
 
@@ -126,6 +129,7 @@ def folder_files(
     stability: bool = False,
     batches: bool = False,
     period: float | None = None,
+    estimate_errors: bool = True,
 ) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
 
@@ -138,12 +142,13 @@ def folder_files(
         stability: as for :func:`export`.
         batches: as for :func:`export`.
         period: as for :func:`export`.
+        estimate_errors: as for :func:`export`.
 
     Raises:
         ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
     """
     refuse_obstacles(model.scene, "exported C")
-    names = model_names(name, model, dynamics=dynamics)
+    names = model_names(name, model, dynamics=dynamics, estimate_errors=estimate_errors)
     parts = assembled(model, names)
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)

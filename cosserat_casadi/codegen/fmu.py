@@ -106,7 +106,7 @@ def write_fmu(
     if simulation is not None and simulation.step is not None:
         step = simulation.step
     listed = variables(model, outputs.entries, step)
-    texts = folder_files(model, name, error_estimate, dynamics=True)
+    texts = folder_files(model, name, error_estimate, dynamics=True, estimate_errors=False)
     sources = {file: text for file, text in texts.items() if file.endswith((".c", ".h")) and "_demo." not in file}
     sources |= _fmu_sources(model, names, outputs, step)
     token = _token(sources)

@@ -28,9 +28,16 @@ from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.routines import improved
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.watched import watched_owners
 
 PARTED = ("path_residual", "path_jacobian")
 """Functions of which an assembly has parts instead, one for each rod."""
+
+BALANCE = "richer_balance"
+"""A function of an assembly with entries for each unknown twice, and for each missing coordinate in between."""
+
+JUDGING = (BALANCE, "richer_changes")
+"""Functions that the error of an answer is judged by."""
 
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
@@ -54,6 +61,9 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]
+        if kind in JUDGING:
+            every.append(_judging(model, entries[0], parts))
+            continue
         plain = [kernel(model, entry.function, entry.kernel) for entry in entries]
         if not all(function.is_a("SXFunction") for function in plain):
             every += plain
@@ -62,6 +72,21 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
         else:
             every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
     return every
+
+
+def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
+    """What the error of an answer of an assembly is judged by: rods that compute alike share straight-line code."""
+    discrete = model.discrete
+    numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
+    if entry.spec.name == BALANCE:
+        missing = [numbers[rod] for rod in discrete.richer.missing_rods]
+        owners = [*parts.blocks.owners, *missing, *parts.blocks.owners]
+    else:
+        owners = [numbers[owner] for owner in watched_owners(discrete)]
+    straight = scalar(entry.function, entry.kernel)
+    if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT:
+        return loops(entry.function, entry.kernel)
+    return in_one(entry.function, owners, entry.kernel)
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:

@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
+from cosserat_casadi.codegen.error_sources import ERROR_FILES, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
 from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
@@ -58,7 +59,7 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
+VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {
@@ -70,6 +71,7 @@ ROLES = {
     "solver_path.c": "growing loads, and one input after another",
     "solver_sensitivity.c": "derivatives of a solution",
     "solver_track.c": "a turn of a control loop",
+    "solver_error.c": "the error of an answer, from modes that the model lacks",
     "solver_recover.c": "a turn of its way back",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
@@ -142,6 +144,7 @@ def library_sources(
         "rows": rows is not None,
     }
     fours = f"{names.name}_kernels_in_fours.h" in generated
+    held["errors"] = estimates_errors(names)
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
@@ -150,7 +153,10 @@ def library_sources(
         words["more_sources"] += f" {name}_lanes.c"
         words["more_compiled"] = f" {name}_lanes.c"
     words["more_headers"] = f" {name}_stability.h" if stability else ""
-    verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS), *(() if motion is None else MOTION_FILES))
+    estimate = ERROR_FILES if estimates_errors(names) else ()
+    linear = DENSE if parts is None else BLOCKS
+    in_motion = () if motion is None else MOTION_FILES
+    verbatim = (*SHARED, *estimate, *linear, *in_motion)
     demos = {f"{name}_demo.c": render("demo.c.in", words)}
     if motion is not None:
         demos[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
@@ -199,6 +205,8 @@ def _words(
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
+    errors = error_words(render, sizes, model, names)
+    sizes |= errors
     sizes |= _batch_words(sizes, rows)
     functions = public_functions(model, names)
     weights = model.discrete.unknowns.step_weights
@@ -268,7 +276,7 @@ def _judged_paths(model: Model, names: Names) -> str:
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
     room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
-    extra = linear["linear_reals"] + sizes["parameter_reals"]
+    extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
 
 
@@ -398,12 +406,15 @@ def _file_rows(
     stability: bool,
     dynamics: bool,
     rows: bool,
+    errors: bool,
 ) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
     if not fours:
         absent |= {*FOURS, "{name}_kernels_in_fours.h"}
     if not rows:
         absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
+    if not errors:
+        absent |= {*ERROR_FILES}
     if not dynamics:
         absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:

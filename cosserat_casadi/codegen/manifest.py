@@ -135,6 +135,7 @@ def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: 
         "unknowns": unknown_entries(model),
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
         "tolerance": model.scene.accuracy.tolerance,
+        "tolerance_binds": model.scene.accuracy.binds,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
         "functions": [_function_entry(kernel, known) for kernel in kernels],
     }

@@ -94,18 +94,23 @@ class Names:
         return f"{self.name}_{shown}_{owner}" if named else f"{self.name}_{shown}"
 
 
-def model_names(name: str, model: Model, *, dynamics: bool = False) -> Names:
+def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_errors: bool = False) -> Names:
     """Names of the exported library of a model, with the functions of its class.
 
     Args:
         name: the library.
         model: what is exported.
         dynamics: whether functions of motion are among them.
+        estimate_errors: whether those that estimate errors of answers are among them.
 
     Raises:
         ExportError: as :func:`library_names`.
     """
-    functions = tuple(spec for spec in table(type(model)) if dynamics or not spec.of_motion)
+    functions = tuple(
+        spec
+        for spec in table(type(model))
+        if (dynamics or not spec.of_motion) and (estimate_errors or not spec.judges_answers)
+    )
     return scene_names(name, model.scene, functions)
 
 

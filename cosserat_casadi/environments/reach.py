@@ -289,4 +289,4 @@ def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
 
 def _compiled(model: Model) -> Compiled:
     with tempfile.TemporaryDirectory() as folder:
-        return load(export(model, Path(folder) / "robot", "robot", dynamics=True))
+        return load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))

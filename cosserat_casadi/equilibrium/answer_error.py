@@ -35,9 +35,6 @@ MOST_STEPS = 6
 SETTLED = 0.2
 """Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
 
-FAR_BELOW = 0.1
-"""Share of the tolerance below which the first change is believed: ten times as much would not matter."""
-
 FASTEST = 0.02
 """Smallest ratio of the errors with and without two more modes that is believed."""
 
@@ -83,11 +80,13 @@ class _Correction:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
         change: of what is watched.
+        settled: whether the correction before it gave about the same change.
     """
 
     known: FloatArray
     missing: FloatArray
     change: float
+    settled: bool = False
 
 
 def with_error_estimate(solution: Solution) -> Solution:
@@ -134,8 +133,8 @@ def answer_error(solution: Solution) -> AnswerError:
     Args:
         solution: a converged one, at any inputs and parameters.
     """
-    settled, correction = _settled_correction(solution)
-    if not settled or not np.isfinite(correction.change):
+    believed, correction = _believed_correction(solution)
+    if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN, settled=False)
     rest = _rest_of_series(solution, correction)
     watched = SAFETY * (correction.change + rest) + ROUNDING
@@ -145,9 +144,10 @@ def answer_error(solution: Solution) -> AnswerError:
     return AnswerError(watched, max(shape, watched), wrench, settled=True)
 
 
-def _settled_correction(solution: Solution) -> tuple[bool, _Correction]:
-    """Whether corrections settled, and the last one: by sweeps, else by Newton's steps on the richer model."""
-    enough = FAR_BELOW * solution.model.scene.accuracy.tolerance
+def _believed_correction(solution: Solution) -> tuple[bool, _Correction]:
+    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
+    # A look that leaves the answer within its tolerance need not be repeated.
+    enough = enough_for(solution.model.scene.accuracy.tolerance)
     # Far from an answer the equations overflow: what comes out then is not settled.
     with np.errstate(all="ignore"):
         for corrections in (_sweeps(solution), _newton_steps(solution)):
@@ -155,11 +155,17 @@ def _settled_correction(solution: Solution) -> tuple[bool, _Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                near = abs(correction.change - before) <= SETTLED * correction.change
-                if near or correction.change <= max(enough, ROUNDING):
+                if abs(correction.change - before) <= SETTLED * correction.change:
+                    return True, replace(correction, settled=True)
+                if correction.change <= enough:
                     return True, correction
                 before = correction.change
     return False, correction
+
+
+def enough_for(tolerance: float) -> float:
+    """Change below which the first sweep is believed: the estimate that it gives is within the tolerance."""
+    return max(tolerance / SAFETY, ROUNDING)
 
 
 def _sweeps(solution: Solution) -> Iterator[_Correction]:
@@ -170,12 +176,20 @@ def _sweeps(solution: Solution) -> Iterator[_Correction]:
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     for _ in range(MOST_SWEEPS):
-        step, missing_step, _ = model.richer_balance(solution.x, known, missing, inputs)
-        known = known + column(step)
-        missing = missing + column(missing_step)
-        _, _, residual = model.richer_balance(solution.x, known, missing, inputs)
-        known = known - inverse @ column(residual)
+        step, missing_step, _ = _balance(solution, known, missing)
+        known = known + step
+        missing = missing + missing_step
+        _, _, residual = _balance(solution, known, missing)
+        known = known - inverse @ residual
         yield _corrected(solution, known, missing)
+
+
+def _balance(solution: Solution, known: FloatArray, missing: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Elastic steps of the unknowns and of the missing coordinates, and the residual in the unknowns."""
+    model = solution.model
+    balance = column(model.richer_balance(solution.x, known, missing, solution.inputs))
+    step, missing_step, residual = np.split(balance, [model.size, model.size + len(missing)])
+    return step, missing_step, residual
 
 
 def _newton_steps(solution: Solution) -> Iterator[_Correction]:
@@ -194,16 +208,18 @@ def _newton_steps(solution: Solution) -> Iterator[_Correction]:
 
 
 def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> _Correction:
-    change = solution.model.richer_change(solution.x, known, missing, solution.inputs)
-    return _Correction(known, missing, float(change))
+    changes = column(solution.model.richer_changes(solution.x, known, missing, solution.inputs))
+    # Written so that a change which is not a number is the largest.
+    return _Correction(known, missing, float(np.max(changes)))
 
 
 def _rest_of_series(solution: Solution, correction: _Correction) -> float:
     """What modes beyond those of the richer model would add: the rest of a geometric series.
 
-    The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E.
+    The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E. A first look
+    does not know the highest degrees well enough to tell e.
     """
-    if correction.change <= ROUNDING:
+    if not correction.settled or correction.change <= ROUNDING:
         return 0.0
     richer = solution.model.discrete.richer
     without_last = np.where(richer.is_among_last, 0.0, correction.missing)

@@ -315,6 +315,16 @@ class Richer:
                 known[entries] = rich_rod.degrees(component) < modes
         return known
 
+    @cached_property
+    def missing_rods(self) -> list[str]:
+        """The rod of each coordinate that the coarse scene lacks."""
+        rods = np.repeat([block.rod or "" for block in self.discrete.unknowns.blocks], self._block_sizes)
+        return [str(rod) for rod in rods[~self.known]]
+
+    @property
+    def _block_sizes(self) -> list[int]:
+        return [block.size for block in self.discrete.unknowns.blocks]
+
     @property
     def missing_size(self) -> int:
         """Number of strain coordinates that the coarse scene lacks."""

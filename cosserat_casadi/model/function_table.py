@@ -167,6 +167,11 @@ class FunctionSpec:
         return bool(self.header)
 
     @property
+    def judges_answers(self) -> bool:
+        """Whether modes enter it that the model lacks."""
+        return "missing" in self.arguments
+
+    @property
     def of_motion(self) -> bool:
         """Whether velocities enter it."""
         return "v" in self.arguments

@@ -157,17 +157,17 @@ class ModelFunctions:
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
-    @scene_function(Output("step"), Output("missing_step"), Output("residual"), arguments=CORRECTED)
+    @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance")
     def richer_balance(self, written: Expressions) -> list[Matrix]:
         """(x, correction, missing, inputs) ↦ what the balance with modes and intervals added lacks at an answer.
 
-        Elastic steps of the unknowns and of the coordinates of the missing modes, and the residual in the unknowns, at
-        x + correction and the missing coordinates; docs/theory.md, section 10.
+        Elastic steps of the unknowns and of the coordinates of the missing modes, and the residual in the unknowns, one
+        below the other, at x + correction and the missing coordinates; docs/theory.md, section 10.
         """
         richer, system = _enriched(written)
         residual, lacking = richer.split(Equations(system).residual)
         step, missing_step = richer.split(richer.elastic_step(lacking))
-        return [step, missing_step, residual]
+        return [ca.densify(ca.vertcat(step, missing_step, residual))]
 
     @scene_function(Output("positions"), Output("quaternions"), Output("cables"))
     def watched(self, written: Expressions) -> list[Matrix]:
@@ -178,14 +178,14 @@ class ModelFunctions:
         poses = watched(written.system)
         return [ca.densify(ca.MX(poses.positions)), ca.densify(ca.MX(poses.quaternions)), poses.cables]
 
-    @scene_function(Output("change"), arguments=CORRECTED)
-    def richer_change(self, written: Expressions) -> list[Matrix]:
-        """(x, correction, missing, inputs) ↦ change of what is watched by a correction with modes and intervals added.
+    @scene_function(Output("changes"), arguments=CORRECTED, kernel="richer_changes")
+    def richer_changes(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ changes of what is watched by a correction with modes and intervals added.
 
-        The largest displacement over the length, rotation angle (rad), and lengthening of a cable over the length.
+        Displacements over the length, rotation angles (rad), and lengthenings of cables over the length, one column.
         """
         _, system = _enriched(written)
-        return [watched(system).largest_change(watched(written.system))]
+        return [watched(system).changes_from(watched(written.system))]
 
     @owned_functions(
         Owner.ROD,

@@ -42,8 +42,8 @@ class Watched:
     quaternions: Matrix
     cables: Matrix
 
-    def largest_change(self, before: Watched) -> Matrix:
-        """The largest of all displacements, rotation angles (rad) and lengthenings, 1×1; 0 where nothing moves."""
+    def changes_from(self, before: Watched) -> Matrix:
+        """Sizes of all displacements, rotation angles (rad) and lengthenings, (2k + c)×1; 0 where nothing moves."""
         displacements = self.positions - before.positions
         distances = ca.sqrt(ca.sum1(displacements * displacements))
         relative = quaternion_product(quaternion_conjugate(before.quaternions), self.quaternions)
@@ -52,7 +52,7 @@ class Watched:
         # Q and −Q are one rotation; the arc tangent is exact near 0 and near π.
         angles = 2 * ca.atan2(sines, ca.fabs(relative[0, :]))
         lengthenings = ca.fabs(self.cables - before.cables)
-        return ca.mmax(ca.horzcat(distances, angles, lengthenings))
+        return ca.densify(ca.horzcat(distances, angles, lengthenings).T)
 
 
 def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
@@ -64,6 +64,14 @@ def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
     if held:
         return np.array(BETWEEN)
     return np.array([1.0])
+
+
+def watched_owners(discrete: DiscreteScene) -> list[str]:
+    """The rod, or the body, of each entry of :meth:`Watched.changes_from`; of a cable the rod that it runs along."""
+    posed = [name for name in discrete.rods for _ in watched_sections(discrete.scene, name)]
+    posed += list(discrete.bodies)
+    rods = {actuator.name: actuator.rod for actuator in discrete.scene.actuators}
+    return [*posed, *posed, *(rods[cable] for cable in watched_cables(discrete))]
 
 
 def watched_cables(discrete: DiscreteScene) -> dict[str, float]:

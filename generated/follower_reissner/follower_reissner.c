@@ -80,8 +80,36 @@ static solver_status with_paths(solver_status end, const real *x, const real *in
   return end;
 }
 
+/* Which missing coordinates are of one of the two highest degrees of their strain. */
+static const int IS_AMONG_LAST[SOLVER_MISSING] = {
+  0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 1};
+
+/* Elastic steps of unknowns and missing coordinates, and the residual in the unknowns, one behind the other. */
+static void richer_balance_at(const real *x, const real *correction, const real *missing, const real *inputs, real *balance,
+                              workspace *work) {
+  ARGUMENTS(follower_reissner_k_richer_balance, x, correction, missing, inputs);
+  RESULTS(balance);
+  CALL(follower_reissner_k_richer_balance);
+}
+
+/* The largest change of what is watched. */
+static real richer_change_at(const real *x, const real *correction, const real *missing, const real *inputs,
+                             workspace *work) {
+  ARGUMENTS(follower_reissner_k_richer_changes, x, correction, missing, inputs);
+  RESULTS(work->changes);
+  CALL(follower_reissner_k_richer_changes);
+  real largest = 0;
+  for (int i = 0; i < SOLVER_WATCHED; i++) {
+    /* Written so that a change which is not a number is the largest. */
+    if (!(work->changes[i] <= largest)) largest = work->changes[i];
+    if (!isfinite(largest)) return largest;
+  }
+  return largest;
+}
+
 #include "linear_dense.c"
 #include "solver_newton.c"
+#include "solver_error.c"
 #include "solver_path.c"
 #include "solver.c"
 #include "solver_sensitivity.c"

@@ -102,6 +102,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   follower_reissner_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   follower_reissner_real load_factor;     /* share of the load that x carries; 1 where converged */
+  follower_reissner_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } follower_reissner_info;
 
 /* Budget of one call of follower_reissner_track, or of follower_reissner_recover. */
@@ -148,6 +151,11 @@ typedef struct {
   follower_reissner_real reached[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real d_x_d_inputs[FOLLOWER_REISSNER_UNKNOWNS * 6];
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
+  follower_reissner_real known_correction[FOLLOWER_REISSNER_UNKNOWNS];
+  follower_reissner_real missing[27];
+  follower_reissner_real changes[2];
+  follower_reissner_real fewer[27];
+  follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 27];
   follower_reissner_real kernel_reals[1576];
   int kernel_integers[1];
 } follower_reissner_workspace;
@@ -240,6 +248,16 @@ void follower_reissner_residual_jacobian(const follower_reissner_real *x, const 
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void follower_reissner_input_jacobian(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real *d_residual_d_inputs,
                             follower_reissner_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define FOLLOWER_REISSNER_TOLERANCE 0.0001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of follower_reissner_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 40 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+follower_reissner_status follower_reissner_error_estimate(const follower_reissner_real *inputs, const follower_reissner_real *x, follower_reissner_real *error_estimate,
+                                      follower_reissner_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod cord: strain coordinates and base pose, with the loads, to the generalised force, and
    the force and the moment about the base of the clamp on the rod, world frame. Takes q (13), base_position (3, m),

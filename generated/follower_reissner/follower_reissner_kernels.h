@@ -42,6 +42,16 @@ int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
 #define follower_reissner_k_rate_SZ_W 644
+int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define follower_reissner_k_richer_balance_SZ_ARG 4
+#define follower_reissner_k_richer_balance_SZ_RES 1
+#define follower_reissner_k_richer_balance_SZ_IW 0
+#define follower_reissner_k_richer_balance_SZ_W 1566
+int follower_reissner_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define follower_reissner_k_richer_changes_SZ_ARG 4
+#define follower_reissner_k_richer_changes_SZ_RES 1
+#define follower_reissner_k_richer_changes_SZ_IW 0
+#define follower_reissner_k_richer_changes_SZ_W 935
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3

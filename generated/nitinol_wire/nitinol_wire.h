@@ -99,6 +99,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   nitinol_wire_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   nitinol_wire_real load_factor;     /* share of the load that x carries; 1 where converged */
+  nitinol_wire_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } nitinol_wire_info;
 
 /* Budget of one call of nitinol_wire_track, or of nitinol_wire_recover. */
@@ -145,6 +148,11 @@ typedef struct {
   nitinol_wire_real reached[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real d_x_d_inputs[NITINOL_WIRE_UNKNOWNS * 6];
   nitinol_wire_real d_pose_d_x[7 * NITINOL_WIRE_UNKNOWNS];
+  nitinol_wire_real known_correction[NITINOL_WIRE_UNKNOWNS];
+  nitinol_wire_real missing[13];
+  nitinol_wire_real changes[2];
+  nitinol_wire_real fewer[13];
+  nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 13];
   nitinol_wire_real kernel_reals[1336];
   int kernel_integers[1];
 } nitinol_wire_workspace;
@@ -237,6 +245,16 @@ void nitinol_wire_residual_jacobian(const nitinol_wire_real *x, const nitinol_wi
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void nitinol_wire_input_jacobian(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real *d_residual_d_inputs,
                             nitinol_wire_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define NITINOL_WIRE_TOLERANCE 0.0001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of nitinol_wire_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 20 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+nitinol_wire_status nitinol_wire_error_estimate(const nitinol_wire_real *inputs, const nitinol_wire_real *x, nitinol_wire_real *error_estimate,
+                                      nitinol_wire_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod wire: strain coordinates and base pose, with the loads, to the generalised force, and
    the force and the moment about the base of the clamp on the rod, world frame. Takes q (7), base_position (3, m),

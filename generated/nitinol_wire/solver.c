@@ -40,7 +40,7 @@ static int is_zero(const real *x) {
 
 static solver_info no_result(void) {
   const solver_info none = {
-      .status = SOLVER_NOT_FINITE, .iterations = 0, .jacobians = 0, .residual_norm = 0, .load_factor = 0};
+      .status = SOLVER_NOT_FINITE, .iterations = 0, .jacobians = 0, .residual_norm = 0, .load_factor = 0, .error_estimate = -1};
   return none;
 }
 
@@ -58,6 +58,9 @@ static solver_status finish(const real *x, const real *inputs, solver_info *foun
   found->status = with_paths(found->status, x, inputs, work);
   const int solved = found->status == SOLVER_CONVERGED || found->status == SOLVER_UNRESOLVED;
   if (!solved) found->residual_norm = residual_left(x, inputs, work);
+#ifdef SOLVER_MISSING
+  if (info && found->status == SOLVER_CONVERGED) found->error_estimate = estimated_error(x, inputs, work);
+#endif
   if (info) *info = *found;
   return found->status;
 }

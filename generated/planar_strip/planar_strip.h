@@ -97,6 +97,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   planar_strip_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   planar_strip_real load_factor;     /* share of the load that x carries; 1 where converged */
+  planar_strip_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } planar_strip_info;
 
 /* Budget of one call of planar_strip_track, or of planar_strip_recover. */
@@ -143,7 +146,12 @@ typedef struct {
   planar_strip_real reached[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real d_x_d_inputs[PLANAR_STRIP_UNKNOWNS * 6];
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real kernel_reals[307];
+  planar_strip_real known_correction[PLANAR_STRIP_UNKNOWNS];
+  planar_strip_real missing[4];
+  planar_strip_real changes[2];
+  planar_strip_real fewer[4];
+  planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 4];
+  planar_strip_real kernel_reals[411];
   int kernel_integers[1];
 } planar_strip_workspace;
 
@@ -235,6 +243,16 @@ void planar_strip_residual_jacobian(const planar_strip_real *x, const planar_str
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void planar_strip_input_jacobian(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real *d_residual_d_inputs,
                             planar_strip_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define PLANAR_STRIP_TOLERANCE 0.0001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of planar_strip_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 8 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+planar_strip_status planar_strip_error_estimate(const planar_strip_real *inputs, const planar_strip_real *x, planar_strip_real *error_estimate,
+                                      planar_strip_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod strip: strain coordinates and base pose, with the loads, to the generalised force,
    and the force and the moment about the base of the clamp on the rod, world frame. Takes q (4), base_position (3, m),

@@ -62,3 +62,13 @@ static const planar_strip_real INEXACT = (planar_strip_real)0.01;
 static const planar_strip_real MAX_CURVATURE_SHARE = (planar_strip_real)0.5;
 static const planar_strip_real FIRST_STEP = (planar_strip_real)1.0;
 static const planar_strip_real SAME_BRANCH = (planar_strip_real)0.5;
+#define solver_error_estimate planar_strip_error_estimate
+#define SOLVER_MISSING 4
+#define SOLVER_WATCHED 2
+enum { ERROR_SWEEPS = 4 };
+static const planar_strip_real ERROR_SAFETY = (planar_strip_real)1.3;
+static const planar_strip_real ERROR_SETTLED = (planar_strip_real)0.2;
+static const planar_strip_real ERROR_ENOUGH = (planar_strip_real)7.692307692307693e-05;
+static const planar_strip_real ERROR_FASTEST = (planar_strip_real)0.02;
+static const planar_strip_real ERROR_SLOWEST = (planar_strip_real)0.7;
+static const planar_strip_real ERROR_FLOOR = (planar_strip_real)2e-14;

@@ -99,6 +99,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   precurved_tube_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   precurved_tube_real load_factor;     /* share of the load that x carries; 1 where converged */
+  precurved_tube_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } precurved_tube_info;
 
 /* Budget of one call of precurved_tube_track, or of precurved_tube_recover. */
@@ -145,6 +148,11 @@ typedef struct {
   precurved_tube_real reached[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real d_x_d_inputs[PRECURVED_TUBE_UNKNOWNS * 6];
   precurved_tube_real d_pose_d_x[7 * PRECURVED_TUBE_UNKNOWNS];
+  precurved_tube_real known_correction[PRECURVED_TUBE_UNKNOWNS];
+  precurved_tube_real missing[12];
+  precurved_tube_real changes[2];
+  precurved_tube_real fewer[12];
+  precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 12];
   precurved_tube_real kernel_reals[1705];
   int kernel_integers[1];
 } precurved_tube_workspace;
@@ -237,6 +245,16 @@ void precurved_tube_residual_jacobian(const precurved_tube_real *x, const precur
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void precurved_tube_input_jacobian(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_real *d_residual_d_inputs,
                             precurved_tube_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define PRECURVED_TUBE_TOLERANCE 0.0001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of precurved_tube_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 25 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+precurved_tube_status precurved_tube_error_estimate(const precurved_tube_real *inputs, const precurved_tube_real *x, precurved_tube_real *error_estimate,
+                                      precurved_tube_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod tube: strain coordinates and base pose, with the loads, to the generalised force, and
    the force and the moment about the base of the clamp on the rod, world frame. Takes q (13), base_position (3, m),

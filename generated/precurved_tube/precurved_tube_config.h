@@ -62,3 +62,13 @@ static const precurved_tube_real INEXACT = (precurved_tube_real)0.01;
 static const precurved_tube_real MAX_CURVATURE_SHARE = (precurved_tube_real)0.5;
 static const precurved_tube_real FIRST_STEP = (precurved_tube_real)1.0;
 static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
+#define solver_error_estimate precurved_tube_error_estimate
+#define SOLVER_MISSING 12
+#define SOLVER_WATCHED 2
+enum { ERROR_SWEEPS = 4 };
+static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.3;
+static const precurved_tube_real ERROR_SETTLED = (precurved_tube_real)0.2;
+static const precurved_tube_real ERROR_ENOUGH = (precurved_tube_real)7.692307692307693e-05;
+static const precurved_tube_real ERROR_FASTEST = (precurved_tube_real)0.02;
+static const precurved_tube_real ERROR_SLOWEST = (precurved_tube_real)0.7;
+static const precurved_tube_real ERROR_FLOOR = (precurved_tube_real)2e-14;

@@ -116,6 +116,8 @@ int main(int count, char **words) {
   }
   printf("], \"load_factor\": ");
   print_number((double)info.load_factor);
+  printf(", \"error_estimate\": ");
+  print_number((double)info.error_estimate);
   print_field("residual_norm", (double)info.residual_norm);
   print_field("cold_us", best_of(COLD, repeat, inputs, x));
   print_field("warm_us", best_of(WARM, repeat, inputs, x));

@@ -169,6 +169,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   six_rod_platform_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   six_rod_platform_real load_factor;     /* share of the load that x carries; 1 where converged */
+  six_rod_platform_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } six_rod_platform_info;
 
 /* Budget of one call of six_rod_platform_track, or of six_rod_platform_recover. */
@@ -221,7 +224,12 @@ typedef struct {
   six_rod_platform_real part_entries[453];
   six_rod_platform_real front_values[6][28];
   six_rod_platform_real interface_values[7];
-  six_rod_platform_real kernel_reals[2189];
+  six_rod_platform_real known_correction[SIX_ROD_PLATFORM_UNKNOWNS];
+  six_rod_platform_real missing[168];
+  six_rod_platform_real changes[50];
+  six_rod_platform_real fewer[168];
+  six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 168];
+  six_rod_platform_real kernel_reals[3193];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 
@@ -314,6 +322,16 @@ void six_rod_platform_residual_jacobian(const six_rod_platform_real *x, const si
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void six_rod_platform_input_jacobian(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_residual_d_inputs,
                             six_rod_platform_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define SIX_ROD_PLATFORM_TOLERANCE 0.001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of six_rod_platform_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 301 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+six_rod_platform_status six_rod_platform_error_estimate(const six_rod_platform_real *inputs, const six_rod_platform_real *x, six_rod_platform_real *error_estimate,
+                                      six_rod_platform_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod leg_1: strain coordinates and base pose, with the loads, to the generalised force,
    and the force and the moment about the base of the clamp on the rod, world frame. Takes q (15), base_position

@@ -52,6 +52,16 @@ int six_rod_platform_k_resolution_index(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_resolution_index_SZ_RES 1
 #define six_rod_platform_k_resolution_index_SZ_IW 0
 #define six_rod_platform_k_resolution_index_SZ_W 0
+int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_richer_balance_SZ_ARG 18
+#define six_rod_platform_k_richer_balance_SZ_RES 6
+#define six_rod_platform_k_richer_balance_SZ_IW 0
+#define six_rod_platform_k_richer_balance_SZ_W 3192
+int six_rod_platform_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_richer_changes_SZ_ARG 14
+#define six_rod_platform_k_richer_changes_SZ_RES 6
+#define six_rod_platform_k_richer_changes_SZ_IW 0
+#define six_rod_platform_k_richer_changes_SZ_W 1448
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_1_SZ_ARG 14
 #define six_rod_platform_k_igm_leg_1_SZ_RES 7

@@ -119,6 +119,9 @@ typedef struct {
   int jacobians;                /* Jacobians factorised */
   tendon_robot_real residual_norm;   /* 2-norm of the residual at the inputs asked for over 1 + 2-norm of x */
   tendon_robot_real load_factor;     /* share of the load that x carries; 1 where converged */
+  tendon_robot_real error_estimate;  /* of an answer of solve, follow or solve_batch, by modes that the model lacks: of poses,
+                                   over the length and in rad, and of cables; 1 where it is not known; negative where it
+                                   was not estimated */
 } tendon_robot_info;
 
 /* Budget of one call of tendon_robot_track, or of tendon_robot_recover. */
@@ -165,7 +168,12 @@ typedef struct {
   tendon_robot_real reached[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real d_x_d_inputs[TENDON_ROBOT_UNKNOWNS * 10];
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real kernel_reals[2232];
+  tendon_robot_real known_correction[TENDON_ROBOT_UNKNOWNS];
+  tendon_robot_real missing[24];
+  tendon_robot_real changes[6];
+  tendon_robot_real fewer[24];
+  tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 24];
+  tendon_robot_real kernel_reals[3023];
   int kernel_integers[1];
 } tendon_robot_workspace;
 
@@ -257,6 +265,16 @@ void tendon_robot_residual_jacobian(const tendon_robot_real *x, const tendon_rob
 /* d_residual_d_inputs (UNKNOWNS x INPUTS). */
 void tendon_robot_input_jacobian(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *d_residual_d_inputs,
                             tendon_robot_workspace *workspace);
+/* Tolerance of the scene: the wanted error of poses, over the length and in rad, and of lengths of cables over the length. */
+#define TENDON_ROBOT_TOLERANCE 0.0001
+
+/* Estimated error of an equilibrium x for these inputs, as info->error_estimate of tendon_robot_solve, at any time and for any
+   inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 42 unknowns.
+   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+tendon_robot_status tendon_robot_error_estimate(const tendon_robot_real *inputs, const tendon_robot_real *x, tendon_robot_real *error_estimate,
+                                      tendon_robot_workspace *workspace);
+
 
 /* Inverse Geometric Model of rod backbone: strain coordinates and base pose, with the loads, to the generalised force,
    and the force and the moment about the base of the clamp on the rod, world frame. Takes q (18), base_position

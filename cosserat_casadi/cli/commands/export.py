@@ -72,6 +72,12 @@ def export(
         float | None,
         typer.Option(help="Seconds that the longest turn of a control loop may take.", show_default=False),
     ] = None,
+    estimate_errors: Annotated[
+        bool,
+        typer.Option(
+            "--error-estimate/--no-error-estimate", help="With the estimate of the error of every answer, or without."
+        ),
+    ] = True,
     settings: Settings = None,
 ) -> None:
     """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
@@ -96,6 +102,7 @@ def export(
             "--over": over is not None,
             "--range": bool(ranges),
             "--period": period is not None,
+            "--no-error-estimate": not estimate_errors,
         }
         _refuse_without_sources(asked)
     else:
@@ -118,6 +125,7 @@ def export(
             "--page": page is not None,
             "--fmu": fmu is not None,
             "--period": period is not None,
+            "--no-error-estimate": not estimate_errors,
         }
         _refuse_for_tubes(unknown)
         assert output is not None
@@ -171,6 +179,7 @@ def export(
             batches=batches,
             load_cases=cases,
             period=period,
+            estimate_errors=estimate_errors,
         )
         print_export(console, solution, output)
     if fmu is not None:
