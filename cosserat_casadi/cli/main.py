@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import signal
 import sys
 from collections.abc import Callable
 from typing import Annotated
@@ -36,9 +37,11 @@ from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.problems import print_refusal
 from cosserat_casadi.cli.signals import (
     StoppedError,
+    end_in_time,
     forget_signals,
     install_handlers,
     remove_handlers,
+    remove_temporary_files,
     was_interrupted,
     was_terminated,
 )
@@ -46,6 +49,9 @@ from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence
 from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
+
+STOPPED = "Stopped. Files that were not finished were not written."
+"""Said of a command that a signal has stopped."""
 
 app = typer.Typer(
     help="Cosserat rods: from a scene file to the deformed rod.",
@@ -98,6 +104,7 @@ def main() -> None:
     """Entry point: errors become sentences and exit codes."""
     prepare_streams()
     install_handlers()
+    end_in_time(STOPPED, {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED})
     try:
         exit_code = run(app)
         remove_handlers()
@@ -110,6 +117,7 @@ def main() -> None:
     if was_interrupted():
         # What CasADi was stopped in may not outlive the interpreter: the process ends without its last rites.
         flush_streams()
+        remove_temporary_files()
         os._exit(exit_code)
     sys.exit(exit_code)
 
@@ -179,7 +187,7 @@ def _failed(console: Console, error: Exception) -> int:
 
 
 def _stopped(console: Console) -> int:
-    console.print("Stopped. Files that were not finished were not written.")
+    console.print(STOPPED)
     return INTERRUPTED
 
 

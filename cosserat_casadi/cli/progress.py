@@ -19,7 +19,7 @@ from rich.progress import (
 )
 from rich.text import Text
 
-from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt
+from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt, take_time
 from cosserat_casadi.motion.trajectory import MotionProgress
 
 CountCallback = Callable[[str, int, int], None]
@@ -97,6 +97,9 @@ def motion_display() -> Iterator[Callable[[MotionProgress], None]]:
 
         def show_motion(progress: MotionProgress) -> None:
             raise_interrupt()
+            # From the first step on there is a motion to be written.
+            if progress.time > 0.0:
+                take_time()
             times = f"t = {progress.time:.4g} of {progress.duration:.4g} s, step {progress.step:.2g} s"
             bar.update(task, description=f"{progress.stage}: {times}", completed=progress.share)
 
@@ -124,6 +127,19 @@ def _stopped_without_files(bar: Progress) -> Iterator[None]:
     except KeyboardInterrupt:
         bar.console.print("Stopped. Nothing was written.")
         raise StoppedError from None
+
+
+@contextmanager
+def count_display(description: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar for what tells how much of it is done, and of how much; an interrupt is raised at the next report."""
+    with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
+        task = bar.add_task(description, total=None)
+
+        def show_count(done: int, total: int) -> None:
+            raise_interrupt()
+            bar.update(task, completed=done, total=total)
+
+        yield show_count
 
 
 @contextmanager

@@ -1,11 +1,22 @@
-"""Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written."""
+"""Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
+
+A signal raises KeyboardInterrupt where Python runs. It does not inside a long call of CasADi, and where CasADi has
+called Python what is raised is lost: a thread that hears of signals by itself ends the process then.
+"""
 
 from __future__ import annotations
 
+import atexit
+import os
+import shutil
 import signal
+import socket
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 
 
 class StoppedError(Exception):
@@ -15,8 +26,23 @@ class StoppedError(Exception):
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 """Signals that stop a command."""
 
+GRACE = 0.7
+"""Time that a command has after a signal to end by itself, s."""
+
+LONG_GRACE = 30.0
+"""The same for one that writes what it has, such as a motion as far as it came."""
+
+LOOKS = 0.05
+"""Time between two looks at whether it is over, s."""
+
 _received: list[int] = []
 """Those that have come, in their order."""
+
+_temporary_folders: list[str] = []
+"""Folders made for what is temporary: one at the most."""
+
+_unhurried = threading.Event()
+"""Whether the command writes what it has after a signal."""
 
 
 def install_handlers() -> None:
@@ -26,15 +52,50 @@ def install_handlers() -> None:
     sys.unraisablehook = _report_unraisable
 
 
+def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
+    """End the process where a command has not ended by itself some time after a signal, or at a second one.
+
+    What is temporary lies in one folder from now on, which is removed.
+
+    Args:
+        sentence: printed on standard error then.
+        exit_codes: of the process, by the number of the signal.
+    """
+    folder = tempfile.mkdtemp(prefix="cosserat_casadi-")
+    _temporary_folders.append(folder)
+    tempfile.tempdir = folder
+    atexit.register(remove_temporary_files)
+    told, heard = socket.socketpair()
+    for end in (told, heard):
+        end.setblocking(end is heard)
+    signal.set_wakeup_fd(told.fileno(), warn_on_full_buffer=False)
+    # Kept by the thread: the numbers of signals come through it as long as the process lives.
+    arguments = (told, heard, sentence, exit_codes)
+    threading.Thread(target=_watch, args=arguments, name="signals", daemon=True).start()
+
+
+def remove_temporary_files() -> None:
+    """Remove the folder of what is temporary, where the process ends without its last rites."""
+    for folder in _temporary_folders:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def take_time() -> None:
+    """Let the command that runs write what it has after a signal."""
+    _unhurried.set()
+
+
 def forget_signals() -> None:
     """Begin anew: a command has not been stopped yet."""
     _received.clear()
+    _unhurried.clear()
 
 
 def remove_handlers() -> None:
     """Let the signals end the process without a word: the command is done."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
+    signal.set_wakeup_fd(-1)
 
 
 def was_terminated() -> bool:
@@ -65,6 +126,37 @@ def remembered_interrupt() -> Iterator[Callable[[], None]]:
     finally:
         for number, handler in handlers_before.items():
             signal.signal(number, handler)
+
+
+def _watch(told: socket.socket, heard: socket.socket, sentence: str, exit_codes: Mapping[int, int]) -> None:
+    """End the process some time after the first signal that comes, or at the second."""
+    first = _next_signal(heard)
+    began = time.monotonic()
+    heard.settimeout(LOOKS)
+    while time.monotonic() - began < (LONG_GRACE if _unhurried.is_set() else GRACE):
+        try:
+            _next_signal(heard)
+        except TimeoutError:
+            continue
+        break
+    clear_line = "\r\x1b[2K\x1b[?25h" if os.isatty(2) else ""
+    with suppress(OSError):
+        os.write(2, f"{clear_line}{sentence}\n".encode())
+    remove_temporary_files()
+    told.close()
+    os._exit(exit_codes[first])
+
+
+def _next_signal(heard: socket.socket) -> int:
+    """Number of the next signal that stops a command.
+
+    Raises:
+        TimeoutError: none has come in the time that the socket has.
+    """
+    while True:
+        number = heard.recv(1)[0]
+        if number in SIGNALS:
+            return number
 
 
 def _report_unraisable(unraisable: sys.UnraisableHookArgs) -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import codecs
+import errno
 import io
 import os
 import sys
 import unicodedata
+from contextlib import suppress
 from itertools import groupby
+from typing import Any, BinaryIO
 
 PLAIN = {
     "µ": "u",
@@ -34,11 +37,59 @@ HANDLER = "cosserat_plain"
 
 
 def prepare_streams() -> None:
-    """Let standard output and standard error write plain letters for those that their encoding lacks."""
+    """Let standard output and standard error take all that a command says.
+
+    Letters that their encoding lacks become plain ones, what standard error cannot take is dropped, and a width of no
+    columns is that of a pipe.
+    """
     codecs.register_error(HANDLER, _plain_letters)
+    _open_missing_streams()
+    if isinstance(sys.stderr, io.TextIOWrapper):
+        sys.stderr = _dropping(sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=HANDLER)
+    if os.environ.get("COLUMNS", "1").strip("0") == "":
+        del os.environ["COLUMNS"]
+
+
+def binary_output() -> BinaryIO:
+    """Standard output for bytes.
+
+    Raises:
+        OSError: it is closed.
+    """
+    if sys.stdout is None:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+    return sys.stdout.buffer
+
+
+def _open_missing_streams() -> None:
+    """Keep the numbers of standard streams that are closed: a file that gets one would be written to as a stream."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            # The lowest free number is taken, which is this one.
+            os.open(os.devnull, os.O_RDWR)
+
+
+class _Dropping(io.FileIO):
+    """A file that forgets what it cannot take: how a command ends is said by its exit code too."""
+
+    def write(self, content: Any) -> int:
+        """Write a content, as far as that goes."""
+        with suppress(OSError):
+            rest = memoryview(content)
+            while len(rest):
+                rest = rest[super().write(rest) :]
+        return len(content)
+
+
+def _dropping(stream: io.TextIOWrapper) -> io.TextIOWrapper:
+    """A stream for the same file that forgets what the file cannot take, as where its disk is full."""
+    file = _Dropping(stream.fileno(), "w", closefd=False)
+    return io.TextIOWrapper(file, encoding=stream.encoding, errors=stream.errors, write_through=True)
 
 
 def flush_streams() -> None:
@@ -56,6 +107,8 @@ def silence_output() -> None:
 
     Python would try once more at its end, and print a traceback.
     """
+    if sys.stdout is None:
+        return
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)

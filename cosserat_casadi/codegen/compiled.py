@@ -423,6 +423,8 @@ def _scene_text(folder: Path) -> str:
 def _has_rods(described: Any) -> bool:
     """Whether what is read of a manifest of rods is there."""
     rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
+    owners = [*(entry["name"] for entry in described.get("actuators", [])), *described.get("bodies", [])]
+    rods = rods and all(isinstance(name, str) for name in owners)
     files = all(isinstance(file, str) for file in described["files"])
     functions = all(isinstance(entry, dict) for entry in described["functions"])
     listed_parameters(described.get("parameters", []))

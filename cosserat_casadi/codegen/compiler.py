@@ -190,7 +190,8 @@ def _run(processes: Processes, command: list[str], made: Path, of: Path) -> None
     except OSError as error:
         raise ExportError(Problem("compiler", f"{program} cannot be run: {error.strerror}", REMEDY)) from None
     if code:
-        raise ExportError(Problem(str(of), f"{program} could not compile it: {told.strip()[-800:]}"))
+        folder = of if of.is_dir() else of.parent
+        raise ExportError(Problem(str(folder), f"{program} could not compile it: {told.strip()[-800:]}"))
     if not made.exists() or made.stat().st_size == 0:
         problem = f"{program} says that it has compiled {of}, and wrote nothing"
         raise ExportError(Problem("compiler", problem, "name another in the environment variable CC"))

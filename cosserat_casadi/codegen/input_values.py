@@ -93,9 +93,18 @@ class ListedInputs(ListedValues):
 
 
 def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ...]:
-    """Inputs or parameters of a manifest."""
+    """Inputs or parameters of a manifest.
+
+    Raises:
+        KeyError: something is missing.
+        OverflowError: a value is beyond all range.
+        TypeError: a name, a unit or a shape is none.
+        ValueError: values are no numbers, or not so many as their shape says.
+    """
     values = []
     for entry in entries:
+        if not isinstance(entry["name"], str) or not isinstance(entry["unit"], str):
+            raise TypeError("names and units are texts")
         default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
         lower = _ends(entry.get("lower"), -np.inf, default.size)
         upper = _ends(entry.get("upper"), np.inf, default.size)

@@ -328,7 +328,8 @@ def input_words(model: Model, names: Names) -> dict[str, str]:
 
 def _ends(values: FloatArray, names: Names) -> str:
     """Ends of ranges as an initialiser of an array."""
-    infinite = {np.inf: "HUGE_VAL", -np.inf: "-HUGE_VAL"}
+    real = f"({names.name}_real)"
+    infinite = {np.inf: f"{real}HUGE_VAL", -np.inf: f"-{real}HUGE_VAL"}
     return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi.codegen.compiler import EXPORT_ANEW
 from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
+from cosserat_casadi.codegen.input_values import listed_values
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
@@ -66,9 +67,10 @@ def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
     """
     try:
         library_names(described["name"])
+        listed_values(described["inputs"])
         values = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
         return all(value.ndim == 1 for value in values) and is_own(described)
-    except (ExportError, KeyError, TypeError, ValueError):
+    except (ExportError, AttributeError, KeyError, OverflowError, TypeError, ValueError):
         return False
 
 

@@ -19,6 +19,9 @@ from cosserat_casadi.scene import Scene
 OUTLIER = 4.0
 """Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
 
+EARLY = ("stalled", "max_iterations")
+"""Outcomes of searches that ended before the misfit was least."""
+
 NORMAL_MEDIAN = 0.6744897501960817
 """Median of the size of what is normally distributed, in standard deviations."""
 
@@ -156,16 +159,22 @@ class Identification:
         rows = [row for row in self.rows if not row.held_out and abs(row.residual) > OUTLIER * spread]
         return tuple(sorted(rows, key=lambda row: -abs(row.residual)))
 
-    def fitted_scene(self, scene: Scene | None = None) -> Scene:
+    @property
+    def ended_early(self) -> bool:
+        """Whether the search ended before the misfit was least: its numbers are better than those of the start."""
+        return self.outcome in EARLY
+
+    def fitted_scene(self, scene: Scene | None = None, *, early: bool = False) -> Scene:
         """The scene with what was found for its numbers; unknowns of single cases stay as they are.
 
         Args:
             scene: the scene that was identified; by default that of the model, with its inputs and parameters.
+            early: whether numbers of a search that ended early will do.
 
         Raises:
             SceneError: nothing was found, or the scene refuses it.
         """
-        if not self.converged:
+        if not self.converged and not (early and self.ended_early):
             raise SceneError(Problem("unknowns", "were not found", self.message))
         return with_found(scene or self.model.scene, self.model, self.layout, self.shared)
 

@@ -11,8 +11,9 @@ Math. 172, 2004 (projection on bounds).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cached_property
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -38,6 +39,9 @@ LARGEST_DAMPING = 1e12
 
 SUFFICIENT = 1e-4
 """Share of the predicted decrease that a step must bring."""
+
+MOST_SETS = 100
+"""Sets of unknowns at their ends that one step is tried with; the sum falls with each of them."""
 
 ROUNDING = 1e-9
 """Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
@@ -99,11 +103,11 @@ class Limits:
         """Values brought into their range."""
         return np.clip(values, self.lower, self.upper)
 
-    def stepped(self, values: FloatArray, step: FloatArray) -> FloatArray:
-        """Values after a step, within their range and no farther than one step may go."""
-        least = np.where(self.ratios, values / MOST_RATIO, -np.inf)
-        most = np.where(self.ratios, values * MOST_RATIO, np.inf)
-        return self.clipped(np.clip(values + step, least, most))
+    def within_step(self, values: FloatArray) -> Limits:
+        """What holds the unknowns after one step from these values, shape (n,) or (blocks, n)."""
+        lower = np.where(self.ratios, values / MOST_RATIO, -np.inf)
+        upper = np.where(self.ratios, values * MOST_RATIO, np.inf)
+        return replace(self, lower=np.maximum(lower, self.lower), upper=np.minimum(upper, self.upper))
 
     def residual(self, values: FloatArray) -> FloatArray:
         """Differences from the expected values in standard deviations, shape as the values."""
@@ -184,17 +188,14 @@ class Arrow:
     own_prior: tuple[FloatArray, FloatArray]
     shared_held: npt.NDArray[np.bool_]
     own_held: npt.NDArray[np.bool_]
-    _triangles: list[FloatArray] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._triangles = self._compressed()
 
     @property
     def sizes(self) -> tuple[int, int]:
         """Numbers of shared unknowns and of those of each block."""
         return self.by_shared.shape[1], self.by_own.shape[1]
 
-    def _compressed(self) -> list[FloatArray]:
+    @cached_property
+    def _triangles(self) -> list[FloatArray]:
         """For each block the triangle of [own, shared, residual], which has all that its rows say."""
         n, k = self.sizes
         by_shared = np.where(self.shared_held, 0.0, self.by_shared)
@@ -255,16 +256,69 @@ class Arrow:
             own[block] = -np.linalg.solve(elimination[:, :k], known)
         return shared, own
 
+    def gradient(self, shared: FloatArray, own: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gradient of half the sum of squares, where the unknowns have changed.
+
+        Args:
+            shared: changes of the shared unknowns, shape (n,).
+            own: changes of the own ones, shape (blocks, k).
+
+        Returns:
+            with the shared unknowns, shape (n,), and with the own ones, shape (blocks, k).
+        """
+        residual = self.residual + self._change(shared, own)
+        shared_weights, shared_residual = self.shared_prior
+        own_weights, own_residual = self.own_prior
+        by_shared = self.by_shared.T @ residual + shared_weights * (shared_residual + shared_weights * shared)
+        by_own = np.zeros_like(own)
+        if own.size:
+            by_own = np.add.reduceat(residual[:, None] * self.by_own, self.offsets[:-1], axis=0)
+        return by_shared, by_own + own_weights * (own_residual + own_weights * own)
+
+    def with_changes(
+        self,
+        shared: FloatArray,
+        own: FloatArray,
+        shared_held: npt.NDArray[np.bool_],
+        own_held: npt.NDArray[np.bool_],
+    ) -> Arrow:
+        """The problem where some unknowns have changed by what is given, and are held there.
+
+        Args:
+            shared: changes of the shared unknowns, shape (n,); zero for those that are free.
+            own: changes of the own ones, shape (blocks, k); likewise.
+            shared_held: shared unknowns that are held, shape (n,).
+            own_held: own unknowns that are held, shape (blocks, k).
+        """
+        return replace(
+            self,
+            residual=self.residual + self._change(shared, own),
+            shared_prior=(self.shared_prior[0], self.shared_prior[1] + self.shared_prior[0] * shared),
+            own_prior=(self.own_prior[0], self.own_prior[1] + self.own_prior[0] * own),
+            shared_held=shared_held,
+            own_held=own_held,
+        )
+
     def decrease(self, shared: FloatArray, own: FloatArray) -> float:
         """How much half the sum of squares falls, by the linear model, where the unknowns change."""
-        change = self.by_shared @ shared + np.sum(self.by_own * self._spread(own), axis=1)
-        falls = _decrease(self.residual, change)
+        falls = _decrease(self.residual, self._change(shared, own))
         falls += _decrease(self.shared_prior[1], self.shared_prior[0] * shared)
         return falls + _decrease(self.own_prior[1].ravel(), (self.own_prior[0] * own).ravel())
+
+    def _change(self, shared: FloatArray, own: FloatArray) -> FloatArray:
+        """Change of the residual by the linear model, shape (m,)."""
+        return np.asarray(self.by_shared @ shared + np.sum(self.by_own * self._spread(own), axis=1))
 
     def _spread(self, own: FloatArray) -> FloatArray:
         """Own unknowns of each row's block, shape (m, k)."""
         return np.repeat(own, np.diff(self.offsets), axis=0)
+
+
+def _without(held: Held, which: int, place: tuple[np.signedinteger, ...]) -> Held:
+    """What is held, less one unknown."""
+    fewer = (held[0].copy(), held[1].copy())
+    fewer[which][place] = False
+    return fewer
 
 
 def _decrease(residual: FloatArray, change: FloatArray) -> float:
@@ -279,6 +333,110 @@ def _triangle(rows: FloatArray) -> FloatArray:
     if missing > 0:
         triangle = np.vstack([triangle, np.zeros((missing, rows.shape[1]))])
     return triangle
+
+
+Held = tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]
+"""Which of the shared unknowns are held, shape (n,), and which of the own ones, shape (blocks, k)."""
+
+Pair = tuple[FloatArray, FloatArray]
+"""Something of the shared unknowns, shape (n,), and of the own ones, shape (blocks, k)."""
+
+
+@dataclass
+class BoundedStep:
+    """The step within bounds that lessens a damped linear least-squares problem most.
+
+    Unknowns that a step would take beyond an end stop there, and the others go where the sum is least with those at
+    their ends: cut off alone, they would not go along. One that would rather come back from its end is let go. The sum
+    falls with each such set of unknowns. P. B. Stark, R. L. Parker, *Bounded-variable least-squares*, Computational
+    Statistics 10, 1995; J. Nocedal, S. J. Wright, *Numerical Optimization*, Springer 2006, section 16.5.
+
+    Attributes:
+        arrow: the problem in the changes of the unknowns.
+        values: the unknowns now.
+        boxes: limits after the step.
+        damping: rows that are added to the unknowns.
+    """
+
+    arrow: Arrow
+    values: Pair
+    boxes: tuple[Limits, Limits]
+    damping: Pair
+
+    def run(self) -> Pair:
+        """The unknowns after the step."""
+        present = self.values
+        held = (self.arrow.shared_held, self.arrow.own_held)
+        for _ in range(MOST_SETS):
+            wanted = self._free_step(present, held)
+            clipped = (self.boxes[0].clipped(wanted[0]), self.boxes[1].clipped(wanted[1]))
+            cut = (clipped[0] != wanted[0], clipped[1] != wanted[1])
+            if not np.any(cut[0]) and not np.any(cut[1]):
+                present = wanted
+                pulled = self._pulled_back(present, held)
+                if pulled is None:
+                    break
+                held = _without(held, *pulled)
+                continue
+            if self._sum(clipped) < self._sum(present):
+                present = clipped
+            else:
+                # Only as far as the first end on the way, up to which the sum falls.
+                present, cut = self._to_first_end(present, wanted)
+            held = (held[0] | cut[0], held[1] | cut[1])
+        return present
+
+    def _free_step(self, present: Pair, held: Held) -> Pair:
+        """Where the sum is least if some unknowns stay where they are, whatever the bounds of the others."""
+        changes = self._changes(present)
+        given = (np.where(held[0], changes[0], 0.0), np.where(held[1], changes[1], 0.0))
+        steps = self.arrow.with_changes(*given, *held).step(*self.damping)
+        return (
+            np.where(held[0], present[0], self.values[0] + steps[0]),
+            np.where(held[1], present[1], self.values[1] + steps[1]),
+        )
+
+    def _pulled_back(self, present: Pair, held: Held) -> tuple[int, tuple[np.signedinteger, ...]] | None:
+        """Place of the held unknown that the sum pulls back from its end most; None where there is none."""
+        changes = self._changes(present)
+        gradients = self.arrow.gradient(*changes)
+        strongest = 0.0
+        place = None
+        for which in range(2):
+            damping = self.damping[which]
+            gradient = gradients[which] + damping**2 * changes[which]
+            back = held[which] & ~self.boxes[which].held(present[which], gradient)
+            pull = np.where(back, np.abs(gradient) / damping, 0.0)
+            if pull.size and pull.max() > strongest:
+                strongest = float(pull.max())
+                place = (which, np.unravel_index(int(np.argmax(pull)), pull.shape))
+        return place
+
+    def _to_first_end(self, present: Pair, wanted: Pair) -> tuple[Pair, Held]:
+        """The unknowns on the way to wanted ones where the first of them meets its end, and which do."""
+        shares = []
+        for box, start, end in zip(self.boxes, present, wanted, strict=True):
+            ends = np.where(end > start, box.upper, box.lower)
+            beyond = (end > box.upper) | (end < box.lower)
+            share = np.full(start.shape, np.inf)
+            np.divide(ends - start, end - start, out=share, where=beyond)
+            shares.append(share)
+        first = min(float(share.min(initial=np.inf)) for share in shares)
+        met = (shares[0] <= first, shares[1] <= first)
+        reached = tuple(
+            box.clipped(np.where(at_end, end, start + first * (end - start)))
+            for box, start, end, at_end in zip(self.boxes, present, wanted, met, strict=True)
+        )
+        return (reached[0], reached[1]), met
+
+    def _sum(self, values: Pair) -> float:
+        """Change of half the damped sum of squares."""
+        changes = self._changes(values)
+        damped = sum(np.sum((rows * change) ** 2) for rows, change in zip(self.damping, changes, strict=True))
+        return float(damped) / 2 - self.arrow.decrease(*changes)
+
+    def _changes(self, values: Pair) -> Pair:
+        return values[0] - self.values[0], values[1] - self.values[1]
 
 
 @dataclass
@@ -367,21 +525,20 @@ class ArrowFit(Generic[StateType]):
         by_own = roots[:, None] * by_own
         shared_prior = (self.shared.weight, self.shared.residual(shared))
         own_prior = (self.own.weight, self.own.residual(own))
-        shared_gradient = by_shared.T @ residual + self.shared.weight * shared_prior[1]
-        own_gradient = np.zeros_like(own)
-        if own.size:
-            rows = residual[:, None] * by_own
-            own_gradient = np.add.reduceat(rows, self.problem.offsets[:-1], axis=0) + self.own.weight * own_prior[1]
-        return Arrow(
+        free = Arrow(
             residual,
             by_shared,
             by_own,
             self.problem.offsets,
             shared_prior,
             own_prior,
-            self.shared.held(shared, shared_gradient),
-            self.own.held(own, own_gradient),
+            np.zeros(shared.shape, dtype=bool),
+            np.zeros(own.shape, dtype=bool),
         )
+        shared_gradient, own_gradient = free.gradient(np.zeros_like(shared), np.zeros_like(own))
+        shared_held = self.shared.held(shared, shared_gradient)
+        own_held = self.own.held(own, own_gradient)
+        return replace(free, shared_held=shared_held, own_held=own_held)
 
     def _cost(self, shared: FloatArray, own: FloatArray, state: StateType) -> float:
         priors = np.concatenate([self.shared.residual(shared), self.own.residual(own).ravel()])
@@ -401,16 +558,10 @@ class ArrowFit(Generic[StateType]):
         root = np.sqrt(search.damping)
         shared_damping = root * np.where(search.shared_scale > 0, search.shared_scale, 1.0)
         own_damping = root * np.where(search.own_scale > 0, search.own_scale, 1.0)
-        shared_step, own_step = arrow.step(shared_damping, own_damping)
-        shared = self.shared.stepped(search.shared, shared_step)
-        own = self.own.stepped(search.own, own_step)
+        shared, own = self._stepped(search, arrow, shared_damping, own_damping)
         predicted = arrow.decrease(shared - search.shared, own - search.own)
         if predicted <= self._least_decrease(search):
-            # What a bound cuts off, or damping makes small, says nothing of the misfit.
-            cut = np.any(shared != search.shared + shared_step) or np.any(own != search.own + own_step)
-            if not cut or search.damping > LARGEST_DAMPING:
-                return self._ended(search, arrow)
-            return self._more_damping(search, arrow)
+            return self._ended(search, arrow)
         state = self.problem.at(shared, own, search.state)
         if state is not None and np.all(np.isfinite(state.residual)):
             cost = self._cost(shared, own, state)
@@ -426,6 +577,18 @@ class ArrowFit(Generic[StateType]):
             search.damping *= BACK_OFF
         return self._more_damping(search, arrow)
 
+    def _stepped(
+        self, search: _Search[StateType], arrow: Arrow, shared_damping: FloatArray, own_damping: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Shared unknowns, (n,), and own ones, (blocks, k), after the step that lessens the damped sum most."""
+        step = BoundedStep(
+            arrow,
+            (search.shared, search.own),
+            (self.shared.within_step(search.shared), self.own.within_step(search.own)),
+            (shared_damping, own_damping),
+        )
+        return step.run()
+
     def _least_decrease(self, search: _Search[StateType]) -> float:
         """Predicted decrease below which there is nothing left to gain."""
         return max(self.settings.decrease, self.settings.relative * search.cost)
@@ -439,11 +602,11 @@ class ArrowFit(Generic[StateType]):
         return False
 
     def _ended(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome:
-        """How a search ends whose steps bring nothing: by what a step that is hardly damped would bring."""
+        """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
         shared_scale = np.where(search.shared_scale > 0, search.shared_scale, 1.0)
         own_scale = np.where(search.own_scale > 0, search.own_scale, 1.0)
         hardly = np.sqrt(HARDLY_DAMPED)
-        shared_step, own_step = arrow.step(hardly * shared_scale, hardly * own_scale)
-        left = arrow.decrease(shared_step, own_step)
+        shared, own = self._stepped(search, arrow, hardly * shared_scale, hardly * own_scale)
+        left = arrow.decrease(shared - search.shared, own - search.own)
         bound = max(ROUNDING, self._least_decrease(search))
         return FitOutcome.CONVERGED if left <= bound else FitOutcome.STALLED

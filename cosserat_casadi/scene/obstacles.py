@@ -6,6 +6,7 @@ A kind is a record here and a class in `obstacles/` that says how far a point is
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from math import inf
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
@@ -275,6 +276,10 @@ Radii = Annotated[
 """One radius, or one for each point of a lumen."""
 
 
+CLOSEST_POINTS = 1e-12
+"""Least distance of neighbours on a line relative to the largest: the equations of the line have so many digits."""
+
+
 @OBSTACLES.register
 class Lumen(ObstacleRecord):
     """The inside of a tube, which rods may not leave: the balls about a smooth line through points.
@@ -317,6 +322,11 @@ rods = ["finger"]
         for i, (before, point) in enumerate(itertools.pairwise(points), 1):
             if numbers_of(point) and numbers_of(point) == numbers_of(before):
                 yield Fault(("points", i), "must differ from the point before it")
+        if all(len(numbers_of(point)) == 3 for point in points):
+            distances = [math.dist(before, point) for before, point in itertools.pairwise(points)]
+            if distances and 0.0 < min(distances) < CLOSEST_POINTS * max(distances):
+                problem = f"are {min(distances):g} m apart at the least and {max(distances):g} m at the most"
+                yield Fault(("points",), problem, "no smooth line through them can be computed: space them evenly")
         radius = given.get("radius")
         if isinstance(radius, list | tuple) and radius and len(radius) != len(points):
             yield Fault(("radius",), f"must have one radius for each of {len(points)} points, got {len(radius)}")

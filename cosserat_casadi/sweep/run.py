@@ -220,8 +220,8 @@ def run_sweep(
     with _machine(scheduler, cores) as machine:
         store = None if plan.part is None else Store(plan.part)
         with store or nullcontext():
-            choice, done = _begun(plan, store, progress)
             work = chunks(plan.variants)
+            choice, done = _begun(plan, work, store, progress)
             _solve_rest(plan, choice, machine, work, done, store, progress)
             sweep = _sweep(plan, choice, work, done, progress)
             if plan.output is not None and store is not None:
@@ -244,11 +244,14 @@ def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
     return Cluster(scheduler)
 
 
-def _begun(plan: Plan, store: Store | None, progress: Progress) -> tuple[Choice, dict[int, FloatArray]]:
+def _begun(
+    plan: Plan, work: Sequence[Chunk], store: Store | None, progress: Progress
+) -> tuple[Choice, dict[int, FloatArray]]:
     """The discretisation and what is done; of a new sweep the one is chosen now, and nothing is done."""
     head = None if store is None else store.head()
     if store is not None and head is not None:
-        return Choice.read(head["choice"]), store.resume(len(plan.results))
+        rows = {chunk.number: len(chunk.rows) for chunk in work}
+        return Choice.read(head["choice"]), store.resume(rows, len(plan.results))
     # Each row of tubes has as many steps as its own tolerance asks for.
     choice = Choice(None) if plan.scene.tubes else choose(plan.variants, plan.table.values, plan.samples, progress)
     if store is not None:
@@ -397,9 +400,9 @@ def _foreign_files(output: Path, part: Path, identity: str) -> list[Problem]:
     problems = []
     head = Store(part).head() or {}
     # A file without content is what a kill before the first line leaves.
-    unfinished = part.exists() and part.stat().st_size > 0
+    unfinished = part.exists() and (not part.is_file() or part.stat().st_size > 0)
     if unfinished and head.get("sweep") != identity:
-        problem = f"{part} is of another sweep, which was not finished"
+        problem = f"{part} is of another sweep, which was not finished, or has been changed"
         remedy = "finish that one, remove the file, or name another output"
         problems.append(Problem("--output", problem, remedy))
     record = read_record(output) or {}

@@ -16,6 +16,9 @@ import numpy as np
 from cosserat_casadi.files import write_errors, write_whole
 from cosserat_casadi.maths.typing import FloatArray
 
+CHECKSUM = "checksum"
+"""Key of the checksum of the first line."""
+
 ENTRY = struct.Struct("<qqI")
 """Number of a chunk, bytes of its results, their checksum."""
 
@@ -23,8 +26,8 @@ ENTRY = struct.Struct("<qqI")
 class Store:
     """The unfinished results of one sweep.
 
-    The first line says what sweep it is, in JSON; every chunk follows with its number and a checksum. An entry that was
-    being written when the process was killed is cut off.
+    The first line says what sweep it is, in JSON with a checksum; every chunk follows with its number and a checksum.
+    An entry that was being written when the process was killed is cut off.
     """
 
     def __init__(self, path: Path) -> None:
@@ -33,12 +36,17 @@ class Store:
 
     def head(self) -> dict[str, Any] | None:
         """What sweep the file is of; None where there is none, or where it is damaged."""
+        # Opening a pipe would wait for who writes into it.
+        if not self.path.is_file():
+            return None
         try:
             with self.path.open("rb") as file:
                 head = json.loads(file.readline())
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             return None
-        return head if isinstance(head, dict) else None
+        if not isinstance(head, dict) or head.pop(CHECKSUM, None) != _checksum(head):
+            return None
+        return head
 
     def start(self, head: Mapping[str, Any]) -> None:
         """Begin a sweep, over whatever the file held.
@@ -46,7 +54,7 @@ class Store:
         Raises:
             WriteError: it cannot be written; nothing is left of it.
         """
-        line = json.dumps(head).encode() + b"\n"
+        line = json.dumps({**head, CHECKSUM: _checksum(head)}).encode() + b"\n"
         with write_errors(self.path):
             try:
                 # Unbuffered: out of this process at once, so that a kill does not lose it.
@@ -56,12 +64,17 @@ class Store:
                 self.remove()
                 raise
 
-    def resume(self, width: int) -> dict[int, FloatArray]:
-        """What is done, by number of chunk, with results of this width; the file is ready for more."""
+    def resume(self, rows: Mapping[int, int], width: int) -> dict[int, FloatArray]:
+        """What is done, by number of chunk; the file is ready for more.
+
+        Args:
+            rows: of each chunk of the sweep, by its number.
+            width: numbers that a row is answered with.
+        """
         done = {}
         with self.path.open("rb") as file:
             end = len(file.readline())
-            for number, content in _entries(file):
+            for number, content in _entries(file, {chunk: 8 * width * count for chunk, count in rows.items()}):
                 results = np.frombuffer(content, dtype="<f8")
                 done[number] = results.reshape(-1, width)
                 end += ENTRY.size + len(content)
@@ -101,13 +114,23 @@ class Store:
         self.close()
 
 
-def _entries(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
-    """Whole entries; what follows a damaged one is not trusted."""
+def _checksum(head: Mapping[str, Any]) -> int:
+    return zlib.crc32(json.dumps(head, sort_keys=True).encode())
+
+
+def _entries(file: BinaryIO, sizes: Mapping[int, int]) -> Iterator[tuple[int, bytes]]:
+    """Whole entries; what follows a damaged one, or one that the sweep does not have, is not trusted.
+
+    Args:
+        file: behind its first line.
+        sizes: bytes of the results of each chunk, by its number.
+    """
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)
-        # A damaged size may be negative, which would read all that follows.
-        content = file.read(size) if size > 0 else b""
-        # No chunk is empty: zeros are what a file system may leave after a failure of power.
-        if not content or len(content) != size or zlib.crc32(content) != checksum:
+        # Zeros are what a file system may leave after a failure of power: no chunk is empty.
+        if size <= 0 or sizes.get(number) != size:
+            return
+        content = file.read(size)
+        if len(content) != size or zlib.crc32(content) != checksum:
             return
         yield number, content

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -259,7 +260,9 @@ def test_units_are_written_in_plain_letters(folder: Path) -> None:
         ("Röhrchen, ẋ, −3 ≤ φ ≤ 4·10³", "Rohrchen, x, -3 <= phi <= 4.10^3"),
     ],
 )
-def test_plain_letters_keep_numbers(letters: str, plain: str) -> None:
+def test_plain_letters_keep_numbers(letters: str, plain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The stream is prepared anew, and is not ours to keep.
+    monkeypatch.setattr(sys, "stderr", sys.stderr)
     prepare_streams()
     assert letters.encode("ascii", errors=HANDLER).decode() == plain
 
@@ -286,6 +289,55 @@ def test_full_disk_behind_standard_output(folder: Path) -> None:
     assert done.returncode == NOT_WRITTEN
     assert b"Standard output" in done.stderr
     assert b"Traceback" not in done.stderr
+
+
+SHELL = f"{shlex.join(PROGRAM)} "
+"""What a line of a shell begins with that runs a command."""
+
+
+def in_shell(folder: Path, line: str) -> subprocess.CompletedProcess[str]:
+    """Run a line in a shell, which opens and closes streams."""
+    return subprocess.run(
+        ["sh", "-c", SHELL + line], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell closes streams")
+def test_results_for_a_standard_output_that_is_closed_are_told_to_be_lost(folder: Path) -> None:
+    done = in_shell(folder, "solve wire.toml --json >&-")
+    assert done.returncode == NOT_WRITTEN
+    assert "Standard output or a temporary file could not be written: Bad file descriptor" in " ".join(
+        done.stderr.split()
+    )
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell closes streams")
+def test_files_do_not_take_the_place_of_streams_that_are_closed(folder: Path) -> None:
+    assert in_shell(folder, "solve wire.toml --output out.json >&- 2>&- <&-").returncode == 0
+    assert json.loads((folder / "out.json").read_text())["converged"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no /dev/full")
+@pytest.mark.parametrize(("line", "code"), [("solve nowhere.toml", REFUSED), ("solve wire.toml", 0)])
+def test_a_standard_error_that_is_full_changes_no_exit_code(folder: Path, line: str, code: int) -> None:
+    assert in_shell(folder, f"{line} 2>/dev/full").returncode == code
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell sets the variable")
+@pytest.mark.parametrize("columns", ["0", "00", "''"])
+def test_no_columns_are_those_of_a_pipe(folder: Path, columns: str) -> None:
+    wanted = in_shell(folder, "check wire.toml").stdout
+    shown = subprocess.run(
+        ["sh", "-c", f"COLUMNS={columns} {SHELL} check wire.toml"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert shown.stdout == wanted
+    assert len(wanted) > 100
 
 
 def test_a_reader_that_has_seen_enough(folder: Path) -> None:

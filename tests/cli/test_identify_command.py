@@ -12,6 +12,7 @@ import pytest
 from cosserat_casadi import Identification, Problem, SceneError, read_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND, REFUSED
 from cosserat_casadi.cli.main import app, run
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitSettings
 from tests.conftest import ROOT
 
 FIXED = ["--set", "accuracy.modes=3", "--set", "accuracy.nodes=6"]
@@ -80,6 +81,26 @@ def test_what_the_data_leave_open_is_no_success(folder: Path, capsys: pytest.Cap
     assert "do not determine" in capsys.readouterr().out
 
 
+def test_a_search_that_ended_early_is_written_and_marked(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    init = ArrowFit.__init__
+    monkeypatch.setattr(
+        ArrowFit, "__init__", lambda self, *given: init(self, *given, settings=FitSettings(iterations=2))
+    )
+    found, fitted = folder / "found.json", folder / "fitted.toml"
+    assert identify(folder, "--output", str(found), "--write", str(fitted)) == NOT_FOUND
+    data = written(found)
+    assert data["outcome"] == "max_iterations"
+    first_line = fitted.read_text().partition("\n")[0]
+    assert first_line.startswith("# Not found: The iterations ran out before the misfit was least.")
+    assert first_line.endswith("The numbers are those at which the search ended.")
+    material = read_scene(fitted).rods[0].material
+    assert material is not None
+    assert material.youngs_modulus == data["unknowns"]["wire.material.youngs_modulus"]["value"]
+    assert "fitted.toml" in capsys.readouterr().out
+
+
 def test_all_that_is_wrong_is_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--hold-out", "1.5", "--starts", "0", "--output", str(folder / "none" / "found.json"))
     assert identify(folder, *options) == REFUSED
@@ -97,7 +118,7 @@ def test_a_scene_without_measurements_is_refused(capsys: pytest.CaptureFixture[s
 def test_what_was_found_and_is_no_scene_is_told(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def refused(self: Identification, scene: object = None) -> None:
+    def refused(self: Identification, scene: object = None, *, early: bool = False) -> None:
         raise SceneError(Problem("rods[0].section.radius", "must be < 1, got 2", "look at the unit"))
 
     monkeypatch.setattr(Identification, "fitted_scene", refused)

@@ -15,7 +15,18 @@ from tests.codegen.libraries import Exported, attempt, run
 
 Library = Callable[[str], Exported]
 
-KEYS = {"status", "iterations", "tip", "load_factor", "residual_norm", "cold_us", "warm_us", "igm_us", "jacobian_us"}
+KEYS = {
+    "status",
+    "iterations",
+    "tip",
+    "load_factor",
+    "error_estimate",
+    "residual_norm",
+    "cold_us",
+    "warm_us",
+    "igm_us",
+    "jacobian_us",
+}
 
 
 def strict_json(text: str) -> dict[str, Any]:

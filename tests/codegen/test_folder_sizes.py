@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
 from cosserat_casadi import read_scene, solve_scene
@@ -16,13 +18,22 @@ BUDGETS = {
     "two_section_robot": 980_000,
     "six_rod_platform": 1_500_000,
 }
-"""Bytes of the sources and headers of the library at the tolerance of the example."""
+"""Bytes of the sources and headers of the library at the tolerance of the example, without the estimate of errors."""
+
+MOST_BY_ESTIMATE = {"planar_strip": 40_000, "nitinol_wire": 260_000, "follower_reissner": 225_000}
+"""Bytes that the estimate of errors adds, where they are held: the balance of a rod with modes and intervals added."""
+
+
+def bytes_of_c(files: Mapping[str, str]) -> int:
+    wanted = {file: text for file, text in files.items() if file.endswith((".c", ".h")) and "_demo" not in file}
+    return sum(map(len, wanted.values()))
 
 
 @pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip", "follower_reissner"]))
 def test_bytes_of_c_of_examples(name: str) -> None:
     solution = solve_scene(read_scene(ROOT / "examples" / f"{name}.toml"))
     assert solution.converged
-    files = folder_files(solution.model, "sized")
-    wanted = {file: text for file, text in files.items() if file.endswith((".c", ".h")) and "_demo" not in file}
-    assert sum(map(len, wanted.values())) <= BUDGETS[name]
+    without = bytes_of_c(folder_files(solution.model, "sized", estimate_errors=False))
+    assert without <= BUDGETS[name]
+    if name in MOST_BY_ESTIMATE:
+        assert bytes_of_c(folder_files(solution.model, "sized")) - without <= MOST_BY_ESTIMATE[name]

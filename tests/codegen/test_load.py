@@ -16,7 +16,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, SceneError, build, discretise, export, load, solve
 from cosserat_casadi.codegen import compiler
-from cosserat_casadi.codegen.cache import cache_folder
+from cosserat_casadi.codegen.cache import cache_folder, library_name
 from cosserat_casadi.codegen.compiler import FLAGS
 from cosserat_casadi.codegen.manifest import MANIFEST
 from tests.scenes import WEIGHT, push, scene
@@ -188,9 +188,11 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the objects that would have been compiled."""
     made: list[str] = []
 
-    def pretend(compiler: str, sources: list[Path], target: Path, progress: object) -> None:
-        made.append(target.name)
-        target.write_bytes(b"")
+    def pretend(compiler: str, sources: list[Path], folder: Path, stem: str, progress: object) -> Path:
+        library = folder / library_name(stem, b"")
+        made.append(library.name)
+        library.write_bytes(b"")
+        return library
 
     monkeypatch.setattr(compiler, "_compile", pretend)
     return made
@@ -342,8 +344,16 @@ FOREIGN = {
     "a count that is none": {**SOUND, "unknowns": [{"rod": "rod", "count": "2"}]},
     "inputs are a number": {**SOUND, "inputs": 3},
     "inputs without values": {**SOUND, "inputs": [{"name": "push.force"}]},
-    "values that are no numbers": {**SOUND, "inputs": [{"value": ["a"]}]},
-    "values of two shapes": {**SOUND, "inputs": [{"value": [[1], 2]}]},
+    "values that are no numbers": {**SOUND, "inputs": [{**ONE_RADIUS, "value": ["a"]}]},
+    "values of two shapes": {**SOUND, "inputs": [{**ONE_RADIUS, "value": [[1], 2]}]},
+    "values beyond all range": {**SOUND, "inputs": [{**ONE_RADIUS, "value": [10**400]}]},
+    "inputs of another shape": {**SOUND, "inputs": [{**ONE_RADIUS, "shape": [2, 1]}]},
+    "a shape that is none": {**SOUND, "inputs": [{**ONE_RADIUS, "shape": 1.5}]},
+    "inputs without a shape": {**SOUND, "inputs": [{"name": "rod.radius", "unit": "m", "value": [1.0]}]},
+    "inputs without a name": {**SOUND, "inputs": [{**ONE_RADIUS, "name": None}]},
+    "actuators are null": {**SOUND, "actuators": None},
+    "actuators without a name": {**SOUND, "actuators": [{}]},
+    "bodies that are numbers": {**SOUND, "bodies": [1]},
     "no list of files": {word: entry for word, entry in SOUND.items() if word != "files"},
     "files that are numbers": {**SOUND, "files": [1]},
     "functions that are numbers": {**SOUND, "functions": [1]},

@@ -207,5 +207,80 @@ def test_iterations_that_run_out_are_told(decays: Decays) -> None:
 
 def test_what_is_positive_changes_by_half_in_a_step() -> None:
     limits = Limits(np.zeros(1), np.full(1, np.inf), np.zeros(1), np.zeros(1), np.ones(1, dtype=bool))
-    assert_allclose(limits.stepped(np.array([6.0]), np.array([-100.0])), [4.0], rtol=1e-15, atol=0)
-    assert_allclose(limits.stepped(np.array([6.0]), np.array([100.0])), [9.0], rtol=1e-15, atol=0)
+    box = limits.within_step(np.array([6.0]))
+    assert_allclose(box.clipped(np.array([-94.0])), [4.0], rtol=1e-15, atol=0)
+    assert_allclose(box.clipped(np.array([106.0])), [9.0], rtol=1e-15, atol=0)
+
+
+class Linear:
+    """One block of data that is linear in the shared unknowns."""
+
+    def __init__(self, matrix: FloatArray, measured: FloatArray) -> None:
+        self.offsets: npt.NDArray[np.int64] = np.array([0, len(measured)])
+        self.matrix = matrix
+        self.measured = measured
+
+    def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+        return self.point(shared, own)
+
+    def point(self, shared: FloatArray, own: FloatArray) -> Point:
+        return Point(shared, own, self.matrix @ shared - self.measured)
+
+    def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+        return self.matrix, np.zeros((len(self.measured), 0))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_bounds_in_narrow_valleys_are_kept_as_by_scipy(seed: int) -> None:
+    """Singular values from 1 to 1e-5: where a bound cuts one unknown off, the others must go another way."""
+    rng = np.random.default_rng(seed)
+    for _ in range(10):
+        n = int(rng.integers(2, 6))
+        left, _ = np.linalg.qr(rng.standard_normal((n + 3, n)))
+        right, _ = np.linalg.qr(rng.standard_normal((n, n)))
+        matrix = left @ np.diag(10.0 ** rng.uniform(-5, 0, n)) @ right.T
+        measured = matrix @ (3 * rng.standard_normal(n)) + 0.01 * rng.standard_normal(n + 3)
+        problem = Linear(matrix, measured)
+        shared = replace(free(n), lower=-np.ones(n), upper=np.ones(n))
+        start = rng.uniform(-1, 1, n)
+        own = np.zeros((1, 0))
+        found = ArrowFit(problem, shared, free(0)).run(start, own, problem.point(start, own))
+        expected = scipy.optimize.lsq_linear(matrix, measured, (shared.lower, shared.upper), method="bvls", tol=1e-15)
+        assert found.outcome is FitOutcome.CONVERGED
+        assert_allclose(found.cost, expected.cost, rtol=0, atol=1e-11)
+
+
+def test_the_step_of_own_unknowns_keeps_bounds_too() -> None:
+    """Each block has a narrow valley of its own, which the shared unknown moves."""
+    rng = np.random.default_rng(3)
+    blocks, rows = 6, 5
+    by_shared = rng.standard_normal((blocks * rows, 1))
+    by_own = rng.standard_normal((blocks * rows, 1)) + rng.standard_normal((blocks * rows, 2)) * [1.0, 1e-4]
+    measured = rng.standard_normal(blocks * rows)
+
+    class Blocks:
+        offsets: npt.NDArray[np.int64] = rows * np.arange(blocks + 1)
+
+        def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+            return self.point(shared, own)
+
+        def point(self, shared: FloatArray, own: FloatArray) -> Point:
+            of_own = np.sum(by_own * np.repeat(own, rows, axis=0), axis=1)
+            return Point(shared, own, by_shared @ shared + of_own - measured)
+
+        def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+            return by_shared, by_own
+
+    own = replace(free(2), lower=-0.3 * np.ones(2), upper=0.3 * np.ones(2))
+    problem = Blocks()
+    start = np.zeros(1), np.zeros((blocks, 2))
+    found = ArrowFit(problem, free(1), own).run(*start, problem.point(*start))
+    matrix = np.zeros((blocks * rows, 1 + 2 * blocks))
+    matrix[:, 0] = by_shared[:, 0]
+    for block in range(blocks):
+        span = slice(block * rows, (block + 1) * rows)
+        matrix[span, 1 + 2 * block : 3 + 2 * block] = by_own[span]
+    ends = np.array([np.inf, *[0.3] * (2 * blocks)])
+    expected = scipy.optimize.lsq_linear(matrix, measured, (-ends, ends), method="bvls", tol=1e-15)
+    assert found.outcome is FitOutcome.CONVERGED
+    assert_allclose(found.cost, expected.cost, rtol=0, atol=1e-11)

@@ -596,3 +596,10 @@ def test_sizes_that_are_next_to_nothing_are_refused(key, value):
 def test_numbers_that_are_no_lengths_may_be_of_any_size():
     force = f"{scene()}[[loads]]\nname = 'push'\nkind = 'tip_wrench'\nrod = 'finger'\nforce = [1e300, 0, 0]\n"
     assert parse_scene(force).loads[0].force[0] == 1e300
+
+
+def test_points_of_a_lumen_with_no_line_through_them_are_refused():
+    vessel = {"name": "vessel", "kind": "lumen", "points": [[-1e60, 0, 0], [0, 0, 0.1], [0, 0, 0.2]], "radius": 0.01}
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({"schema": 1, "obstacles": [vessel]})
+    assert "obstacles[0].points: are 0.1 m apart at the least and 1e+60 m at the most" in str(caught.value)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -239,11 +240,51 @@ def test_a_damaged_end_of_the_store_is_cut_off(tmp_path: Path) -> None:
         file.write_bytes(content)
         with Store(file) as store:
             assert store.head() == {"sweep": "x"}
-            found = store.resume(4)
+            found = store.resume({0: 5, 1: 5, 2: 5}, 4)
             assert sorted(found) == [0, 1]
             store.add(2, results[2])
         assert file.read_bytes() == whole
     assert_array_equal(found[1], results[1])
+
+
+def test_entries_that_the_sweep_does_not_have_are_cut_off(tmp_path: Path) -> None:
+    file = tmp_path / "x.part"
+    with Store(file) as store:
+        store.start({"sweep": "x"})
+        store.add(0, np.ones((5, 4)))
+        store.add(7, np.ones((5, 4)))
+    for rows, expected in (({0: 5, 7: 5}, [0, 7]), ({0: 5}, [0]), ({0: 4, 7: 5}, []), ({0: 5, 7: 10**15}, [0])):
+        copied = tmp_path / "copied.part"
+        copied.write_bytes(file.read_bytes())
+        with Store(copied) as store:
+            assert sorted(store.resume(rows, 4)) == expected
+
+
+def test_an_unfinished_sweep_whose_first_line_was_changed_is_refused(tmp_path: Path) -> None:
+    table, output = {"push.force.x": [0.1]}, tmp_path / "a.csv"
+    part = tmp_path / "a.csv.part"
+    identity = plan_sweep(PLANAR, table_of(table), output).identity
+    choice = {"discretisation": {"modes": [3], "nodes": 6, "rotation": "magnus6"}, "rows": [0], "converged": 1}
+    with Store(part) as store:
+        store.start({"sweep": identity, "choice": {**choice, "error_estimate": None}})
+    sound = part.read_text()
+    assert plan_sweep(PLANAR, table_of(table), output).part == part
+    for old, new in (
+        ("[3]", '"a"'),
+        ('"nodes": 6', '"nodes": -6'),
+        ('"choice"', '"chosen"'),
+        (": 1", ": " + "9" * 400),
+    ):
+        part.write_text(sound.replace(old, new, 1))
+        assert "a.csv.part is of another sweep, which was not finished, or has been changed" in refused(output, table)
+    part.write_text("[" * 100_000)
+    assert "has been changed" in refused(output, table)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a pipe of a POSIX system")
+def test_a_pipe_in_the_place_of_the_store_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.csv.part")
+    assert "a.csv.part is of another sweep" in refused(tmp_path / "a.csv")
 
 
 def test_a_finished_sweep_is_read_and_left_alone(tmp_path: Path) -> None:

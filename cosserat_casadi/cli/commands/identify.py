@@ -32,6 +32,9 @@ from cosserat_casadi.results.identification_file import identification_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
+ENDED_EARLY = "The numbers are those at which the search ended."
+"""What a scene that is written all the same says of itself."""
+
 
 def identify(
     scene: SceneFile,
@@ -83,15 +86,18 @@ def identify(
 
         save_identification_plot(found, plot)
     written = given_files(output, plot)
-    # A scene with numbers that were not found would look like one that was.
     refusal: SceneError | None = None
-    if write is not None and found.converged:
+    if write is not None and (found.converged or found.ended_early):
         try:
-            fitted = found.fitted_scene(checked_scene)
+            fitted = found.fitted_scene(checked_scene, early=True)
         except SceneError as error:
             refusal = error
         else:
-            write_atomically(write, scene_text(beside(fitted, write.parent)).encode())
+            text = scene_text(beside(fitted, write.parent))
+            if not found.converged:
+                # A scene with numbers that were not found would look like one that was.
+                text = f"# {found.message} {ENDED_EARLY}\n\n{text}"
+            write_atomically(write, text.encode())
             written.append(write)
     print_identification(Console(), found, written)
     print_identification_warnings(Console(stderr=True), found)

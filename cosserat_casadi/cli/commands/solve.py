@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -21,6 +20,7 @@ from cosserat_casadi.cli.options import (
     given_files,
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
+from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
@@ -83,7 +83,7 @@ def solve(
     if as_json:
         # JSON is UTF-8, whatever the terminal knows.
         text = result_text(solution)
-        write_whole(sys.stdout.buffer, text.encode())
+        write_whole(binary_output(), text.encode())
     else:
         print_solution(Console(), solution, given_files(output, plot))
     # On standard error, so that --json stays pure; None is no verdict.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,6 +21,7 @@ from cosserat_casadi.cli.reports.tubes import (
     print_tubes_export,
     print_tubes_unstable,
 )
+from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.codegen.tubes.sources import check_tube_names, export_tubes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
@@ -63,7 +63,7 @@ class Outputs:
         if self.output is not None:
             write_atomically(self.output, text)
         if self.as_json:
-            write_whole(sys.stdout.buffer, text)
+            write_whole(binary_output(), text)
 
     @property
     def files(self) -> list[Path]:

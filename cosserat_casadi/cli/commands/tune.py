@@ -13,7 +13,7 @@ from cosserat_casadi.accuracy.tune import tune as tune_scene
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
-from cosserat_casadi.cli.progress import progress_bar
+from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.model import print_tuning
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
@@ -50,10 +50,5 @@ def tune(
 
 def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: CaseLayout) -> Tuning:
     values = [layout.unpack(case) for case in cases]
-    with progress_bar() as bar:
-        task = bar.add_task("Tuning", total=None)
-
-        def show_count(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
-
+    with count_display("Tuning") as show_count:
         return tune_scene(scene, values, tolerance, show_count)

@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
+from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.folder import write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources
@@ -155,6 +156,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "max_reuses": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
+        **WITHOUT_ERRORS,
         "further_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
         "batch_config": "",

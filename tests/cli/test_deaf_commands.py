@@ -1,0 +1,64 @@
+"""Commands that do not hear of a signal themselves, as inside a call of CasADi, end all the same."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi.cli.exit_codes import INTERRUPTED, TERMINATED
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of a POSIX system")
+
+DEAF = """
+import tempfile, threading, time
+from pathlib import Path
+from cosserat_casadi.cli import main as command_line
+
+def deaf(**options):
+    folder = tempfile.mkdtemp()
+    Path("temporary").write_text(folder)
+    {before}
+    print("begun", flush=True)
+    while True:
+        try:
+            time.sleep(1000.0)
+        except KeyboardInterrupt:
+            # As CasADi takes whatever Python raises for a refusal of an argument.
+            pass
+
+command_line.app = deaf
+command_line.main()
+"""
+
+
+TAKES_TIME = "from cosserat_casadi.cli.signals import take_time; take_time()"
+
+
+@pytest.mark.parametrize(
+    ("before", "numbers", "code"),
+    [
+        ("pass", [signal.SIGINT], INTERRUPTED),
+        ("pass", [signal.SIGTERM], TERMINATED),
+        # One that writes what it has is waited for, until the user does not want to wait.
+        (TAKES_TIME, [signal.SIGTERM, signal.SIGINT], TERMINATED),
+    ],
+)
+def test_a_command_that_does_not_hear_is_ended(
+    tmp_path: Path, before: str, numbers: list[signal.Signals], code: int
+) -> None:
+    command = [sys.executable, "-c", DEAF.format(before=before)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, cwd=tmp_path, **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "begun\n"
+        for number in numbers:
+            process.send_signal(number)
+        _, said = process.communicate(timeout=120)
+    assert process.returncode == code
+    assert said == "Stopped. Files that were not finished were not written.\n"
+    # What was temporary has gone with it.
+    assert not Path((tmp_path / "temporary").read_text()).exists()
