@@ -19,7 +19,7 @@ BUDGETS = {
 """Bytes of the sources and headers of the library at the tolerance of the example."""
 
 
-@pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip", "follower_reissner"]))
+@pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip"]))
 def test_bytes_of_c_of_examples(name: str) -> None:
     solution = solve_scene(read_scene(ROOT / "examples" / f"{name}.toml"))
     assert solution.converged
