@@ -120,7 +120,7 @@ def test_a_look_sees_what_extrapolation_does_not(force: list[float], modes: int)
     assert resolution.missing_modes(resolution.modes_error, true.tip) > 0
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["kirchhoff"]))
 def test_look_at_shapes_vs_a_model_with_these_modes(strain: str) -> None:
     wanted = scene(push(force=[4.0, 2.0, -1.0]), strain=strain)
     modes = 5
@@ -165,7 +165,7 @@ TOO_SMALL = [
 MAKERS = {"strong": strong_scene, "rich": rich_scene}
 
 
-@pytest.mark.parametrize(("kind", "seed", "tolerance"), TOO_SMALL)
+@pytest.mark.parametrize(("kind", "seed", "tolerance"), mostly_slow(TOO_SMALL, quick=[("strong", 13, 1e-8)]))
 def test_estimates_bound_what_they_did_not(kind: str, seed: int, tolerance: float) -> None:
     solution = solve_scene(with_tolerance(MAKERS[kind](seed), tolerance))
     check(solution, by_shooting(solution))
@@ -180,7 +180,7 @@ def test_estimates_of_one_rod_bound_its_errors(kind: str, first: int) -> None:
         check(solution, by_shooting(solution))
 
 
-@pytest.mark.parametrize("tendons", [False, True], ids=["rods", "tendons"])
+@pytest.mark.parametrize("tendons", mostly_slow([False, True], quick=[True]), ids=["rods", "tendons"])
 @pytest.mark.parametrize("seed", mostly_slow(range(60), quick=[1]))
 def test_estimates_of_assemblies_bound_their_errors(seed: int, tendons: bool) -> None:
     solution = solve_scene(with_tolerance(assembled_scene(seed, tendons=tendons), drawn_tolerance(seed)))

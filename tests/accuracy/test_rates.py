@@ -71,19 +71,21 @@ def test_slope_in_the_intervals_vs_order(name: str, transport: str, order: int) 
     assert np.all(np.abs(slopes - order) < 0.07 * order), dict(zip(QUANTITIES, slopes, strict=True))
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
 def test_permuted_system_is_faster_than_any_power(name: str) -> None:
     found = swept(name, (8, 12, 16), "permuted")
     assert np.all(found[1:] < found[:-1] * [[0.03], [1e-3]]), found
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
 @pytest.mark.parametrize(("transport", "nodes"), [("magnus8", 44), ("permuted", 26)])
 def test_floor(name: str, transport: str, nodes: int) -> None:
     assert max(errors(name, MODES, nodes, transport)) < FLOOR
 
 
-@pytest.mark.parametrize(("name", "factor"), [("twisted", 8.0), ("tube", 20.0), ("follower", 10.0)])
+@pytest.mark.parametrize(
+    ("name", "factor"), mostly_slow([("twisted", 8.0), ("tube", 20.0), ("follower", 10.0)], quick=[("tube", 20.0)])
+)
 def test_error_in_the_modes_vs_geometric_decay(name: str, factor: float) -> None:
     """Every mode more divides the error by this factor, on average."""
     modes = (3, 5, 7, 9)

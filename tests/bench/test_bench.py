@@ -225,20 +225,32 @@ def test_damping_has_rows_of_its_own() -> None:
     assert jacobian > 0
 
 
-def test_what_is_left_without_damping() -> None:
-    """Neither rods nor contact are damped, and no parameter is of damping; all else is as it was."""
+def damped_scene() -> Scene:
+    """Rods and contact that are damped, and a parameter of damping."""
     tables = rod("planar", damping={"retardation_time": 0.01}, linear_density=0.5)
     floor = {"name": "floor", "kind": "plane", "point": [0, 0, -9], "normal": [0, 0, 1], "width": 0.1, "damping": 2.0}
     names = ["rod.damping.retardation_time", "rod.length"]
-    damped = scene(push(), rods=[tables], obstacles=[floor], parameters=names)
+    return scene(push(), rods=[tables], obstacles=[floor], parameters=names)
+
+
+def test_what_is_left_without_damping() -> None:
+    """Neither rods nor contact are damped, and no parameter is of damping; all else is as it was."""
+    damped = damped_scene()
     bare = without_damping(damped)
     assert is_damped(damped)
     assert not is_damped(bare)
     assert bare.parameters == ("rod.length",)
+    for without in ({"rods": bare.rods}, {"obstacles": bare.obstacles}):
+        assert is_damped(damped.model_copy(update={**without, "parameters": bare.parameters}))
+
+
+@pytest.mark.slow
+def test_each_kind_of_damping_has_its_price() -> None:
+    damped = damped_scene()
+    bare = without_damping(damped)
     still = price_of_motion(build(bare, moving=True))
     moving = price_of_motion(build(damped, moving=True))
     assert still.inverse_dynamics < moving.inverse_dynamics
     for without in ({"rods": bare.rods}, {"obstacles": bare.obstacles}):
         half = damped.model_copy(update={**without, "parameters": bare.parameters})
-        assert is_damped(half)
         assert price_of_motion(build(half, moving=True)).inverse_dynamics > still.inverse_dynamics

@@ -87,6 +87,7 @@ def test_two_checkouts_stand_side_by_side(tmp_path: Path) -> None:
     assert "\nroom\n" in done.stdout
 
 
+@pytest.mark.slow
 def test_this_checkout_is_counted() -> None:
     done = subprocess.run([sys.executable, str(SCRIPT)], capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr

@@ -35,7 +35,7 @@ PLAIN = [
     path for path in sorted((ROOT / "examples").glob("*.toml")) if not any(word in path.read_text() for word in UNKNOWN)
 ]
 
-QUICK = [path for path in PLAIN if path.stem in ("nitinol_wire", "snapping_arch", "follower_reissner")]
+QUICK = [path for path in PLAIN if path.stem in ("nitinol_wire", "follower_reissner")]
 
 
 @pytest.mark.parametrize("path", mostly_slow(PLAIN, quick=QUICK), ids=lambda path: path.stem)
@@ -47,7 +47,7 @@ def test_shooting_vs_finest_discretisation(path: Path) -> None:
     assert found.errors(found.start).wrench < 1e-11
 
 
-@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+@pytest.mark.parametrize("kind", mostly_slow(["clamped", "pinned"], quick=["pinned"]))
 def test_shooting_of_a_held_rod_with_every_load(kind: str) -> None:
     pose = {"quaternion": [1.0, 0.0, 0.0, 0.0]} if kind == "clamped" else {}
     found = find_reference(

@@ -27,6 +27,7 @@ def test_standing_column_on_both_sides_of_its_critical_weight(weight: float, sta
     assert stable or "unstable" in found.message
 
 
+@pytest.mark.slow
 def test_arch_beyond_its_limit_load_is_in_equilibrium() -> None:
     """A point between the limits and the end, integrated from the clamp: the hinge is met, no moment is left."""
     file = ROOT / "examples" / "deep_arch.toml"

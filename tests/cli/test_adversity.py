@@ -232,7 +232,7 @@ def test_every_command_is_called() -> None:
     assert called | {VIEW[0]} == set(get_command(app).commands)
 
 
-@pytest.mark.parametrize("command", mostly_slow(COMMANDS, quick=["check", "solve"]))
+@pytest.mark.parametrize("command", mostly_slow(COMMANDS, quick=["check"]))
 def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
     code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
     # The target lies beside the curve that the tip can move on.
@@ -271,7 +271,7 @@ def fill_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (SMALLEST_FILE, SMALLEST_FILE))
 
 
-@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve", "sweep", "export"]))
+@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["export"]))
 def test_full_disk(folder: Path, command: str) -> None:
     # One that draws, one that goes on where it was stopped and one that writes a folder are run every time.
     code, _, said = ended(start(COMMANDS[command], folder, limit=fill_disk))

@@ -22,6 +22,7 @@ from cosserat_casadi.motion.restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from tests.commands import WIRE
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.motions import motion_of, without_start
 
 SCENE = (
@@ -276,7 +277,10 @@ main()
 """
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, INTERRUPTED), (signal.SIGTERM, TERMINATED)])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    mostly_slow([(signal.SIGINT, INTERRUPTED), (signal.SIGTERM, TERMINATED)], quick=[(signal.SIGTERM, TERMINATED)]),
+)
 def test_an_interrupted_simulation_writes_what_it_has(folder: Path, number: signal.Signals, code: int) -> None:
     files = ["--output", "m.json", "--plot", "m.png", "--animation", "m.gif"]
     process = subprocess.Popen(

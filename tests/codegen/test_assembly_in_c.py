@@ -79,6 +79,7 @@ def test_rods_that_differ_in_numbers_alone_share_their_code() -> None:
     assert len(found.jacobian.kernels) < len(found.jacobian.parts)
 
 
+@pytest.mark.slow
 def test_blocks_of_a_chain() -> None:
     """A rod touches the frames at its ends; the last one, under dead loads, feels but the turn of its base."""
     bases: dict[str, dict[str, str]] = {"a": {}, "b": {"rod": "a"}, "c": {"rod": "b"}}

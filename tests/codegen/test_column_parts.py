@@ -109,6 +109,7 @@ def test_turns_of_columns_in_groups() -> None:
     assert in_groups(turns).tolist() == expected
 
 
+@pytest.mark.slow
 def test_columns_of_an_assembly_take_less_code() -> None:
     """One piece of code for all groups of four columns, against straight-line code of them all."""
     model = legs(0.7, 0.7, modes=(6, 6, 3), nodes=7)

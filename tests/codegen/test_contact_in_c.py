@@ -58,6 +58,7 @@ def test_touch_slide_and_lift_off(bar: ContactLibrary) -> None:
     assert np.ptp(places) > 0.01
 
 
+@pytest.mark.slow
 def test_a_tip_that_touches_and_a_rod_that_lies_down(table: ContactLibrary) -> None:
     """None, the tip, and a line that grows and shrinks: each as in Python."""
     kinds = []

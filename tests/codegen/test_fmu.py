@@ -152,6 +152,7 @@ def test_same_model_gives_the_same_sources_and_description(model, fmu, tmp_path)
             assert first.read(name) == second.read(name), name
 
 
+@pytest.mark.slow
 def test_command_writes_the_same_sources(fmu, tmp_path):
     (tmp_path / "finger.toml").write_text(SCENE)
     done = cosserat("export", "finger.toml", "--fmu", "finger.fmu", cwd=tmp_path)
@@ -365,6 +366,7 @@ acceleration = [0, 0, -9.81]
 """
 
 
+@pytest.mark.slow
 def test_free_rod_falls(tmp_path):
     """From the unloaded shape, and without an input: by g t²/2, which the integrator has exactly."""
     fmu = write_fmu(build(parse_scene(FALLING), moving=True), tmp_path / "stick.fmu", "stick")

@@ -29,7 +29,7 @@ def bytes_of_c(files: Mapping[str, str]) -> int:
     return sum(map(len, wanted.values()))
 
 
-@pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip", "follower_reissner"]))
+@pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip"]))
 def test_bytes_of_c_of_examples(name: str) -> None:
     solution = solve_scene(read_scene(ROOT / "examples" / f"{name}.toml"))
     assert solution.converged

@@ -175,6 +175,7 @@ def solved(folder: Path, target: Path, *flags: str) -> dict[str, object]:
     return {word: value for word, value in printed.items() if not word.endswith("_us")}
 
 
+@pytest.mark.slow
 def test_the_same_digits_at_any_width(wire: Path, tmp_path: Path) -> None:
     """In the widest vectors that there are, in those of any processor of the kind, and without vectors."""
     widest = solved(wire, tmp_path / "widest")

@@ -35,7 +35,7 @@ def stated(made: Exported) -> tuple[float, float]:
     return 1000 * float(found[2]), 1000 * float(found[1])
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons", "robot", "loops", "pinned"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons"]))
 def test_stack_and_workspace(library: Library, name: str) -> None:
     made = library(name)
     stack, workspace = measured(made, *QUICK)
@@ -45,7 +45,7 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
     assert abs(workspace - said_workspace) <= 100
 
 
-@pytest.mark.parametrize("name", ["tiny", "robot"])
+@pytest.mark.parametrize("name", mostly_slow(["tiny", "robot"], quick=["tiny"]))
 @pytest.mark.parametrize("optimised", mostly_slow(["-Os", "-O2", "-O3"], quick=["-O2"]))
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:
     stack, _ = measured(library(name), optimised, "-fPIC")

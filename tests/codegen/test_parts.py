@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise
@@ -137,6 +138,7 @@ def test_one_column_whose_owners_compute_alike() -> None:
     assert_allclose(made(x, 0.3).full(), whole(x, 0.3).full(), rtol=1e-15, atol=0)
 
 
+@pytest.mark.slow
 def test_more_alike_legs_are_little_more_code() -> None:
     sizes = []
     for count in (2, 4):

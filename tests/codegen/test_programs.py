@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.programs import partial_program
 from cosserat_casadi.codegen.steps import program_of
+from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
 ARGUMENTS = ["x", "inputs", "factor"]
@@ -136,7 +137,7 @@ BUDGETS = {
 """Rods with 12 unknowns: operations of inverse dynamics and of the motion's Jacobian, bytes of its C in loops."""
 
 
-@pytest.mark.parametrize("name", BUDGETS)
+@pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["kirchhoff, 8 intervals"]))
 def test_budgets_of_the_equations_of_motion(name: str) -> None:
     strain, modes, nodes, of_residual, of_jacobian, size = BUDGETS[name]
     push = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.1, 0.0, 0.05]}

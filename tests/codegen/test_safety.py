@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.codegen.libraries import Exported, run
+from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
@@ -37,10 +38,11 @@ def test_very_many_random_numbers_under_sanitizers(library: Library, name: str) 
     fuzz(library(name), 100_000)
 
 
-@pytest.mark.parametrize("name", ["planar", "pair", "robot"])
+@pytest.mark.parametrize("name", mostly_slow(["planar", "pair", "robot"], quick=["robot"]))
 def test_threads_vs_one_thread(library: Library, name: str) -> None:
     assert int(run(library(name).program("threads.c", "-O0", "-fPIC", "-pthread"))) > 40
 
 
+@pytest.mark.slow
 def test_threads_under_the_thread_sanitizer(library: Library) -> None:
     assert int(run(library("tiny").program("threads.c", "-O1", "-g", "-pthread", "-fsanitize=thread"))) > 40

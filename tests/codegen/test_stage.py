@@ -17,6 +17,7 @@ from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.stage import stage_functions
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
+from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, scene
 
 pytestmark = needs_compiler
@@ -78,7 +79,7 @@ def hessian(function: ca.Function, model: Model, weights: np.ndarray) -> np.ndar
     return ca.Function("hessian", [x, inputs], [ca.hessian(lagrangian, both)[0]])(*somewhere(model)).full()
 
 
-@pytest.mark.parametrize("longest", [STRAIGHT, 0], ids=["straight", "loops"])
+@pytest.mark.parametrize("longest", mostly_slow([STRAIGHT, 0], quick=[0]), ids=["straight", "loops"])
 def test_second_derivatives_vs_model(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stage_module, "STRAIGHT", longest)
     model = wire()

@@ -228,6 +228,7 @@ def test_order_three_of_a_base_whose_rate_does_not_jump(shaken: Exported) -> Non
     assert_allclose(orders(errors), 3.0, rtol=0, atol=0.25)
 
 
+@pytest.mark.slow
 @needs_cases
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in LARGE else name for name in OFF]

@@ -16,6 +16,7 @@ from tests.codegen.test_demo import strict_json
 from tests.codegen.test_memory import stated
 from tests.codegen.test_safety import SANITIZED
 from tests.codegen.test_sources import LINT
+from tests.families import mostly_slow
 
 
 def fuzz(made: Exported, count: int) -> None:
@@ -24,6 +25,7 @@ def fuzz(made: Exported, count: int) -> None:
     assert min(done, not_solved, not_finite, bad_step, printed["cut"], printed["differentiated"]) > 0, printed
 
 
+@pytest.mark.slow
 def test_special_and_random_numbers_under_sanitizers(motion_library: MotionLibrary) -> None:
     fuzz(motion_library("planar"), 500)
 
@@ -95,6 +97,7 @@ def test_demo_simulates_a_second(motion_library: MotionLibrary, family: str) -> 
     run(demo, "--stops", expect=2)
 
 
+@pytest.mark.slow
 def test_float_vs_double(motion_library: MotionLibrary) -> None:
     made = motion_library("planar")
     flags = (*QUICK, f"-D{made.names.macro}_SINGLE")
@@ -109,7 +112,7 @@ def test_float_vs_double(motion_library: MotionLibrary) -> None:
 
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
-@pytest.mark.parametrize("family", ["planar", "fixed joint"])
+@pytest.mark.parametrize("family", mostly_slow(["planar", "fixed joint"], quick=["fixed joint"]))
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 def test_sources_pass_every_lint_in_both_languages(
     motion_library: MotionLibrary, family: str, language: str, single: bool

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.codegen.libraries import HARNESS, Exported, run
+from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
@@ -15,12 +16,15 @@ SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
 
 @pytest.mark.parametrize(
     ("name", "harness"),
-    [
-        ("planar", "units_dense.c"),
-        ("spatial", "units_dense.c"),
-        ("pinned", "units_dense.c"),
-        ("gripper", "units_blocks.c"),
-    ],
+    mostly_slow(
+        [
+            ("planar", "units_dense.c"),
+            ("spatial", "units_dense.c"),
+            ("pinned", "units_dense.c"),
+            ("gripper", "units_blocks.c"),
+        ],
+        quick=[("planar", "units_dense.c"), ("gripper", "units_blocks.c")],
+    ),
 )
 def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:
     made = library(name)

@@ -13,6 +13,7 @@ from cosserat_casadi import Scene, build, discretise, solve
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
 from cosserat_casadi.model.inputs import input_layout
+from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
 BAR = {"name": "bar", "kind": "capsule", "from": [0.5, -0.5, -0.08], "to": [0.5, 0.5, -0.08], "radius": 0.05}
@@ -44,7 +45,12 @@ def in_contact(name: str) -> Scene:
     return scene(rods=rods, loads=loads, obstacles=[obstacle])
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    mostly_slow(
+        SCENES, quick=["a point on a ball, in space", "a line with a load inside", "two rods of unlike lengths"]
+    ),
+)
 def test_the_jacobian_is_that_of_automatic_derivatives(name: str) -> None:
     wanted = in_contact(name)
     solution = solve(build(wanted, discretise(wanted, 3, 6)))

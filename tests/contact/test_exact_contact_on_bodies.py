@@ -158,6 +158,7 @@ def test_a_bar_that_crosses_a_rod_in_space(crossed: Solution) -> None:
     assert_allclose(pusher.moment + loaded - moment, 0.0, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_axes_of_the_body_do_not_matter(crossed: Solution) -> None:
     """The same bar in other axes of its body: forces, shape and the second variation are the same."""
     turned = Rotation.from_rotvec([0.4, -0.7, 1.1])
@@ -206,6 +207,7 @@ def test_the_gap_curves_as_its_differences_say(touching: Solution) -> None:
     assert_allclose(_gap_curvature(found, touch), (after - 2 * at + before) / step**2, rtol=2e-3, atol=0)
 
 
+@pytest.mark.slow
 def test_a_rod_on_a_plate_that_does_not_move_lies_as_on_the_ground() -> None:
     stiff = solve(build(parse_scene(ON_PLATE.replace("bending_y = 0.5 }", "bending_y = 1e6 }"))))
     ground = solve(build(parse_scene(ON_GROUND)))

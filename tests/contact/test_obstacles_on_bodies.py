@@ -173,6 +173,7 @@ def test_action_is_reaction(kind: str) -> None:
     assert_allclose(about_origin, 0.0, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_an_obstacle_on_a_body_that_does_not_move_is_one_of_the_world() -> None:
     """The rod that carries it is stiff enough to give way by 1e-8 of its length."""
     table = '[[obstacles]]\nname = "roof"\nkind = "capsule"\nradius = 0.03\nwidth = 0.01\nstiffness = 2e3\n'
@@ -248,6 +249,7 @@ class Shooting:
         return [*(tip[:2] - disk), tip[3], *(first[:2] - inner), *end[3:6]]
 
 
+@pytest.mark.slow
 def test_large_deflections_are_those_of_shooting(pressed: Solution) -> None:
     shooting = Shooting()
     pressing = pressed.contacts[0].force[[0, 2]]

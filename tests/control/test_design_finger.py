@@ -97,6 +97,7 @@ def judge(model_modes: int, cases: int, discretisation: float) -> None:
     assert_allclose(reached(finer), area, rtol=discretisation)
 
 
+@pytest.mark.slow
 def test_optimum_is_confirmed_by_solves() -> None:
     judge(model_modes=2, cases=4, discretisation=3e-2)
 

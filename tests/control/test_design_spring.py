@@ -36,6 +36,7 @@ def stroke() -> Stroke:
     return Stroke(model, compiled_spring(model))
 
 
+@pytest.mark.slow
 def test_gradients_vs_differences(stroke: Stroke) -> None:
     """Of forces that are followed to equilibrium at each of the designs."""
     design = stacked(START)

@@ -37,6 +37,7 @@ def test_do_mpc_vs_nlp() -> None:
     assert_plan_is(model, near, None, optimum())
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_with_a_parameter_vs_nlp() -> None:
     """A parameter of the scene is a variable of the kind _p: the plan is that of a finger with this number."""

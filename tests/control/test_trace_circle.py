@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import solve
@@ -25,6 +26,7 @@ def test_the_tip_is_on_the_circle_at_little_effort() -> None:
     assert_allclose(tensions.min(axis=1), 0.0, rtol=0, atol=1e-4)  # two pull, the third would only pull against them
 
 
+@pytest.mark.slow
 def test_the_program_draws_its_figure(tmp_path: Path) -> None:
     program = ROOT / "examples" / "trace_circle.py"
     command = [sys.executable, str(program), "--stages", "3", "--output", "c.png", "--animation", "c.gif"]

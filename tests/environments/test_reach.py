@@ -203,6 +203,7 @@ def on_slide():
     return ReachEnvironment(parse_scene(scene), duration=0.5)
 
 
+@pytest.mark.slow
 def test_gymnasium_finds_no_fault_in_a_base_that_slides(on_slide):
     assert on_slide.observation_space.shape == (12,)
     check_env(on_slide, skip_render_check=True)

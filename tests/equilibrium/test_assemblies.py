@@ -14,6 +14,7 @@ from scipy.optimize import root
 from cosserat_casadi import Scene, Solution, read_scene, scene_from_dict, solve_scene
 from cosserat_casadi.results.solution_file import result
 from tests.conftest import case_files
+from tests.families import mostly_slow
 
 ROUND = {"bending_x": 1.0, "bending_y": 1.4, "torsion": 0.7, "shear_x": 400.0, "shear_y": 600.0, "extension": 900.0}
 HOOKE = np.array(list(ROUND.values()))
@@ -68,7 +69,7 @@ WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0.0, 1.0, -3.0]}
 G = np.array([0.0, 0.5, -1.5])  # weight per length
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["reissner"]))
 def test_two_rods_in_series_vs_one(strain: str) -> None:
     base = {"position": [0.1, 0, 0], "tangent": [1, 0, 1]}
     push = {"name": "push", "kind": "tip_wrench", "force": [0.9, 0.0, -0.4], "moment": [0, 0.2, 0]}
@@ -163,6 +164,7 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     assert own.stable
 
 
+@pytest.mark.slow
 def test_portal_vs_its_half() -> None:
     """Two equal planar legs under a heavy beam: by symmetry each carries half.
 
@@ -209,6 +211,7 @@ def test_portal_vs_its_half() -> None:
     assert whole.stable
 
 
+@pytest.mark.slow
 def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     """A rod on a rod whose tip is held: the same as one rod held there."""
     base, at = {"tangent": [0, 0, 1]}, [0.25, 0.0, 0.45]

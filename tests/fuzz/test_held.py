@@ -33,6 +33,7 @@ SHARPLY_BENT = 68
 """Seed of a rod that nine modes do not resolve."""
 
 
+@pytest.mark.slow
 def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
     coarse = solved(BUCKLED, {"tolerance": 1e-3})
     fine = solved(BUCKLED, {"tolerance": 1e-7})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cosserat_casadi import scene_from_dict, solve_scene
+from tests.families import mostly_slow
 from tests.reference.routed_scenes import Table, miss, rich_scene, routed_scene
 
 GRANTED = 1.01
@@ -31,12 +32,12 @@ def check(tables: Table) -> bool:
     return True
 
 
-@pytest.mark.parametrize("seed", [*ROUTED[:4], *[pytest.param(seed, marks=pytest.mark.slow) for seed in ROUTED[4:]]])
+@pytest.mark.parametrize("seed", mostly_slow(ROUTED, quick=ROUTED[:2]))
 def test_routed_tendons_are_within_the_tolerance(seed: int) -> None:
     assert check(routed_scene(seed))
 
 
-@pytest.mark.parametrize("seed", RICH)
+@pytest.mark.parametrize("seed", mostly_slow(RICH, quick=RICH[:2]))
 def test_rich_curvatures_and_loads_are_within_the_tolerance(seed: int) -> None:
     assert check(rich_scene(seed))
 

@@ -15,6 +15,7 @@ from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.unknowns import unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
+from tests.families import mostly_slow
 
 WIDTH = 4e-3
 HEIGHT = 2e-3
@@ -106,7 +107,7 @@ def test_frequencies_are_those_of_modes() -> None:
     assert_allclose(modelled, [mode.damping_ratio for mode in swinging], rtol=1e-6, atol=0)
 
 
-@pytest.mark.parametrize("scene", [tables(), held()], ids=["free", "held"])
+@pytest.mark.parametrize("scene", mostly_slow([tables(), held()], quick=[tables()]), ids=["free", "held"])
 def test_derivatives_are_those_of_differences(scene: dict[str, Any]) -> None:
     misfit = misfit_of(scene)
     shared, own = misfit.layout.start(2)

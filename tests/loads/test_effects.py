@@ -135,6 +135,7 @@ def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
     assert np.linalg.norm(pulled.tip().position[-1] - let_out.tip().position[-1]) > 1e-4
 
 
+@pytest.mark.slow
 def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     moved = solve_scene(read_scene(folder / "finger.toml"), {"magnet.dipole.position": [0.11, 0.03, 0.24]})
     # What is looked for alone is free.

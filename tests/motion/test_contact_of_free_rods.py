@@ -11,6 +11,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from tests.families import mostly_slow
 
 LENGTH = 0.4
 DENSITY = 0.2
@@ -76,8 +77,8 @@ def impacts(motion: Motion) -> list[ContactEvent]:
     return [event for event in motion.events if event.kind == "impact"]
 
 
-@pytest.mark.parametrize("modes", [1, 3])
-@pytest.mark.parametrize("slope", [0.0, 0.6])
+@pytest.mark.parametrize("modes", mostly_slow([1, 3], quick=[3]))
+@pytest.mark.parametrize("slope", mostly_slow([0.0, 0.6], quick=[0.6]))
 def test_the_first_impulse_is_that_of_a_straight_rod_by_hand(modes: int, slope: float) -> None:
     """A straight rod with k polynomials of curvature has those up to the degree k + 1 as its deflections.
 
@@ -97,6 +98,7 @@ def test_the_first_impulse_is_that_of_a_straight_rod_by_hand(modes: int, slope: 
     assert_allclose(first.energy, 0.5 * speed**2 / inverse_mass, rtol=1e-6, atol=0)
 
 
+@pytest.mark.slow
 def test_both_ends_on_posts_are_struck_together_and_by_hand() -> None:
     """Of the deflections the even ones move, with 1 + 5 = 6 for two polynomials of curvature."""
     posts = "".join(
@@ -113,7 +115,7 @@ def test_both_ends_on_posts_are_struck_together_and_by_hand() -> None:
         assert_allclose(struck.impulse, speed * MASS / 12, rtol=1e-6, atol=0)
 
 
-@pytest.mark.parametrize(("modes", "strain"), [(2, "planar"), (4, "kirchhoff")])
+@pytest.mark.parametrize(("modes", "strain"), mostly_slow([(2, "planar"), (4, "kirchhoff")], quick=[(2, "planar")]))
 def test_a_rod_that_falls_flat_strikes_along_its_length_at_once_and_rests(modes: int, strain: str) -> None:
     motion = simulate(free_rod(modes=modes, strain=strain, duration=0.12))
     assert motion.converged, motion.message
@@ -197,6 +199,7 @@ def test_events_and_tips_converge_with_the_tolerance() -> None:
     assert times[1] < 0.1 * times[0] + 1e-10
 
 
+@pytest.mark.slow
 def test_a_contact_that_leaves_an_end_goes_on_inside_the_rod() -> None:
     """Steps leave the rate of its gap a little off zero, which is no lift-off."""
     stuff = """

@@ -24,6 +24,7 @@ from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.plots.motion_plot import save_motion_plot
+from tests.families import mostly_slow
 
 HEAD = """
 schema = 1
@@ -224,7 +225,9 @@ def impulse_by_projection(model: Model, motion: Motion, time: float, body: str) 
     return -approach / inverse_mass, -approach
 
 
-@pytest.mark.parametrize("rods", [FRAME, TWIGS.split("[[obstacles]]")[0]], ids=["closed", "open"])
+@pytest.mark.parametrize(
+    "rods", mostly_slow([FRAME, TWIGS.split("[[obstacles]]")[0]], quick=[FRAME]), ids=["closed", "open"]
+)
 def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -> None:
     body = "deck" if "deck" in rods else "ball"
     height = -0.02 if body == "deck" else -0.19
@@ -246,6 +249,7 @@ def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -
     save_motion_plot(motion, tmp_path / "motion.png")
 
 
+@pytest.mark.slow
 def test_two_rods_in_series_touch_as_one_across_their_joint() -> None:
     ball = '[[obstacles]]\nname = "ball"\nkind = "sphere"\ncentre = [0.17, 0, -0.09]\nradius = 0.03\n'
     # A load that is zero divides the one rod where the two are joined.

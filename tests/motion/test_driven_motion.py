@@ -13,6 +13,7 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import path_distance
 from cosserat_casadi.motion.simulate import Simulator, started
 from tests import moving_scenes
+from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
 
 TENDON = {"name": "cable", "kind": "tendon", "rod": "a", "offset": [0.03, 0.0]}
@@ -68,7 +69,7 @@ DRIVES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("drive", mostly_slow(DRIVES, quick=["length", "pinned"]))
 def test_damped_motion_comes_to_rest_in_the_equilibrium(drive: str) -> None:
     """The equilibrium is that of the last inputs; on the way, energy is balanced."""
     motion = simulated(DRIVES[drive], 12.0)

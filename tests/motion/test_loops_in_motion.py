@@ -84,7 +84,7 @@ def test_constraints_stay_closed(family: str) -> None:
     assert np.ptp(middle, axis=0).max() > 1e-4
 
 
-@pytest.mark.parametrize("family", [*HELD, *JOINTS])
+@pytest.mark.parametrize("family", mostly_slow([*HELD, *JOINTS], quick=QUICK))
 def test_energy_is_balanced_in_closed_loops(family: str) -> None:
     """Constraints do no work, but at bases that move."""
     motion = simulated(family)

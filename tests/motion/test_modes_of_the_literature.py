@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Modes, modes_of_scene, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
+from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity
 
 HINGE = 1e-10
@@ -99,7 +100,7 @@ def test_stout_beam_along_its_axis_and_about_it() -> None:
 # A column that stands
 
 
-@pytest.mark.parametrize("beyond", [False, True])
+@pytest.mark.parametrize("beyond", mostly_slow([False, True], quick=[True]))
 def test_tallest_column(beyond: bool) -> None:
     """It falls at ρA g L³ / EI = 7.8373474388: Greenhill's."""
     load = 7.8373474388 * (1 + 1e-6 * (1 if beyond else -1))
@@ -111,6 +112,7 @@ def test_tallest_column(beyond: bool) -> None:
 # A soft rod in space that hangs from the horizontal
 
 
+@pytest.mark.slow
 def test_sagged_with_shear_extension_and_rotary_inertia() -> None:
     """In its plane: a Galerkin method of twelve polynomials a strain, its Hessian by complex steps.
 

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(not CASES, reason="the reference cases are not b
 UNDERSTATED = {"modes_sagged": 3.0}
 """Factors on uncertainties that are too small: test_modes_of_the_literature.py has digits for this one."""
 
-QUICK = {"modes_column_090", "modes_beck_15", "modes_wire_damped"}
+QUICK = {"modes_beck_15", "modes_wire_damped"}
 
 EXACT = 1e-9
 """Uncertainty, relative, of what transfer matrices give."""

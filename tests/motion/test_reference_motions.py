@@ -53,7 +53,7 @@ def check_path(path: Path, tolerance: float) -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=pytest.mark.slow) if path.stem in ("shaken", "space_push") else path
+        pytest.param(path, marks=pytest.mark.slow) if path.stem != "planar_release" else path
         for path in CASES
         if path.stem not in SLOWER
     ],

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, Motion, MotionOutcome, scene_from_dict, simulate, simulate_scene
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
+from tests.families import mostly_slow
 from tests.motion import transients
 from tests.motion.stepping import moving_model, orders, stepped
 
@@ -114,14 +115,14 @@ def test_steps_have_the_order_of_their_method(
     assert_allclose(orders(errors).mean(axis=0), order, rtol=0, atol=0.6)
 
 
-def test_smooth_line_load_to_a_tolerance() -> None:
-    for tolerance in (1e-3, 1e-5):
-        motion = simulated(transients.line_load(), tolerance)
-        error = np.abs(in_plane(motion) - transients.LINE_LOAD_TIP).max()
-        assert error <= motion.error_estimate <= tolerance
-        assert np.abs(motion.energy.imbalance).max() <= tolerance
-        stored = motion.energy.kinetic + motion.energy.elastic
-        assert_allclose(stored[-1], transients.LINE_LOAD_ENERGY, rtol=tolerance, atol=0)
+@pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5], quick=[1e-3]))
+def test_smooth_line_load_to_a_tolerance(tolerance: float) -> None:
+    motion = simulated(transients.line_load(), tolerance)
+    error = np.abs(in_plane(motion) - transients.LINE_LOAD_TIP).max()
+    assert error <= motion.error_estimate <= tolerance
+    assert np.abs(motion.energy.imbalance).max() <= tolerance
+    stored = motion.energy.kinetic + motion.energy.elastic
+    assert_allclose(stored[-1], transients.LINE_LOAD_ENERGY, rtol=tolerance, atol=0)
 
 
 # Sudden weight
@@ -209,6 +210,7 @@ def test_flying_rod_in_a_plane_to_a_tolerance() -> None:
     assert_allclose(angular[:, 1], transients.FLYING_TURN, rtol=1e-4, atol=0)
 
 
+@pytest.mark.slow
 def test_flying_rod_in_space() -> None:
     """Momentum 10 · 5 after the force is gone; angular momentum stays from there on."""
     scene = transients.flying_in_space(tolerance=1e-2)
@@ -245,6 +247,7 @@ def test_scissors_fly_as_their_impulses_say() -> None:
 # A body on a joint
 
 
+@pytest.mark.slow
 def test_heavy_top_on_a_ball_joint() -> None:
     """All digits of the reference but the last, which half the step has too."""
     model = moving_model(transients.heavy_top(), 1, 2)

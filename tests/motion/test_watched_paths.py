@@ -13,6 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.paths import Paths, _watched_arms, path_distance
 from cosserat_casadi.scene.constraints import Body
+from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity, table
 
 # A rod that is twisted at its tip by A (1 − cos Ω t)
@@ -48,7 +49,7 @@ def twist_of_the_tip(times: FloatArray) -> FloatArray:
     return np.asarray(TWIST / TORSION * (1 - np.cos(driven * times)) - lags)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+@pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5], quick=[1e-3]))
 def test_a_rod_that_only_twists_is_as_exact_as_it_says(tolerance: float) -> None:
     """Its tip stays where it is: what it is turned by counts on an arm of LEVER lengths."""
     motion = simulate_scene(scene_from_dict(twisted(tolerance)))
@@ -95,7 +96,7 @@ def centre_of_the_pendulum(times: FloatArray) -> FloatArray:
     return np.asarray(found.y[:9].T.reshape(-1, 3, 3) @ CENTRE)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+@pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5], quick=[1e-3]))
 def test_a_body_about_its_origin_is_as_exact_as_it_says(tolerance: float) -> None:
     """The origin of the body is its joint, and stays: its centre of mass is what swings. Products of inertia count."""
     motion = hung(tolerance)

@@ -14,6 +14,7 @@ from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.page.drawn_model import SECTIONS, DrawnModel, drawn_layout
 from cosserat_casadi.plots.load_arrows import scene_arrows
 from cosserat_casadi.plots.scenery import actuator_routing
+from tests.families import mostly_slow
 from tests.page.pages_made import finger, portal
 
 
@@ -30,7 +31,7 @@ def parts(solution: Solution) -> list[tuple[dict[str, Any], np.ndarray]]:
     return found
 
 
-@pytest.mark.parametrize("scene", [finger, portal])
+@pytest.mark.parametrize("scene", mostly_slow([finger, portal], quick=[portal]))
 def test_rods_and_bodies_are_drawn_where_they_are(scene: Callable[[], Scene]) -> None:
     solution = solve(build(scene()))
     assert solution.converged

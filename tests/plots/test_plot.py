@@ -15,6 +15,7 @@ from cosserat_casadi import Outcome, SceneError, Solution, build, solve
 from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.plots.shapes import SAMPLES
+from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 
@@ -145,7 +146,12 @@ def test_an_unconverged_solution_says_so_in_red(planar: Solution) -> None:
     assert title.get_color() == "#cc3311"
 
 
-@pytest.mark.parametrize(("suffix", "signature"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+@pytest.mark.parametrize(
+    ("suffix", "signature"),
+    mostly_slow(
+        [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")], quick=[("pdf", b"%PDF"), ("svg", b"<?xml")]
+    ),
+)
 def test_files_are_the_same_every_time(planar: Solution, tmp_path: Path, suffix: str, signature: bytes) -> None:
     first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
     save_plot(planar, first)

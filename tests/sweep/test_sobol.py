@@ -76,6 +76,7 @@ def test_ishigami_vs_its_closed_form_and_scipy() -> None:
     assert_allclose(found.total, other.total_order, rtol=1e-10, atol=0)
 
 
+@pytest.mark.slow
 def test_intervals_hold_as_often_as_they_say() -> None:
     """Of a linear function the indices are known; 200 repetitions of 256 draws."""
     slopes = np.array([1.0, 2.0, 0.5])

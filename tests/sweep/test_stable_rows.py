@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import read_sweep, sweep_scene
+from tests.families import mostly_slow
 from tests.scenes import push, rod, scene
 
 pytestmark = pytest.mark.usefixtures("few_checked")
@@ -21,7 +22,7 @@ STIFFNESSES = {"rod.stiffness.bending_y": [1.0, 1.0, 2.0, 2.0]}
 THRUSTS = {"push.force.z": [-0.99 * CRITICAL, -1.01 * CRITICAL, -1.99 * CRITICAL, -2.01 * CRITICAL]}
 
 
-@pytest.mark.parametrize("compiled_from", [1, 1000])
+@pytest.mark.parametrize("compiled_from", mostly_slow([1, 1000], quick=[1]))
 def test_stability_of_every_row_vs_euler(compiled_from: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("cosserat_casadi.sweep.arguments.COMPILED_FROM", compiled_from)
     upright = scene(push(force=[0.0, 0.0, 0.0]), rods=[{**COLUMN, "strain": "planar"}], accuracy=FIXED)

@@ -22,6 +22,7 @@ from cosserat_casadi.sweep.outcome_file import record_file
 from cosserat_casadi.sweep.run import plan_sweep
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import table_of
+from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.sweep.conftest import PLANAR
 
@@ -43,6 +44,7 @@ def bent(count: int, **columns: object) -> dict[str, object]:
     return {"push.moment.y": moments, "push.force.x": 0.0, "push.force.z": 0.0, **columns}
 
 
+@pytest.mark.slow
 def test_moments_and_lengths_vs_arcs() -> None:
     lengths = np.random.default_rng(2).uniform(0.4, 1.2, 1100)
     table = bent(1100, **{"rod.length": lengths})
@@ -58,7 +60,7 @@ def test_moments_and_lengths_vs_arcs() -> None:
     assert found.record["checked"]
 
 
-@pytest.mark.parametrize("compiled_from", [1, 1000])
+@pytest.mark.parametrize("compiled_from", mostly_slow([1, 1000], quick=[1]))
 def test_stiffnesses_vs_arcs_compiled_and_in_python(compiled_from: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cosserat_casadi.sweep.run.chunks", lambda found: work.chunks(found, compiled_from))
     stiffness = np.tile([1.0, 2.5], 10)

@@ -58,6 +58,7 @@ def test_rows_are_what_solve_finds() -> None:
     assert swept["stable"].tolist() == [1.0, 1.0, 0.0, 1.0]
 
 
+@pytest.mark.slow
 def test_loads_are_swept_and_moments_leave_stability_open() -> None:
     scene = parse_scene(scene_text(SCENE) + MOMENT)
     swept = sweep_scene(scene, {"twist.moment.z": [0.0, 2e-3]}, cores=1, stability=True)
