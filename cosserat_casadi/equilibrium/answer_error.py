@@ -76,7 +76,7 @@ class AnswerError:
 
 
 @dataclass(frozen=True)
-class _Correction:
+class Correction:
     """Where a sweep or a step has led.
 
     Attributes:
@@ -134,7 +134,7 @@ def answer_error(solution: Solution) -> AnswerError:
     Args:
         solution: a converged one, at any inputs and parameters.
     """
-    settled, correction = _settled_correction(solution)
+    settled, correction = settled_correction(solution)
     if not settled or not np.isfinite(correction.change):
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN, settled=False)
     rest = _rest_of_series(solution, correction)
@@ -145,7 +145,7 @@ def answer_error(solution: Solution) -> AnswerError:
     return AnswerError(watched, max(shape, watched), wrench, settled=True)
 
 
-def _settled_correction(solution: Solution) -> tuple[bool, _Correction]:
+def settled_correction(solution: Solution) -> tuple[bool, Correction]:
     """Whether corrections settled, and the last one: by sweeps, else by Newton's steps on the richer model."""
     enough = FAR_BELOW * solution.model.scene.accuracy.tolerance
     # Far from an answer the equations overflow: what comes out then is not settled.
@@ -162,11 +162,11 @@ def _settled_correction(solution: Solution) -> tuple[bool, _Correction]:
     return False, correction
 
 
-def _sweeps(solution: Solution) -> Iterator[_Correction]:
+def _sweeps(solution: Solution) -> Iterator[Correction]:
     """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow."""
     model = solution.model
     inputs = solution.inputs
-    inverse = _regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
+    inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     for _ in range(MOST_SWEEPS):
@@ -178,7 +178,7 @@ def _sweeps(solution: Solution) -> Iterator[_Correction]:
         yield _corrected(solution, known, missing)
 
 
-def _newton_steps(solution: Solution) -> Iterator[_Correction]:
+def _newton_steps(solution: Solution) -> Iterator[Correction]:
     """Corrections by Newton's method on the richer model."""
     richer = solution.model.discrete.richer
     model = solution.model.richer
@@ -189,16 +189,16 @@ def _newton_steps(solution: Solution) -> Iterator[_Correction]:
         jacobian = model.path_jacobian(unknowns, solution.inputs, 1.0).full()
         if not np.all(np.isfinite(jacobian)):
             return
-        unknowns = unknowns - _regular_inverse(jacobian) @ residual
+        unknowns = unknowns - regular_inverse(jacobian) @ residual
         yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known])
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> _Correction:
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
     change = solution.model.richer_change(solution.x, known, missing, solution.inputs)
-    return _Correction(known, missing, float(change))
+    return Correction(known, missing, float(change))
 
 
-def _rest_of_series(solution: Solution, correction: _Correction) -> float:
+def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """What modes beyond those of the richer model would add: the rest of a geometric series.
 
     The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E.
@@ -213,7 +213,7 @@ def _rest_of_series(solution: Solution, correction: _Correction) -> float:
     return last * ratio / (1 - ratio)
 
 
-def _richer_answer(solution: Solution, correction: _Correction) -> Solution:
+def _richer_answer(solution: Solution, correction: Correction) -> Solution:
     """The corrected answer as a solution of the richer model."""
     richer = solution.model.discrete.richer
     unknowns = np.zeros(richer.discrete.size)
@@ -234,7 +234,7 @@ def _shape_change(solution: Solution, corrected: Solution) -> float:
     return max(changes)
 
 
-def _wrench_change(solution: Solution, corrected: Solution, correction: _Correction) -> float:
+def _wrench_change(solution: Solution, corrected: Solution, correction: Correction) -> float:
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
@@ -266,7 +266,7 @@ def _relative_change(values: FloatArray, difference: FloatArray, least: float = 
     return float(np.linalg.norm(difference)) / size
 
 
-def _regular_inverse(matrix: FloatArray) -> FloatArray:
+def regular_inverse(matrix: FloatArray) -> FloatArray:
     """The inverse, with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
     left, singular, right = np.linalg.svd(matrix)
     largest = float(singular.max(initial=0.0))
