@@ -19,6 +19,7 @@ from cosserat_casadi.accuracy.enough_modes import Chosen, enough_for, with_more_
 from cosserat_casadi.accuracy.ranges import CaseRanges, Given, input_ranges
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import unfixed, with_accuracy
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
@@ -29,11 +30,8 @@ from cosserat_casadi.model.unknowns import BlockKind
 SEED = 31
 """Of the random points, so that a choice can be repeated."""
 
-CORNERS = 16
-"""Random corners that are solved."""
-
-POINTS = 16
-"""Random points that are solved, and as many fresh ones once the tolerance is kept at all others."""
+SAMPLES = 16
+"""Random corners that are solved; so many random points too, and fresh ones once the tolerance is kept at all others."""
 
 WORST = 3
 """Points with the largest errors whose lack is made up at once."""
@@ -72,12 +70,18 @@ class Choice:
     without_equilibrium: tuple[dict[str, FloatArray], ...]
     met: bool
 
+    @property
+    def verified(self) -> Verified:
+        """What a folder says of it."""
+        return Verified(self.ranges.described, self.solves, self.error_estimate, len(self.without_equilibrium))
+
 
 def choose(
     scene: scenes.Scene,
     ranges: Given | None = None,
     tolerance: float | None = None,
     progress: Progress | None = None,
+    samples: int = SAMPLES,
 ) -> Choice:
     """The smallest discretisation found that keeps the tolerance all over ranges of inputs and parameters.
 
@@ -89,6 +93,7 @@ def choose(
             parameter; for all else see :func:`cosserat_casadi.accuracy.ranges.input_ranges`.
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many points are solved.
+        samples: random corners that are tried, and as many random points, beside the ends of each range.
 
     Raises:
         SceneError: a range or the tolerance is refused.
@@ -96,7 +101,7 @@ def choose(
     taken = input_ranges(scene, ranges)
     if tolerance is not None:
         scene = with_accuracy(scene, tolerance=tolerance)
-    search = _Search(scene, taken, progress)
+    search = _Search(scene, taken, progress, samples)
     answers = search.of(discretise(scene)) if scene.accuracy.fixed else search.refined()
     return search.verified(answers)
 
@@ -122,12 +127,14 @@ class _Search:
         scene: whose tolerance is wanted.
         ranges: over which.
         progress: told how many points are solved.
+        samples: random corners, and random points.
         points: cases that are tried, in the order in which they were made.
     """
 
     scene: scenes.Scene
     ranges: CaseRanges
     progress: Progress | None
+    samples: int
     points: list[FloatArray] = field(default_factory=list)
     _solved: int = 0
     _hard: set[int] = field(default_factory=set)
@@ -135,7 +142,7 @@ class _Search:
     def __post_init__(self) -> None:
         self._random = np.random.default_rng(SEED)
         self._bare = unfixed(self.scene, self.tolerance)
-        self.points = [self._own_point, *self._ends(), *self._corners(CORNERS), *self._inner(POINTS)]
+        self.points = [self._own_point, *self._ends(), *self._corners(self.samples), *self._inner(self.samples)]
 
     @property
     def tolerance(self) -> float:
@@ -205,7 +212,7 @@ class _Search:
             if not beyond:
                 beyond = self._beyond(answers, self._climbed(answers))
             if not beyond:
-                beyond = self._beyond(answers, self._added(self._inner(POINTS)))
+                beyond = self._beyond(answers, self._added(self._inner(self.samples)))
             if not beyond:
                 lost = self._lost(answers, chosen)
                 if not lost:

@@ -139,6 +139,16 @@ def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     return cases
 
 
+def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
+    """Lower and upper end by column of ``column=low:high``.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    columns = list(layout.columns)
+    return {columns[k]: ends for k, ends in _bounds(ranges, {c: i for i, c in enumerate(columns)}).items()}
+
+
 def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[float, float]]:
     """Lower and upper end by the index of the column."""
     problems: list[Problem] = []
