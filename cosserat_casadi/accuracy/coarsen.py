@@ -19,6 +19,7 @@ from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
 from cosserat_casadi.accuracy.preview import Modes, Preview
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SHARE = 0.6
@@ -77,6 +78,20 @@ class Coarsened:
     start: FloatArray
 
 
+def alike_rods(model: Model) -> list[tuple[str, ...]]:
+    """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
+    discrete = model.discrete
+    if not discrete.is_assembly:
+        return [(name,) for name in discrete.rods]
+    groups: dict[object, tuple[str, ...]] = {}
+    for name, discrete_rod in discrete.rods.items():
+        # One choice for all: their kernels can then be shared in generated code.
+        key = (discrete_rod.properties.admitted, discrete_rod.grid.elements)
+        group = groups.get(key, ())
+        groups[key] = (*group, name)
+    return list(groups.values())
+
+
 @dataclass
 class Coarsening:
     """One search below a reference solution.
@@ -115,17 +130,8 @@ class Coarsening:
 
     @cached_property
     def alike(self) -> list[tuple[str, ...]]:
-        """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
-        discrete = self.preview.model.discrete
-        if not discrete.is_assembly:
-            return [(name,) for name in discrete.rods]
-        groups: dict[object, tuple[str, ...]] = {}
-        for name, discrete_rod in discrete.rods.items():
-            # One choice for all: their kernels can then be shared in generated code.
-            key = (discrete_rod.properties.admitted, discrete_rod.grid.elements)
-            group = groups.get(key, ())
-            groups[key] = (*group, name)
-        return list(groups.values())
+        """Rods that are discretised alike."""
+        return alike_rods(self.preview.model)
 
     def _scene_time(self, grids: Mapping[str, Discretisation], modes: Modes) -> float:
         """Foreseen time of all rods together, µs."""

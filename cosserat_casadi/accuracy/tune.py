@@ -84,7 +84,7 @@ def tune(
     alone = [solve_reporting(variant, values) for variant, values in variants]
     chosen, together = common_discretisation(variants, alone, solve_reporting)
     met = all(_error(solution) <= tolerance for solution in together)
-    tuned = _with_accuracy(fixed(free, chosen), chosen_for=list(layout.ranges(rows)) or None)
+    tuned = with_accuracy(fixed(free, chosen), chosen_for=list(layout.ranges(rows)) or None)
     return Tuning(tuned, tuple(together), met)
 
 
@@ -148,7 +148,7 @@ def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
 
 def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
     """The scene with its discretisation to be chosen for a tolerance."""
-    return _with_accuracy(
+    return with_accuracy(
         scene,
         tolerance=tolerance,
         modes=None,
@@ -165,7 +165,7 @@ def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
     # One number suits rods that admit different strains too.
     if len(set(chosen.modes)) == 1:
         modes = chosen.modes[0]
-    return _with_accuracy(
+    return with_accuracy(
         scene,
         modes=modes,
         nodes=chosen.nodes,
@@ -174,7 +174,7 @@ def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
     )
 
 
-def _with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
+def with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
     """The scene read again with other entries of its accuracy; None leaves one out."""
     tables = scene_tables(scene)
     entries = tables.get("accuracy", {})

@@ -73,7 +73,7 @@ class AnswerError:
 
 
 @dataclass(frozen=True)
-class _Correction:
+class Correction:
     """Where a sweep or a step has led.
 
     Attributes:
@@ -133,7 +133,7 @@ def answer_error(solution: Solution) -> AnswerError:
     Args:
         solution: a converged one, at any inputs and parameters.
     """
-    believed, correction = _believed_correction(solution)
+    believed, correction = believed_correction(solution)
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN, settled=False)
     rest = _rest_of_series(solution, correction)
@@ -144,7 +144,7 @@ def answer_error(solution: Solution) -> AnswerError:
     return AnswerError(watched, max(shape, watched), wrench, settled=True)
 
 
-def _believed_correction(solution: Solution) -> tuple[bool, _Correction]:
+def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
     # A look that leaves the answer within its tolerance need not be repeated.
     enough = enough_for(solution.model.scene.accuracy.tolerance)
@@ -168,23 +168,25 @@ def enough_for(tolerance: float) -> float:
     return max(tolerance / SAFETY, ROUNDING)
 
 
-def _sweeps(solution: Solution) -> Iterator[_Correction]:
+def _sweeps(solution: Solution) -> Iterator[Correction]:
     """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow."""
     model = solution.model
     inputs = solution.inputs
-    inverse = _regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
+    inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     for _ in range(MOST_SWEEPS):
-        step, missing_step, _ = _balance(solution, known, missing)
+        step, missing_step, _ = balance_lacks(solution, known, missing)
         known = known + step
         missing = missing + missing_step
-        _, _, residual = _balance(solution, known, missing)
+        _, _, residual = balance_lacks(solution, known, missing)
         known = known - inverse @ residual
         yield _corrected(solution, known, missing)
 
 
-def _balance(solution: Solution, known: FloatArray, missing: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def balance_lacks(
+    solution: Solution, known: FloatArray, missing: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Elastic steps of the unknowns and of the missing coordinates, and the residual in the unknowns."""
     model = solution.model
     balance = column(model.richer_balance(solution.x, known, missing, solution.inputs))
@@ -192,7 +194,7 @@ def _balance(solution: Solution, known: FloatArray, missing: FloatArray) -> tupl
     return step, missing_step, residual
 
 
-def _newton_steps(solution: Solution) -> Iterator[_Correction]:
+def _newton_steps(solution: Solution) -> Iterator[Correction]:
     """Corrections by Newton's method on the richer model."""
     richer = solution.model.discrete.richer
     model = solution.model.richer
@@ -203,17 +205,21 @@ def _newton_steps(solution: Solution) -> Iterator[_Correction]:
         jacobian = model.path_jacobian(unknowns, solution.inputs, 1.0).full()
         if not np.all(np.isfinite(jacobian)):
             return
-        unknowns = unknowns - _regular_inverse(jacobian) @ residual
+        unknowns = unknowns - regular_inverse(jacobian) @ residual
         yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known])
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> _Correction:
+def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -> float:
+    """Largest change of what is watched by a correction; not a number where one of the changes is none."""
     changes = column(solution.model.richer_changes(solution.x, known, missing, solution.inputs))
-    # Written so that a change which is not a number is the largest.
-    return _Correction(known, missing, float(np.max(changes)))
+    return float(np.max(changes))
 
 
-def _rest_of_series(solution: Solution, correction: _Correction) -> float:
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
+    return Correction(known, missing, largest_change(solution, known, missing))
+
+
+def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """What modes beyond those of the richer model would add: the rest of a geometric series.
 
     The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E. A first look
@@ -229,7 +235,7 @@ def _rest_of_series(solution: Solution, correction: _Correction) -> float:
     return last * ratio / (1 - ratio)
 
 
-def _richer_answer(solution: Solution, correction: _Correction) -> Solution:
+def _richer_answer(solution: Solution, correction: Correction) -> Solution:
     """The corrected answer as a solution of the richer model."""
     richer = solution.model.discrete.richer
     unknowns = np.zeros(richer.discrete.size)
@@ -250,7 +256,7 @@ def _shape_change(solution: Solution, corrected: Solution) -> float:
     return max(changes)
 
 
-def _wrench_change(solution: Solution, corrected: Solution, correction: _Correction) -> float:
+def _wrench_change(solution: Solution, corrected: Solution, correction: Correction) -> float:
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
@@ -282,7 +288,7 @@ def _relative_change(values: FloatArray, difference: FloatArray, least: float = 
     return float(np.linalg.norm(difference)) / size
 
 
-def _regular_inverse(matrix: FloatArray) -> FloatArray:
+def regular_inverse(matrix: FloatArray) -> FloatArray:
     """The inverse, with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
     left, singular, right = np.linalg.svd(matrix)
     largest = float(singular.max(initial=0.0))

@@ -12,8 +12,22 @@ from cosserat_casadi.model.inputs import InputLayout
 
 
 def limits_of(scene: scenes.Scene) -> Iterator[scenes.Bound]:
-    """What the scene says of the ranges of its inputs."""
+    """What the scene says of the ranges of its inputs, by its bounds and its table of ranges."""
     yield from scene.bounds
+    free = scene.input_names()
+    for name, pairs in scene.ranges.items():
+        # Parameters have ranges too.
+        if name in free:
+            lower, upper = ends_of(pairs)
+            yield scenes.Bound(input=name, lower=lower, upper=upper)
+
+
+def ends_of(pairs: scenes.Pairs) -> tuple[float | tuple[float, ...], float | tuple[float, ...]]:
+    """Lower and upper ends of a range of the scene's table: a number each for all entries, or one for each."""
+    if isinstance(pairs[0], tuple):
+        lower, upper = zip(*pairs, strict=True)
+        return lower, upper
+    return pairs
 
 
 def physical_lower(layout: InputLayout) -> FloatArray:

@@ -56,6 +56,14 @@ class CaseLayout:
         return indices
 
     @cached_property
+    def spans(self) -> dict[str, slice]:
+        """Slice of each input and each parameter in a case."""
+        spans = dict(self.inputs.slices)
+        for entry, span in self.parameters:
+            spans[entry.name] = slice(self.inputs.size + span.start, self.inputs.size + span.stop)
+        return spans
+
+    @cached_property
     def default(self) -> FloatArray:
         """The case of the scene's own values, shape (size,)."""
         return np.concatenate([self.inputs.pack(), self.parameters.pack()])
@@ -101,7 +109,7 @@ def read_load_cases(path: Path, layout: CaseLayout) -> FloatArray:
     header, numbers, _, problems = read_numbers(path)
     indices = layout.columns
     unknown = [column for column in header if column not in indices]
-    problems = [_no_column(str(path), column, indices) for column in unknown] + problems
+    problems = [no_column(str(path), column, indices) for column in unknown] + problems
     if problems:
         raise SceneError(*problems)
     cases = np.tile(layout.default, (len(numbers), 1))
@@ -131,6 +139,16 @@ def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     return cases
 
 
+def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
+    """Lower and upper end by column of ``column=low:high``.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    columns = list(layout.columns)
+    return {columns[k]: ends for k, ends in _bounds(ranges, {c: i for i, c in enumerate(columns)}).items()}
+
+
 def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[float, float]]:
     """Lower and upper end by the index of the column."""
     problems: list[Problem] = []
@@ -142,7 +160,7 @@ def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[f
         low = finite_number(first)
         high = finite_number(last)
         if column not in indices:
-            problems.append(_no_column("--range", column, indices))
+            problems.append(no_column("--range", column, indices))
         elif low is None or high is None:
             problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
         else:
@@ -163,6 +181,7 @@ def _additive_recurrence(count: int, dimension: int) -> FloatArray:
     return np.vstack([np.ones((1, dimension)), (0.5 + multiples) % 1.0])
 
 
-def _no_column(where: str, column: str, indices: dict[str, int]) -> Problem:
+def no_column(where: str, column: str, indices: Mapping[str, int]) -> Problem:
+    """The problem of a column that a scene does not have."""
     names = ", ".join(indices) or "none"
     return Problem(where, f"{column!r} is not an input or a parameter of this scene", f"its columns are {names}")

@@ -25,6 +25,7 @@ from cosserat_casadi.scene.exact_contact import with_exact_contact
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.flow import Flow
 from cosserat_casadi.scene.foundation import Foundation
+from cosserat_casadi.scene.input_ranges import Pairs
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.loads import (
@@ -108,6 +109,7 @@ __all__ = [
     "NamedNumbers",
     "Obstacle",
     "ObstacleRecord",
+    "Pairs",
     "PinnedSupport",
     "Plane",
     "PointWrench",

@@ -40,7 +40,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 
 def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
     """A bound is of what is not free, is the second of an input, or has another number of entries."""
-    counts = _entry_counts(scene)
+    counts = entry_counts(scene)
     first: dict[str, int] = {}
     for i, bound in scene.tables("bounds"):
         name = bound.get("input")
@@ -135,7 +135,7 @@ def input_part_faults(name: str, scene: SceneTables) -> Iterator[Fault]:
     yield from field_faults(rest if named is None else named[1], record, table, scene)
 
 
-def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
+def entry_counts(scene: SceneTables) -> dict[str, int | None]:
     """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
     owners = owners_of(scene)
     return {name: _entry_count(name, owners) for name in free_names(scene)}

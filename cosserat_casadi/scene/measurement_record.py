@@ -15,7 +15,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
-from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.records import Entry, HashedTable, Record
 from cosserat_casadi.scene.spelling import counted
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
@@ -85,13 +85,6 @@ MeasuredMode = Annotated[Annotated[str, TEXT] | Annotated[Annotated[Whole, Field
 
 Cell = Annotated[Annotated[str, TEXT] | Annotated[Number, NUMBER], BY_TYPE]
 """What a cell of a table holds."""
-
-
-class HashedTable(dict[str, Any]):
-    """A table whose keys are the user's: frozen with its record, and so it has a hash."""
-
-    def __hash__(self) -> int:  # type: ignore[override]
-        return hash(tuple(self.items()))
 
 
 class MeasurementRecord(Entry):

@@ -157,3 +157,10 @@ class Entry(Record):
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """Reasons why one of the free fields cannot stay free in this scene, without path."""
         yield from ()
+
+
+class HashedTable(dict[str, Any]):
+    """A table whose keys are the user's: frozen with its record, and so it has a hash."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.items()))

@@ -15,6 +15,7 @@ from cosserat_casadi.scene.assembly import bases_on_nothing, bodies_that_nobody_
 from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.input_ranges import ranges_of_no_input
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS, overlap
@@ -318,6 +319,7 @@ RULES: tuple[Rule, ...] = (
     parameters_that_are_not,
     measured_twice,
     bounds_of_no_input,
+    ranges_of_no_input,
     motions_of_no_input,
 )
 """Every rule. Faults at one key of the file are listed in this order."""

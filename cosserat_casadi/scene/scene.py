@@ -13,13 +13,14 @@ from cosserat_casadi.scene.actuators import Actuator
 from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.input_ranges import InputRanges
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import Obstacle
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
-from cosserat_casadi.scene.records import Record, refusal
+from cosserat_casadi.scene.records import HashedTable, Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
@@ -68,6 +69,10 @@ class Scene(Record):
 schema = 1
 title = "Soft finger, own weight and a tip push"
 inputs = ["push.force", "cable.tension"]
+
+[ranges]
+"cable.tension" = [0, 9]
+"push.force" = [[-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.2]]
 """
 
     schema_version: Annotated[Literal[1], BeforeValidator(_exactly_one)] = Field(
@@ -82,6 +87,11 @@ inputs = ["push.force", "cable.tension"]
         (),
         description="numbers of the scene that become arguments of every function, by their keys, such as "
         "'finger.material.youngs_modulus'",
+    )
+    ranges: InputRanges = Field(
+        default_factory=HashedTable,
+        description="where inputs and parameters will go, by name, in their units: [low, high] for all entries, or a "
+        "list of these, one for each; modes and nodes are chosen for all of it",
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
     rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field((), description="the rods, at least one, unless it has tubes")

@@ -330,12 +330,27 @@ def test_tune_fixes_a_discretisation_for_a_set_of_loads(wire: Path) -> None:
     assert solve(build(tuned)).converged
 
 
+def test_tune_fixes_a_discretisation_for_ranges(wire: Path) -> None:
+    """Those that are asked for, and for the rest a scale of its own; the file says which."""
+    options = ("--tolerance", "1e-3", "--range", "push.force.x=-0.1:0.2")
+    done = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "points of the ranges are within 0.001" in done.stdout
+    tuned = read_scene(wire / "tuned.toml")
+    assert tuned.accuracy.chosen_for is not None
+    assert "push.force.x=-0.1:0.2" in tuned.accuracy.chosen_for
+    assert {text.partition("=")[0] for text in tuned.accuracy.chosen_for} >= {"push.force.y", "push.force.z"}
+
+
 def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
     done = cosserat("tune", "wire.toml", "--output", "tuned.toml", "--range", "pull.x=0:1", cwd=wire)
     assert done.returncode == 2
     assert "'pull.x' is not an input or a parameter of this scene" in done.stderr
-    both = cosserat("tune", "wire.toml", "--output", "tuned.toml", cwd=wire)
+    (wire / "loads.csv").write_text("push.force.x\n0.1\n")
+    options = ("--over", "loads.csv", "--range", "push.force.x=0:1")
+    both = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
     assert both.returncode == 2
+    assert "--over: stands beside --range" in both.stderr
     assert not (wire / "tuned.toml").exists()
 
 

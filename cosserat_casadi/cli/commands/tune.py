@@ -8,16 +8,18 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.accuracy.tune import Tuning
+from cosserat_casadi.accuracy.choose import SAMPLES, Choice
+from cosserat_casadi.accuracy.tune import Tuning, unfixed
 from cosserat_casadi.accuracy.tune import tune as tune_scene
-from cosserat_casadi.cli.commands.cases import load_cases
+from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
 from cosserat_casadi.cli.progress import count_display
-from cosserat_casadi.cli.reports.model import print_tuning
+from cosserat_casadi.cli.reports.model import print_choice, print_tuning
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import CaseLayout, case_layout
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout, ends_by_column, read_load_cases
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -30,17 +32,29 @@ def tune(
     ranges: Annotated[
         list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input or a parameter.")
     ] = None,
-    samples: Annotated[int, typer.Option(min=1, max=100_000, help="Load cases spread over the ranges.")] = 32,
+    samples: Annotated[int, typer.Option(min=1, max=100_000, help="Random corners, and random points.")] = SAMPLES,
     settings: Settings = None,
 ) -> None:
-    """Find the smallest discretisation for many load cases. Exit codes: 0 written, 2 refused, 3 tolerance not met."""
+    """Find one discretisation for ranges of inputs, or for load cases. Exit codes: 0 written, 2 refused, 3 not met.
+
+    Inputs without --range take theirs of the scene, its [ranges] or [[bounds]], or a range of their scale.
+    """
     tuned_scene = read_scene(scene, tuple(settings or ()))
     layout = case_layout(tuned_scene)
     check_file(output, "--output", ".toml")
     check_inputs_stay({"--output": output}, scene, settings, over)
-    cases = load_cases(over, ranges or [], samples, layout)
-    tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
-    print_tuning(Console(), tuning, layout, cases)
+    tuning: Tuning | Choice
+    if over is None:
+        asked = ends_by_column(ranges or [], layout)
+        free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
+        tuning = choose_with_progress(free, asked, samples)
+        print_choice(Console(), tuning)
+    elif ranges:
+        raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
+    else:
+        cases = read_load_cases(over, layout)
+        tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
+        print_tuning(Console(), tuning, layout, cases)
     # A scene that misses the tolerance is not written: it would be taken for one that meets it.
     if not tuning.met:
         raise typer.Exit(NOT_FOUND)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi.accuracy.choose import Choice
+from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.cli.reports.format import discretisation_table, print_plain, table_of, title_line
 from cosserat_casadi.equilibrium.contact.state import without_contacts
@@ -75,15 +77,44 @@ def print_tuning(console: Console, tuning: Tuning, layout: CaseLayout, cases: Fl
     if ranges:
         print_plain(console, "It holds for " + ", ".join(map(escape, ranges)))
 
-    values = []
-    for name, value in layout.unpack(cases[tuning.worst]).items():
-        # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
-        components = value.T.squeeze()
-        values.append(f"{name} = {components.tolist()}")
+    point = _point(layout.unpack(cases[tuning.worst]))
     ending = worst.message
     if worst.error_estimate is not None:
         ending = f"estimated error {worst.error_estimate:.1e}"
-    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(', '.join(values))}: {ending}")
+    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(point)}: {ending}")
+
+
+def print_choice(console: Console, choice: Choice) -> None:
+    """Print the discretisation that was chosen for ranges, what they are, and the point that is worst on it."""
+    console.print(discretisation_table(choice.model))
+    tolerance = choice.scene.accuracy.tolerance
+    if choice.met:
+        print_plain(console, f"[bold green]All {choice.solves} points of the ranges are within {tolerance:g}.[/]")
+    else:
+        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every point of the ranges.[/]")
+    print_ranges(console, choice.ranges)
+    if choice.without_equilibrium:
+        count = len(choice.without_equilibrium)
+        point = escape(_point(choice.without_equilibrium[0]))
+        print_plain(console, f"[bold yellow]No equilibrium was found at {count} points[/], such as {point}")
+    if choice.error_estimate is not None:
+        error = f"estimated error {choice.error_estimate:.1e}"
+        print_plain(console, f"Worst point: {escape(_point(choice.worst))}: {error}")
+
+
+def print_ranges(console: Console, ranges: CaseRanges) -> None:
+    """Print the ranges that a discretisation is chosen for, and where each comes from."""
+    table = table_of("range", "where it comes from")
+    for line, origin in ranges.with_origins():
+        table.add_row(escape(line), escape(origin.value))
+    if table.row_count:
+        console.print(table)
+
+
+def _point(values: Mapping[str, FloatArray]) -> str:
+    """Inputs and parameters in words."""
+    # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
+    return ", ".join(f"{name} = {value.T.squeeze().tolist()}" for name, value in values.items())
 
 
 def _tuning_verdict(tuning: Tuning, count: int) -> str:

@@ -1,0 +1,154 @@
+"""The modes and intervals that an answer lacks, from the correction that tells its error (docs/theory.md, section 10).
+
+The missing coordinates of a settled correction say how much there would be of each mode that the answer lacks. A mode
+is added where that lessens most what the rest of them would still change, until little is left of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
+from cosserat_casadi.equilibrium.answer_error import (
+    SAFETY,
+    balance_lacks,
+    believed_correction,
+    largest_change,
+    regular_inverse,
+)
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.discretisation import Discretisation
+
+MODES_SHARE = 0.6
+"""Share of the tolerance that modes which are still missing may leave."""
+
+GRID_SHARE = 0.25
+"""Share of the tolerance that the grid may leave."""
+
+FAR = 10.0
+"""Error over the tolerance beyond which a strain may gain two modes in one step, else one."""
+
+MOST_GROWTH = 1.5
+"""Factor by which intervals grow at most in one step, beyond one more: what they are foreseen from is rough."""
+
+NEXT_ORDER = {"magnus4": "magnus6"}
+"""Rotation integrator that takes over where many more intervals would be needed."""
+
+Chosen = dict[str, Discretisation]
+"""Discretisation of every rod."""
+
+
+def enough_for(solution: Solution, tolerance: float) -> Chosen:
+    """The discretisation of an answer with the modes and intervals added that its error asks for.
+
+    Args:
+        solution: a converged one, whose estimated error is above the tolerance.
+        tolerance: wanted error.
+    """
+    settled, correction = believed_correction(solution)
+    if not settled:
+        # What the answer lacks is not known: a little more of everything.
+        return with_more_modes(solution.model.discretisation)
+    return _Lack(solution, correction.missing, correction.change, tolerance / SAFETY).made_up()
+
+
+def with_more_modes(chosen: Mapping[str, Discretisation]) -> Chosen:
+    """A discretisation with one more mode of every strain, and two more intervals."""
+    more: Chosen = {}
+    for name, own in chosen.items():
+        modes = tuple(count + 1 for count in own.modes)
+        more[name] = replace(own, modes=modes, nodes=own.nodes + 2)
+    return more
+
+
+@dataclass(frozen=True)
+class _Lack:
+    """What an answer lacks.
+
+    Attributes:
+        solution: the answer.
+        missing: how much there would be of the modes that it lacks, shape (missing,).
+        error: change that these modes make.
+        bound: on the change that modes and intervals make which are still missing.
+    """
+
+    solution: Solution
+    missing: FloatArray
+    error: float
+    bound: float
+
+    def made_up(self) -> Chosen:
+        """The discretisation with the modes and intervals that are needed."""
+        chosen: Chosen = dict(self.solution.model.discretisation)
+        by_grid = self._change(np.zeros_like(self.missing))
+        enough = max(MODES_SHARE * self.bound, 1.1 * by_grid)
+        left = self._change(self.missing)
+        while left > enough:
+            trials = [self._tried(trial) for trial in self._with_one_more(chosen)]
+            if not trials:
+                break
+            left, chosen = min(trials, key=lambda trial: trial[0])
+        if by_grid > GRID_SHARE * self.bound:
+            chosen = {name: self._finer(own, by_grid) for name, own in chosen.items()}
+        if chosen == self.solution.model.discretisation:
+            return with_more_modes(chosen)
+        return chosen
+
+    def _tried(self, trial: Chosen) -> tuple[float, Chosen]:
+        left = np.where(self._has(trial), 0.0, self.missing)
+        return self._change(left), trial
+
+    def _with_one_more(self, chosen: Chosen) -> list[Chosen]:
+        """Discretisations with one more mode of a strain, where the answer's correction has such a mode."""
+        trials = []
+        present = self.solution.model.discretisation
+        most_added = 2 if self.error > FAR * self.bound else 1
+        for names in alike_rods(self.solution.model):
+            for component, count in enumerate(chosen[names[0]].modes):
+                if count == present[names[0]].modes[component] + most_added:
+                    continue
+                trial = dict(chosen)
+                for name in names:
+                    modes = list(chosen[name].modes)
+                    modes[component] += 1
+                    trial[name] = replace(chosen[name], modes=tuple(modes))
+                trials.append(trial)
+        return trials
+
+    def _has(self, chosen: Chosen) -> npt.NDArray[np.bool_]:
+        """Which of the missing coordinates a discretisation has, shape (missing,)."""
+        richer = self.solution.model.discrete.richer
+        has = np.zeros(richer.discrete.size, dtype=bool)
+        for name, rod in richer.discrete.rods.items():
+            first = richer.discrete.unknowns.strain(name).start
+            for (component, columns), modes in zip(rod.columns.items(), chosen[name].modes, strict=True):
+                has[first + columns.start : first + columns.stop] = rod.degrees(component) < modes
+        return has[~richer.known]
+
+    def _change(self, missing: FloatArray) -> float:
+        """Change of what is watched by missing modes, which the unknowns of the answer follow, and by a finer grid."""
+        none = np.zeros(self.solution.model.size)
+        _, _, residual = balance_lacks(self.solution, none, missing)
+        follow = -self._inverse @ residual
+        change = largest_change(self.solution, follow, missing)
+        return change if np.isfinite(change) else np.inf
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        model = self.solution.model
+        return regular_inverse(model.path_jacobian(self.solution.x, self.solution.inputs, 1.0).full())
+
+    def _finer(self, own: Discretisation, by_grid: float) -> Discretisation:
+        """A rod's discretisation with so many intervals that the change by the grid is within its share."""
+        growth = (by_grid / (GRID_SHARE * self.bound)) ** (1 / POWERS[own.transport])
+        if growth > MOST_GROWTH and own.transport in NEXT_ORDER:
+            return replace(own, nodes=own.nodes + 1, transport=NEXT_ORDER[own.transport])
+        nodes = ceil(own.nodes * min(growth, MOST_GROWTH))
+        return replace(own, nodes=max(nodes, own.nodes + 1))

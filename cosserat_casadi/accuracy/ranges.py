@@ -1,0 +1,290 @@
+"""The ranges that a discretisation is chosen for: asked for, of the scene, or a documented scale.
+
+Where nobody gives the range of an input, it reaches as far around the scene's value as turns a rod by about a radian
+from end to end, by the linear response of the unloaded scene. So a force F at the tip of a clamped rod is taken up to
+2 EI/ℓ². Tensions and pressures begin at zero. Lengths change by a tenth at most, and gravity keeps its size; bases stay
+where they are, and so do parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.input_ranges import limits_of, narrowed
+from cosserat_casadi.model.inputs import Input
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
+from cosserat_casadi.rod.strain import DiscreteRod
+
+TURN = 1.0
+"""Turn of a rod from end to end that the scale of an input makes, rad."""
+
+STRETCH = 0.1
+"""Share of a length by which it changes at most."""
+
+GRAVITY = 9.81
+"""Acceleration where the scene's own is zero, m/s²."""
+
+RESPONSE_MODES = 4
+"""Modes of every strain on which the response of the unloaded scene is computed."""
+
+NO_TURN = 1e-9
+"""Turn, relative to the largest that an entry of the same input makes, below which an entry turns nothing."""
+
+Given = Mapping[str, npt.ArrayLike]
+"""Pairs of lower and upper end by column, such as ``push.force.x``, or by the name of an input or a parameter."""
+
+
+MIDDLES = (np.arange(100) + 0.5) / 100
+"""Abscissae of sections at which turns are summed up."""
+
+STEP = 1e-3
+"""Share of an input by which it is moved to find its response."""
+
+
+class Origin(Enum):
+    """Where the range of an entry comes from, in words."""
+
+    ASKED = "asked for"
+    RANGES = "[ranges]"
+    CHOSEN_FOR = "accuracy.chosen_for"
+    BOUNDS = "[[bounds]]"
+    TURN = "turns a rod by about a radian"
+    LENGTH = "a tenth of the length"
+    GRAVITY = "gravity in any direction"
+    VALUE = "the scene's value"
+
+
+Entries = dict[int, tuple[float, float, Origin]]
+"""Ends and origin by the index of an entry."""
+
+
+@dataclass(frozen=True)
+class CaseRanges:
+    """Ranges of the inputs and the parameters of a scene, entry by entry.
+
+    Attributes:
+        layout: inputs and parameters.
+        lower: least values, shape (size of a case,).
+        upper: largest values, shape (size of a case,); equal to the least one where an entry keeps its value.
+        origins: where each range comes from.
+    """
+
+    layout: CaseLayout
+    lower: FloatArray
+    upper: FloatArray
+    origins: tuple[Origin, ...]
+
+    @property
+    def moving(self) -> npt.NDArray[np.intp]:
+        """Indices of the entries that do not keep one value."""
+        return np.flatnonzero(self.lower < self.upper)
+
+    @property
+    def described(self) -> tuple[str, ...]:
+        """``column=low:high`` of every entry that moves."""
+        return tuple(line for line, _ in self.with_origins())
+
+    def with_origins(self) -> Iterator[tuple[str, Origin]]:
+        """``column=low:high`` of every entry that moves, with where its range comes from."""
+        for column, k in self.layout.columns.items():
+            if self.lower[k] < self.upper[k]:
+                yield f"{column}={self.lower[k]:.6g}:{self.upper[k]:.6g}", self.origins[k]
+
+
+def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
+    """The range of every free input and every parameter, and where it comes from.
+
+    Asked for, else of the scene's table of ranges, else what its modes were chosen for, else its bounds, else the scale
+    of the input. In a scene whose modes were chosen for ranges what these do not name keeps its value.
+
+    Args:
+        scene: a validated scene.
+        given: pairs of lower and upper end that are asked for.
+
+    Raises:
+        SceneError: with every fault: a range of what is no input, whose ends are equal, reversed or not finite, or a
+            wrong number of pairs.
+    """
+    layout = case_layout(scene)
+    asked = _entries(layout, given or {}, Origin.ASKED, "--range")
+    in_table = _entries(layout, scene.ranges, Origin.RANGES, "ranges")
+    chosen_for = dict(_column_and_ends(text) for text in scene.accuracy.chosen_for or ())
+    chosen = _entries(layout, chosen_for, Origin.CHOSEN_FOR, "accuracy.chosen_for")
+    known = {**(chosen or _bounded(scene, layout)), **in_table, **asked}
+    if not chosen:
+        without = [k for k in range(layout.inputs.size) if k not in known]
+        known |= _scales(scene, layout, without)
+    lower = layout.default.copy()
+    upper = layout.default.copy()
+    origins = [Origin.VALUE] * len(lower)
+    for k, (low, high, origin) in known.items():
+        lower[k] = low
+        upper[k] = high
+        origins[k] = origin
+    return CaseRanges(layout, lower, upper, tuple(origins))
+
+
+def _column_and_ends(text: str) -> tuple[str, tuple[float, float]]:
+    """Column and ends of ``column=low:high``."""
+    column, _, ends = text.rpartition("=")
+    low, _, high = ends.partition(":")
+    return column, (float(low), float(high))
+
+
+def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> Entries:
+    """Ranges by the index of the entry.
+
+    Args:
+        layout: inputs and parameters.
+        given: pairs by column or by name.
+        origin: of these ranges.
+        where: what gives them, for errors.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    problems: list[Problem] = []
+    entries: Entries = {}
+    spans = layout.spans
+    for name, value in given.items():
+        if name in layout.columns:
+            span = slice(layout.columns[name], layout.columns[name] + 1)
+        elif name in spans:
+            span = spans[name]
+        else:
+            problems.append(no_column(where, name, layout.columns))
+            continue
+        pairs = np.atleast_2d(np.asarray(value, dtype=float))
+        size = span.stop - span.start
+        if pairs.shape not in ((1, 2), (size, 2)):
+            counted = "1 pair" if size == 1 else f"1 pair or {size}"
+            problems.append(Problem(where, f"{name} must have {counted} of ends, got shape {pairs.shape}"))
+            continue
+        problems.extend(_faults_of_ends(where, name, pairs))
+        for k, (low, high) in enumerate(np.broadcast_to(pairs, (size, 2)).tolist()):
+            entries[span.start + k] = (low, high, origin)
+    if problems:
+        raise SceneError(*problems)
+    return entries
+
+
+def _faults_of_ends(where: str, name: str, pairs: FloatArray) -> Iterator[Problem]:
+    """What is wrong with pairs of ends, shape (k, 2)."""
+    for low, high in pairs.tolist():
+        if not (np.isfinite(low) and np.isfinite(high)):
+            yield Problem(where, f"the range of {name} must have two finite ends, got {low:g}:{high:g}")
+        elif low == high:
+            yield Problem(where, f"the range of {name} must have two different ends, got {low:g} twice")
+        elif low > high:
+            yield Problem(where, f"the range of {name} must have the lower end first, got {low:g}:{high:g}")
+
+
+def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
+    """Ranges of the entries that the scene bounds on both sides."""
+    lower, upper = narrowed(layout.inputs, scene.bounds)
+    both = np.flatnonzero(np.isfinite(lower) & np.isfinite(upper) & (lower < upper))
+    return {k: (float(lower[k]), float(upper[k]), Origin.BOUNDS) for k in both.tolist()}
+
+
+def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> Entries:
+    """Ranges of entries by what they do to the unloaded scene, within what the scene bounds on one side."""
+    if not entries:
+        return {}
+    bare = without_contacts(scene.baked())
+    model = build(bare, discretise(bare, RESPONSE_MODES, nodes_for(RESPONSE_MODES)))
+    lower, upper = narrowed(layout.inputs, limits_of(scene))
+    found: Entries = {}
+    for entry, span in layout.inputs:
+        turns = _turns(model, span)
+        for k in range(span.start, span.stop):
+            if k not in entries:
+                continue
+            low, high, origin = _scale(model, entry, turns, k - span.start)
+            low = max(low, float(lower[k]))
+            high = min(high, float(upper[k]))
+            if low < high:
+                found[k] = (low, high, origin)
+    return found
+
+
+def _scale(model: Model, entry: Input, turns: FloatArray, component: int) -> tuple[float, float, Origin]:
+    """Ends of the range of an entry where nobody gives one, and what says so.
+
+    Args:
+        model: the scene on modes for its response.
+        entry: the input.
+        turns: of a rod by each entry of the input, rad per unit.
+        component: which entry it is.
+    """
+    value = float(entry.default.ravel(order="F")[component])
+    if entry.field.startswith("base."):
+        return value, value, Origin.VALUE
+    largest = float(turns.max())
+    # An entry that turns nothing by itself, such as a thrust along a straight rod, takes the scale of its neighbours.
+    turn = turns[component] if turns[component] > NO_TURN * largest else largest
+    reach = TURN / float(turn) if turn > 0.0 else _bending_size(model, entry)
+    if entry.field == "length":
+        stretch = STRETCH * value
+        if turn == 0.0 or stretch <= reach:
+            return value - stretch, value + stretch, Origin.LENGTH
+    if entry.unit == "m/s²":
+        size = float(np.linalg.norm(entry.default)) or GRAVITY
+        if size <= reach:
+            return -size, size, Origin.GRAVITY
+    if entry.declared.lower == 0.0:
+        return 0.0, value + reach, Origin.TURN
+    return value - reach, value + reach, Origin.TURN
+
+
+def _turns(model: Model, span: slice) -> FloatArray:
+    """Turn of the rod that each entry of an input turns most, rad per unit of the entry, shape (entries,)."""
+    inputs = model.pack()
+    at_values = _response(model, inputs)
+    turns = []
+    for k in range(span.start, span.stop):
+        moved = inputs.copy()
+        # The response is affine in the inputs.
+        step = max(abs(inputs[k]), 1.0) * STEP
+        moved[k] += step
+        change = (_response(model, moved) - at_values) / step
+        rods = model.discrete.rods.items()
+        of_rods = [_turn(rod, change[model.discrete.unknowns.strain(name)]) for name, rod in rods]
+        turns.append(max(of_rods))
+    return np.array(turns)
+
+
+def _response(model: Model, inputs: FloatArray) -> FloatArray:
+    """Linear response of the unloaded scene to inputs, shape (model.size,)."""
+    return np.asarray(model.path_tangent(inputs).full()[:, 0])
+
+
+def _turn(rod: DiscreteRod, strains: FloatArray) -> float:
+    """ℓ ∫ |K| dX of strain coordinates, rad: the turn from end to end where a rod bends one way."""
+    curvatures = np.zeros((len(MIDDLES), 3))
+    for component, columns in rod.columns.items():
+        if component < 3:
+            curvatures[:, component] = rod.strain_of(component, MIDDLES) @ strains[columns]
+    return float(rod.length * np.linalg.norm(curvatures, axis=1).mean())
+
+
+def _bending_size(model: Model, entry: Input) -> float:
+    """What bends the softest rod by about a radian at its tip, in the unit of an input that the response does not show.
+
+    In closed loops no load has a response in the unloaded scene: their joints close along the load path.
+    """
+    softest = min(model.discrete.rods.values(), key=lambda rod: rod.energy_unit / rod.length)
+    force = 2 * softest.energy_unit / softest.length
+    sizes = {"N": force, "N m": force * softest.length, "N/m": force / softest.length}
+    return sizes.get(entry.unit, 1.0)

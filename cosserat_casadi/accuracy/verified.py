@@ -1,0 +1,44 @@
+"""What was verified of a discretisation, as exported folders tell it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Verified:
+    """Over which ranges the error of a discretisation was estimated, and how large it is there.
+
+    Attributes:
+        ranges: ``column=low:high`` of inputs and parameters; all else has the scene's value.
+        solves: points of the ranges that were solved.
+        error_estimate: the largest of their estimates; None where none has an equilibrium.
+        without_equilibrium: how many of them have no equilibrium.
+    """
+
+    ranges: tuple[str, ...]
+    solves: int
+    error_estimate: float | None
+    without_equilibrium: int
+
+    @property
+    def sentence(self) -> str:
+        """For a header or a README."""
+        where = ", ".join(self.ranges) or "the scene's own inputs"
+        text = f"The discretisation was verified by {self.solves} solves over {where}:"
+        if self.error_estimate is not None:
+            text += f" largest estimated error {self.error_estimate:.1e}."
+        if self.without_equilibrium:
+            text += f" No equilibrium was found at {self.without_equilibrium} of these points."
+        return f"{text} Inputs beyond these ranges need it chosen anew."
+
+    def plain(self) -> dict[str, Any]:
+        """For a manifest."""
+        error = self.error_estimate
+        return {
+            "ranges": list(self.ranges),
+            "solves": self.solves,
+            "error_estimate": None if error is None else float(f"{error:.2g}"),
+            "without_equilibrium": self.without_equilibrium,
+        }

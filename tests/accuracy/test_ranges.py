@@ -1,0 +1,145 @@
+"""One discretisation for ranges of inputs: which ranges are taken, and that the tolerance holds all over them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi.accuracy.choose import Choice, choose, freedom
+from cosserat_casadi.accuracy.ranges import Origin, input_ranges
+from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.scene.writing import scene_text
+from tests.scenes import STIFFNESS, WEIGHT, push, scene
+
+
+def ends(ranged: object) -> dict[str, tuple[float, float, Origin]]:
+    """Lower and upper end and origin by column."""
+    taken = input_ranges(ranged)  # type: ignore[arg-type]
+    return {
+        column: (float(taken.lower[k]), float(taken.upper[k]), taken.origins[k])
+        for column, k in taken.layout.columns.items()
+    }
+
+
+def test_a_force_reaches_as_far_as_it_turns_a_clamped_rod_by_a_radian() -> None:
+    """F = 2 EI/ℓ² across; a thrust turns nothing by itself and takes the scale of its neighbours."""
+    found = ends(scene(push(force=[0.0, 0.0, 0.0])))
+    about_y = 2 * STIFFNESS["bending_y"] / 0.8**2
+    about_x = 2 * STIFFNESS["bending_x"] / 0.8**2
+    for column, force in (("push.force.x", about_y), ("push.force.y", about_x), ("push.force.z", about_x)):
+        low, high, origin = found[column]
+        assert_allclose([low, high], [-force, force], rtol=1e-9, atol=0)
+        assert origin is Origin.TURN
+
+
+def test_tensions_begin_at_zero_and_gravity_keeps_its_size() -> None:
+    """A tension T at an offset r turns a rod by T r ℓ / EI."""
+    tendon = {"name": "east", "kind": "tendon", "rod": "rod", "tension": 1.0, "offset": [0.01, 0.0]}
+    found = ends(scene(WEIGHT, actuators=[tendon], inputs=["east.tension", "weight.acceleration", "rod.length"]))
+    by_turn = STIFFNESS["bending_y"] / (0.01 * 0.8)
+    assert_allclose(found["east.tension"][:2], [0.0, 1.0 + by_turn], rtol=1e-9, atol=0)
+    size = float(np.linalg.norm(WEIGHT["acceleration"]))
+    assert_allclose(found["weight.acceleration.x"][:2], [-size, size], rtol=1e-12, atol=0)
+    assert found["weight.acceleration.x"][2] is Origin.GRAVITY
+    assert_allclose(found["rod.length"][:2], [0.72, 0.88], rtol=1e-12, atol=0)
+
+
+def test_what_is_asked_for_goes_before_the_table_and_that_before_bounds() -> None:
+    bounds = [
+        {"input": "push.force", "lower": -3.0, "upper": 3.0},
+        {"input": "weight.acceleration", "lower": -2, "upper": 2},
+    ]
+    ranged = scene(push(), WEIGHT, ranges={"push.force": [-1, 1]}, bounds=bounds)
+    taken = input_ranges(ranged, {"push.force.x": (-0.5, 0.25)})
+    assert taken.described == (
+        "push.force.x=-0.5:0.25",
+        "push.force.y=-1:1",
+        "push.force.z=-1:1",
+        "weight.acceleration.x=-2:2",
+        "weight.acceleration.y=-2:2",
+        "weight.acceleration.z=-2:2",
+    )
+    assert taken.origins == (Origin.ASKED, Origin.RANGES, Origin.RANGES, Origin.BOUNDS, Origin.BOUNDS, Origin.BOUNDS)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"push.force.x": (1, 1)}, "two different ends"),
+        ({"push.force.x": (1, -1)}, "the lower end first"),
+        ({"push.force.x": (0, np.nan)}, "two finite ends"),
+        ({"pull.force.x": (0, 1)}, "is not an input or a parameter"),
+        ({"push.force": [(0, 1), (0, 1)]}, "must have 1 pair or 3 of ends"),
+    ],
+)
+def test_a_range_that_is_asked_for_is_refused_where(asked: dict[str, object], sentence: str) -> None:
+    with pytest.raises(SceneError, match=sentence):
+        input_ranges(scene(push()), asked)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def chosen() -> Choice:
+    """For forces in all directions, of a scene whose own force bends the rod in a plane."""
+    return choose(scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-3}), {"push.force": (-2.0, 2.0)})
+
+
+def test_the_tolerance_holds_all_over_the_ranges(chosen: Choice) -> None:
+    """At corners and at random points, against finer modes; the scene's own inputs would do with fewer."""
+    assert chosen.met
+    assert not chosen.without_equilibrium
+    fine = build(chosen.scene, discretise(chosen.scene, 12, 28, "magnus8"))
+    random = np.random.default_rng(5)
+    for force in ([2.0, 2.0, -2.0], [-2.0, 2.0, 2.0], *random.uniform(-2, 2, (6, 3))):
+        coarse = solve(chosen.model, {"push.force": force}, estimate_error=False)
+        assert pose_distance(coarse, solve(fine, {"push.force": force}, estimate_error=False)) <= 1e-3
+    own = solve_scene(scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-3}))
+    assert own.model.size < chosen.model.size
+
+
+def test_the_scene_says_what_was_chosen_for_which_ranges(chosen: Choice) -> None:
+    """Those that were asked for, not those of the points; a second choice verifies the same modes over the same."""
+    assert chosen.scene.accuracy.chosen_for == tuple(f"push.force.{axis}=-2:2" for axis in "xyz")
+    again = parse_scene(scene_text(chosen.scene))
+    assert again == chosen.scene
+    verified = choose(again)
+    assert verified.met
+    assert verified.ranges.described == chosen.ranges.described
+    assert verified.model.discretisation == chosen.model.discretisation
+
+
+def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
+    """No discretisation with half as many unknowns keeps the tolerance at a corner."""
+    half = chosen.model.size // 2
+    corner = {"push.force": [2.0, 2.0, -2.0]}
+    fine = solve(build(chosen.scene, discretise(chosen.scene, 12, 28, "magnus8")), corner)
+    for first in range(1, half - 1):
+        for second in range(1, half - first):
+            modes = (first, second, half - first - second)
+            coarse = solve(build(chosen.scene, discretise(chosen.scene, modes, 16, "magnus8")), corner)
+            assert not coarse.converged or pose_distance(coarse, fine) > 1e-3
+
+
+def test_points_without_equilibrium_are_told() -> None:
+    choice = choose(scene(push(), strain="planar", accuracy={"tolerance": 1e-2}), {"push.force.x": (0.0, 1e200)})
+    assert choice.without_equilibrium
+
+
+def test_fixed_modes_are_verified(chosen: Choice) -> None:
+    """Too few of them: the choice says so, with the point where it shows."""
+    coarse = scene(push(), accuracy={"tolerance": 1e-3, "modes": 1, "nodes": 4})
+    choice = choose(coarse, {"push.force": (-2.0, 2.0)})
+    assert not choice.met
+    assert choice.error_estimate is not None
+    assert choice.error_estimate > 1e-3
+    assert choice.model.discretisation == discretise(coarse)
+
+
+def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
+    """A rod held at both ends: six constraints, and six modes leave nothing that moves."""
+    held = scene(
+        push(), supports=[{"rod": "rod", "kind": "clamped", "position": [0.1, 0, 0.7], "quaternion": [1, 0, 0, 0]}]
+    )
+    assert freedom(build(held, discretise(held, 2, 6))) == 0
+    assert freedom(build(held, discretise(held, 3, 8))) == 3
