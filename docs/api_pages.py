@@ -146,6 +146,7 @@ CONCEPTS = (
             "lifted",
             "Lifted",
             "embedded",
+            "judged",
             "stability_margin",
             "motion_stage",
             "MotionStage",

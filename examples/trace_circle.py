@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import Model, Solution, build, scene_from_dict, solve
-from cosserat_casadi.control import lifted
+from cosserat_casadi.control import judged, lifted
 
 LENGTH, RADIUS, LARGEST = 0.10, 0.03, 6.0
 """Length of the finger and radius of the circle, m; largest tension, N."""
@@ -50,7 +50,7 @@ def finger() -> Model:
                 "schema": 1,
                 "title": "A finger that traces a circle",
                 "inputs": [f"{tendon['name']}.tension" for tendon in tendons],
-                "accuracy": {"modes": 4},
+                "accuracy": {"modes": 4, "tolerance": 1e-3},
                 "rods": [rod],
                 "loads": [weight],
                 "actuators": tendons,
@@ -80,10 +80,10 @@ def trace(model: Model, stages: int) -> tuple[np.ndarray, list[Solution]]:
     found = opti.solve()
     tensions_found = np.clip(np.reshape(found.value(tensions), (3, stages)), 0.0, LARGEST)
     starts = [np.asarray(found.value(state.x)) for state in states]
-    equilibria = [
-        solve(model, dict(zip(model.inputs.names, column, strict=True)), start=start, raise_on_failure=True)
-        for column, start in zip(tensions_found.T, starts, strict=True)
-    ]
+    equilibria = [judged(model, start, column) for column, start in zip(tensions_found.T, starts, strict=True)]
+    for k, equilibrium in enumerate(equilibria):
+        if not equilibrium.converged or equilibrium.within_tolerance is False:
+            raise SystemExit(f"stage {k}: {equilibrium.message}")
     return tensions_found.T, equilibria
 
 
@@ -147,6 +147,8 @@ def main() -> None:
     effort = float(np.mean(np.sum(tensions**2, axis=1)))
     stable = sum(solution.stable is True for solution in equilibria)
     print(f"mean square tension {effort:.4g} N², largest {tensions.max():.4g} N; {stable} of {len(tensions)} stable")
+    error = max(solution.error_estimate for solution in equilibria)
+    print(f"estimated error of the tips at most {error:.1g} of the length")
     print(f"wrote {arguments.output}")
     if arguments.animation:
         animate(tensions, equilibria, arguments.animation)

@@ -5,6 +5,7 @@ from cosserat_casadi.control.embedding import Lifted, embedded, lifted
 from cosserat_casadi.control.inverse import inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
 from cosserat_casadi.control.inverse_result import Inverse
+from cosserat_casadi.control.judgement import judged
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.targets import Gap
 from cosserat_casadi.motion.stage import MotionStage, StageEquations, motion_stage
@@ -24,6 +25,7 @@ __all__ = [
     "gauss",
     "inverse",
     "inverse_scene",
+    "judged",
     "lifted",
     "motion_stage",
     "radau",

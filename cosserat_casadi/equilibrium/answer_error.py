@@ -117,14 +117,19 @@ def _tolerance_note(solution: Solution) -> str:
         return ""
     accuracy = solution.model.scene.accuracy
     error = solution.shape_error_estimate if accuracy.shape else solution.error_estimate
-    remedy = "the modes were chosen for other inputs: choose them for the range of these inputs."
-    if accuracy.fixed:
-        remedy = "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+    advice = remedy(solution)
     if error == UNKNOWN:
-        return f" Its error is not known, and may be as large as the rod; {remedy}"
+        return f" Its error is not known, and may be as large as the rod; {advice}"
     return (
-        f" Its estimated error, {error:.2g} of the length, is above the tolerance of {accuracy.tolerance:g}; {remedy}"
+        f" Its estimated error, {error:.2g} of the length, is above the tolerance of {accuracy.tolerance:g}; {advice}"
     )
+
+
+def remedy(solution: Solution) -> str:
+    """What brings an answer above the tolerance below it."""
+    if solution.model.scene.accuracy.fixed:
+        return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+    return "the modes were chosen for other inputs: choose them for the range of these inputs."
 
 
 def answer_error(solution: Solution) -> AnswerError:

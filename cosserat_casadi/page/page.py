@@ -41,12 +41,24 @@ def export_page(solution: Solution, file: Path) -> Path:
     refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    content = page_text(page_facts(solution), [asset("wasm_robot.js")], module).encode()
+    content = page_text(
+        {**page_facts(solution), "chosenFor": chosen_for(solution)}, [asset("wasm_robot.js")], module
+    ).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
         raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
     write_atomically(file, content)
     return file
+
+
+def chosen_for(solution: Solution) -> list[list[float]] | None:
+    """Ends of each input between which the error of the modes was judged: the scene's own inputs, shape (inputs, 2).
+
+    None where no tolerance has a meaning, or nobody judged.
+    """
+    if solution.within_tolerance is None:
+        return None
+    return [[value, value] for value in solution.inputs.tolist()]
 
 
 def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
+from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -34,3 +35,22 @@ def state_of(found: Solution | CompiledSolution, drawn: FloatArray, *, anew: boo
         "iterations": found.iterations,
         "drawn": drawn.tolist(),
     }
+
+
+def accuracy_of(solution: Solution | None) -> dict[str, Any]:
+    """The estimated error of an equilibrium for a page: in words, and whether it is within the tolerance.
+
+    Args:
+        solution: with its estimates; None where there is no equilibrium.
+    """
+    if solution is None or solution.within_tolerance is None:
+        return {"within": None, "text": "", "refines": False}
+    accuracy = solution.model.scene.accuracy
+    error = solution.shape_error_estimate if accuracy.shape else solution.error_estimate
+    if error is None or not solution.converged:
+        return {"within": False, "text": solution.message, "refines": False}
+    text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
+    if not solution.within_tolerance:
+        text += " " + remedy(solution)
+    refines = not solution.within_tolerance and not accuracy.fixed and not solution.model.scene.touches_exactly
+    return {"within": solution.within_tolerance, "text": text, "refines": refines}

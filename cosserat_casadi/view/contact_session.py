@@ -18,7 +18,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.drawn_model import drawn_numbers
 from cosserat_casadi.page.facts import page_facts
-from cosserat_casadi.view.answers import stacked_inputs, state_of
+from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 
 ALONG_LINE = 25
 """Points at which a stretch of contact is drawn."""
@@ -81,6 +81,14 @@ class ContactSession:
         if smallest is None or not self._present.converged:
             return None
         return [smallest]
+
+    def accuracy(self) -> dict[str, Any]:
+        """The estimated error of the present equilibrium, as :meth:`Session.accuracy` tells it."""
+        if not self._present.converged:
+            return accuracy_of(None)
+        given = self._present.model.inputs.split(self._present.inputs)
+        values = {name: given[name] for name in self.model.inputs.names}
+        return accuracy_of(solve(self.model, values, start=self._present))
 
     def _accepted(self, given: FloatArray, start: Solution) -> dict[str, Any]:
         if np.all(np.isfinite(given)):

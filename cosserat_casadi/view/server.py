@@ -95,6 +95,12 @@ class Desk:
         if name == "motion" and isinstance(session, Session):
             # It may take a minute, in which the robot can be moved: it has a model of its own.
             return _refusable(session.motion)
+        if name == "refined" and isinstance(session, Session):
+            # The robot can be moved while modes are chosen: what it is then refined for counts no more.
+            inputs = question.inputs(session.input_count)
+            with self._lock:
+                near = session.present
+            return _refusable(lambda: session.refined(inputs, near))
         with self._lock:
             if name in ("move", "reset"):
                 inputs = question.inputs(session.input_count)
@@ -104,6 +110,8 @@ class Desk:
                 return session.derivatives()
             if name == "eigenvalues":
                 return session.eigenvalues()
+            if name == "accuracy":
+                return session.accuracy()
             if name == "reach" and isinstance(session, Session):
                 pose = question.pose(_pose_names(session))
                 position = question.position()

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.codegen.compiler import Progress
@@ -20,6 +21,7 @@ from cosserat_casadi.codegen.export import export
 from cosserat_casadi.control.inverse import search
 from cosserat_casadi.control.inverse_result import with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
+from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
@@ -30,10 +32,10 @@ from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.modes import modes_of
 from cosserat_casadi.motion.resolve import simulate_scene
 from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.page.drawn_model import DrawnModel
+from cosserat_casadi.page.drawn_model import DrawnModel, drawn_numbers
 from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.ranges import movable, sliders
-from cosserat_casadi.view.answers import stacked_inputs, state_of
+from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 from cosserat_casadi.view.contact_session import ContactSession
 
 NAME = "viewed"
@@ -55,6 +57,9 @@ FEWEST_FRAMES, MOST_FRAMES = 100, 600
 
 SAME = 1e-5
 """Largest difference of unknowns between two solves of one equilibrium."""
+
+REFINED_SHARE = 0.5
+"""Share of the tolerance for which modes are chosen at the hand: the estimate lies above the error by a factor."""
 
 ELSEWHERE = "These inputs have an equilibrium at the point, and lead the robot to another one."
 
@@ -121,6 +126,49 @@ class Session:
         model = self.first.model
         jacobian = model.path_jacobian(self._present.x, self._inputs, 1.0).full()
         return list(admissible_eigenvalues(jacobian, variations(model)).tolist())
+
+    def accuracy(self) -> dict[str, Any]:
+        """The estimated error of the present equilibrium, in words, and whether it is within the tolerance.
+
+        Returns:
+            ``within``: whether it is; None where no tolerance has a meaning, or there is no equilibrium. ``text``: a
+            sentence for the hand. ``refines``: whether :meth:`refined` may do better.
+        """
+        if self._present is None or not self._present.converged:
+            return accuracy_of(None)
+        model = self.first.model
+        return accuracy_of(solve(model, self._inputs, start=self._present.x))
+
+    def refined(self, inputs: Sequence[float | None], near: FloatArray) -> dict[str, Any]:
+        """The equilibrium for these inputs to the tolerance, on modes that are chosen for them.
+
+        Args:
+            inputs: stacked.
+            near: unknowns of the equilibrium beside it, from which Newton's method starts: it stays on the branch.
+
+        Returns:
+            ``within`` and ``text`` as of :meth:`accuracy`, and ``drawn``, what is drawn of it; None where it is not
+            within the tolerance either.
+        """
+        model = self.first.model
+        given = stacked_inputs(inputs)
+        values = model.inputs.unpack(given)
+        accuracy = model.scene.accuracy
+        finer = accuracy.model_copy(update={"tolerance": REFINED_SHARE * accuracy.tolerance})
+        chosen = solve_scene(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
+        refined = build(model.scene, chosen)
+        coarse = replace(self.first, inputs=given, x=near)
+        found = solve(refined, values, start=prolong(coarse, refined))
+        answer = accuracy_of(found)
+        if not found.within_tolerance:
+            return {**answer, "drawn": None}
+        text = f"Drawn with modes that are chosen for these inputs: {refined.size} unknowns. {answer['text']}"
+        return {**answer, "text": text, "drawn": drawn_numbers(model, found).tolist()}
+
+    @property
+    def present(self) -> FloatArray:
+        """Unknowns of the present equilibrium; those of the first where there is none."""
+        return self._x
 
     def reach(self, pose: Mapping[str, str], position: Sequence[float]) -> dict[str, Any]:
         """Inputs that bring a tip or a body to a point, as ``inverse`` finds them from where the robot is.

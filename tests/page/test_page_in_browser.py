@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, solve
-from cosserat_casadi.page.page import LARGEST, export_page
+from cosserat_casadi.page.page import LARGEST, chosen_for, export_page
 from tests.browser import browser
 from tests.page.pages_made import strip, wasm_compiler
 
@@ -120,6 +120,22 @@ def test_an_unstable_equilibrium_is_said_in_words(page: Any) -> None:
     assert page.evaluate("window.robot.stable") is False
     assert "not stable" in page.inner_text("#status")
     assert page.get_attribute("#status", "class") == "warn"
+
+
+def test_inputs_that_modes_were_not_chosen_for_are_said(page: Any, solution: Solution) -> None:
+    own = solution.inputs.tolist()
+    asked = solution.model.scene.accuracy.model_copy(update={"tolerance": 1.0})
+    asked.model_fields_set.add("tolerance")
+    judged = solve(build(solution.model.scene.model_copy(update={"accuracy": asked}), solution.model.discretisation))
+    facts = {"layout": [{"first": 0, "rows": 1, "columns": 1}], "chosenFor": chosen_for(judged)}
+    answer = "([facts, inputs]) => new WasmRobot(facts, null).accuracy(inputs)"
+    assert page.evaluate(answer, [facts, own])["within"] is True
+    away = page.evaluate(answer, [facts, [own[0] + 1.0, *own[1:]]])
+    assert away["within"] is False
+    assert "chosen for other inputs" in away["text"]
+    # Of modes that the scene fixes without a tolerance nothing is asked.
+    assert chosen_for(solution) is None
+    assert page.evaluate(answer, [{**facts, "chosenFor": None}, own])["within"] is None
 
 
 def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None:

@@ -94,6 +94,19 @@ def test_a_number_that_is_none_is_said_and_forgotten(session: ContactSession) ->
     assert session.eigenvalues()[0] > 0
 
 
+def test_the_estimated_error_is_told(session: ContactSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    session.move([1.3, 0.0, 0.0])
+    assert session.accuracy()["within"] is None
+    asked = session.model.scene.accuracy.model_copy(update={"tolerance": 1e-9})
+    asked.model_fields_set.add("tolerance")
+    strict = session.model.scene.model_copy(update={"accuracy": asked})
+    monkeypatch.setattr(session, "model", build(strict, session.model.discretisation))
+    told = session.accuracy()
+    assert told["within"] is False
+    assert not told["refines"]
+    assert "of the length, asked 1e-09" in told["text"]
+
+
 def test_obstacles_are_drawn_where_they_are(session: ContactSession, first: Solution) -> None:
     facts = page_facts(first, session.model)
     assert [slider["input"] for slider in facts["sliders"]] == ["push.force"] * 3

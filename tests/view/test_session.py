@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Scene, SceneError, build, scene_from_dict, solve, solve_scene
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.view.session import ELSEWHERE, PERIOD_FRAMES, Session, opened
 from tests.page.pages_made import FEW
@@ -155,3 +155,47 @@ def test_without_mass_there_is_a_refusal() -> None:
     session.reset(session.first.inputs.tolist())
     with pytest.raises(SceneError, match="mass"):
         session.modes()
+
+
+@pytest.fixture(scope="module")
+def planar() -> Session:
+    """A rod whose modes were chosen for a push within a plane."""
+    pushed = scene_from_dict(
+        {
+            "schema": 1,
+            "rods": [rod("kirchhoff")],
+            "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.3, 0.0, -0.2]}],
+            "accuracy": {"tolerance": 1e-4},
+            "inputs": ["push.force"],
+        }
+    )
+    return opened(solve_scene(pushed))
+
+
+def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(planar: Session) -> None:
+    planar.reset(planar.first.inputs.tolist())
+    at_home = planar.accuracy()
+    assert at_home["within"] is True
+    assert not at_home["refines"]
+    planar.move([0.3, 3.0, -0.2])
+    aside = planar.accuracy()
+    assert aside["within"] is False
+    assert aside["refines"]
+    assert "of the length, asked 0.0001: the modes were chosen for other inputs" in aside["text"].replace(". ", ": ")
+
+
+def test_the_robot_is_refined_where_the_hand_rests(planar: Session) -> None:
+    inputs = [0.3, 3.0, -0.2]
+    rough = tip(planar.reset(inputs))
+    refined = planar.refined(inputs, planar.present)
+    assert refined["within"] is True
+    exact = solve_scene(planar.first.model.scene, {"push.force": inputs}).tip().position[0]
+    assert_allclose(tip(refined), exact, rtol=0, atol=1e-4 * planar.first.model.scene.rods[0].length)
+    assert np.linalg.norm(rough - exact) > 1e-3
+
+
+def test_no_error_is_told_where_nobody_asked_for_one(session: Session) -> None:
+    session.move(session.first.inputs.tolist())
+    assert session.accuracy()["within"] is None
+    session.move([None, *session.first.inputs.tolist()[1:]])
+    assert session.accuracy()["within"] is None

@@ -101,6 +101,30 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     assert "In equilibrium" in page.inner_text("#status")
 
 
+def test_a_robot_beyond_the_tolerance_is_said_to_be_so_and_refined(page: Any, server: RobotServer) -> None:
+    told = {"within": False, "text": "Estimated error 0.04 of the length.", "refines": True}
+    page.evaluate(
+        """(told) => {
+          window.asked = { accuracy: ServerRobot.prototype.accuracy, refined: ServerRobot.prototype.refined };
+          ServerRobot.prototype.accuracy = async () => told;
+          ServerRobot.prototype.refined = () => new Promise((resolve) => { window.answerRefined = resolve; });
+        }""",
+        told,
+    )
+    page.evaluate("window.robot.setInput('front.tension', 4.0)")
+    page.wait_for_function("() => window.answerRefined")
+    assert "In equilibrium, stable, beyond the tolerance" in page.inner_text("#status")
+    assert "Estimated error 0.04" in page.inner_text("#status")
+    assert page.evaluate("document.getElementById('status').className") == "warn"
+    page.evaluate(
+        """() => window.answerRefined(
+          { within: true, text: "Drawn with modes.", drawn: window.robot.state.drawn.map((value) => value) })"""
+    )
+    page.wait_for_function("() => document.getElementById('status').className === 'good'")
+    assert "Drawn with modes." in page.inner_text("#status")
+    page.evaluate("() => Object.assign(ServerRobot.prototype, window.asked)")
+
+
 def request(server: RobotServer, method: str, path: str, body: str = "", **headers: str) -> tuple[int, bytes]:
     connection = http.client.HTTPConnection(HOST, server.server_port, timeout=30)
     connection.request(method, path_of(server, path), body, headers)

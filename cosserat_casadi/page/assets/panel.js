@@ -152,6 +152,7 @@ class Panel {
     this.inputs = inputs;
     this.state = state;
     this.eigenvalues = null;
+    this.accuracy = null;
     this.scenery.draw(state.drawn, state.found, state.contacts);
     this.showStatus();
     this.showReadings();
@@ -174,7 +175,28 @@ class Panel {
     const eigenvalues = await this.robot.eigenvalues();
     if (state !== this.state) return;
     this.eigenvalues = eigenvalues;
-    // The verdict waits while something else is said, as of a motion that is played.
+    this.showVerdict();
+    const accuracy = await this.robot.accuracy(this.inputs);
+    if (state !== this.state) return;
+    this.accuracy = accuracy;
+    this.showVerdict();
+    if (accuracy.refines) await this.refine(state);
+  }
+
+  // Draw the equilibrium on modes that are chosen for the inputs at which the hand rests.
+  async refine(state) {
+    const refined = await this.robot.refined(this.inputs);
+    if (state !== this.state || !refined.drawn) return;
+    state.drawn = refined.drawn;
+    this.accuracy = refined;
+    if (this.elsewhere) return;
+    this.scenery.draw(state.drawn, state.found, state.contacts);
+    this.showReadings();
+    this.showStatus();
+  }
+
+  // The verdict waits while something else is said, as of a motion that is played.
+  showVerdict() {
     if (!this.elsewhere) this.showStatus();
   }
 
@@ -196,13 +218,17 @@ class Panel {
     const jump = anew ? " The robot could not be followed here: it has jumped, and was solved anew from the unloaded one." : "";
     if (this.state.met === false) return ["warn", "✓ In equilibrium, the point is not reached", text];
     const steps = `${this.state.iterations} Newton ${this.state.iterations === 1 ? "step" : "steps"}.`;
-    if (!this.eigenvalues) return [anew ? "warn" : "good", "✓ In equilibrium", `${text}${jump} ${steps}`];
+    const rough = this.accuracy && this.accuracy.within === false;
+    const accuracy = this.accuracy && this.accuracy.text ? ` ${this.accuracy.text}` : "";
+    const kind = anew || rough ? "warn" : "good";
+    const missed = rough ? ", beyond the tolerance" : "";
+    if (!this.eigenvalues) return [kind, `${rough ? "!" : "✓"} In equilibrium${missed}`, `${text}${accuracy}${jump} ${steps}`];
     const rounding = 1e-10 * Math.max(1, ...this.eigenvalues.map(Math.abs));
     const negative = this.eigenvalues.some((value) => value < -rounding);
     const zero = this.eigenvalues.some((value) => Math.abs(value) <= rounding);
-    if (negative) return ["warn", "! In equilibrium, but not stable", `A real robot leaves it at the slightest push: some variation releases energy.${jump}`];
-    if (zero) return ["warn", "~ In equilibrium, neutral", `Some variation costs no energy.${jump}`];
-    return [anew ? "warn" : "good", "✓ In equilibrium, stable", `${text}${jump} ${steps}`];
+    if (negative) return ["warn", "! In equilibrium, but not stable", `A real robot leaves it at the slightest push: some variation releases energy.${accuracy}${jump}`];
+    if (zero) return ["warn", "~ In equilibrium, neutral", `Some variation costs no energy.${accuracy}${jump}`];
+    return [kind, `${rough ? "!" : "✓"} In equilibrium, stable${missed}`, `${text}${accuracy}${jump} ${steps}`];
   }
 
   showStatus() {

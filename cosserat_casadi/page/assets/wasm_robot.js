@@ -76,6 +76,13 @@ class WasmRobot {
     const entries = this.view(this.library.jacobian(), n * n);
     return secondVariation((i, j) => entries[i + n * j], allowed);
   }
+
+  // Whether the inputs are those that the modes were chosen for: beyond them the error is not known.
+  async accuracy(inputs) {
+    const within = this.facts.chosenFor && this.facts.chosenFor.every(([least, most], i) => inputs[i] >= least && inputs[i] <= most);
+    const text = within === false ? "The modes were chosen for other inputs, and the error is not known here: solve the scene at these inputs." : "";
+    return { within, text, refines: false };
+  }
 }
 
 function openRobot(facts) {

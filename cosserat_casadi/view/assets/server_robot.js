@@ -31,6 +31,17 @@ class ServerRobot {
     return this.ask("eigenvalues");
   }
 
+  // The estimated error, and whether it is within the tolerance.
+  accuracy() {
+    return this.ask("accuracy");
+  }
+
+  // The same inputs on modes that are chosen for them.
+  async refined(inputs) {
+    const answer = await this.ask("refined", { inputs: [...inputs] });
+    return { ...answer, drawn: answer.drawn && Float64Array.from(answer.drawn) };
+  }
+
   // Inputs that bring a tip or a body to a point, as `inverse` finds them.
   reach(pose, position) {
     return this.ask("reach", { pose, position });
