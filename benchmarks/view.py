@@ -18,6 +18,7 @@ import typer
 from doc_tables import put, table
 
 from cosserat_casadi import read_scene, solve_scene
+from cosserat_casadi.view.questions import Question
 from cosserat_casadi.view.server import RobotServer
 from cosserat_casadi.view.session import opened
 from tests.browser import browser
@@ -81,7 +82,7 @@ def timed_answers(server: RobotServer) -> float:
     began = time.process_time()
     for i in range(MOVES):
         inputs[moved] = start * (1 + 0.1 * (i % 2))
-        desk.answer("move", {"inputs": inputs})
+        desk.answer("move", Question({"inputs": inputs}))
     return (time.process_time() - began) / MOVES
 
 
