@@ -108,11 +108,17 @@ class Estimate:
         return f"{int(np.count_nonzero(self.found))} of {len(self.cases)} rows found."
 
     @property
+    def within_tolerance(self) -> bool | None:
+        """Whether every case that was solved again is within the scene's tolerance; None where none was."""
+        if not self.checked:
+            return None
+        tolerance = self.model.scene.accuracy.tolerance
+        return all(error is not None and error <= tolerance for _, error in self.checked)
+
+    @property
     def holds(self) -> bool:
         """Whether some case was found, and every one that was looked at is within the scene's tolerance."""
-        tolerance = self.model.scene.accuracy.tolerance
-        within = all(error is not None and error <= tolerance for _, error in self.checked)
-        return within and bool(np.any(self.found))
+        return self.within_tolerance is not False and bool(np.any(self.found))
 
 
 REASONS = {

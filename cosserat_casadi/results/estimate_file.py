@@ -34,6 +34,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
             "units": list(found.units),
             "outcomes": found.counts,
             "unseen": [{"direction": direction, "rows": count} for direction, count in found.unseen.items()],
+            "within_tolerance": found.within_tolerance,
             "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
             "warnings": list(found.warnings),
             "discretisation": discretisation_entries(found.model),

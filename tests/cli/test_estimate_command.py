@@ -45,6 +45,7 @@ def test_what_is_felt_is_written(folder: Path, capsys: pytest.CaptureFixture[str
     assert data["units"] == ["N"] * 3 + ["N/m"] * 4
     assert np.array(data["rows"][0]["covariance"]).shape == (7, 7)
     assert len(data["checked"]) == 3
+    assert data["within_tolerance"] is True
     assert figure.stat().st_size > 0
     assert "found: 6 rows" in capsys.readouterr().out
     table = folder / "felt.csv"
