@@ -23,7 +23,7 @@ from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.strain import DiscreteRod
 
-SAFETY = 1.3
+SAFETY = 1.1
 """Factor on the change that a richer model makes, which is not exact either."""
 
 MOST_SWEEPS = 4
