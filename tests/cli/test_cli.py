@@ -468,7 +468,8 @@ def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> No
     assert manifest["inputs"][0]["value"] == [0.1, 0, 0]
     kept = read_scene(wire / "c" / "scene.toml")
     assert kept.rods[0].length == 0.3
-    assert kept == read_scene(wire / "wire.toml", (*changes, "push.force=[0.1,0,0]", "wire.length=0.3"))
+    written = (*changes, 'accuracy.rotation="magnus6"', "push.force=[0.1,0,0]", "wire.length=0.3")
+    assert kept == read_scene(wire / "wire.toml", written)
 
 
 def test_export_refuses_name_and_folder_at_once(wire: Path) -> None:
