@@ -7,6 +7,7 @@ Scene ─ simulate_scene ─▶ Motion within tolerance in space and time
 
 from importlib.metadata import version
 
+from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
@@ -65,6 +66,7 @@ from cosserat_casadi.tubes.solve import solve_tubes
 __version__ = version("cosserat-casadi")
 
 __all__ = [
+    "Choice",
     "Compiled",
     "CompiledContact",
     "CompiledContactSolution",
@@ -111,6 +113,7 @@ __all__ = [
     "acados_expressions",
     "all_equilibria",
     "build",
+    "choose",
     "compiled_motion_stage",
     "compiled_stage",
     "discretise",

@@ -31,7 +31,7 @@ SEED = 31
 """Of the random points, so that a choice can be repeated."""
 
 SAMPLES = 16
-"""Random corners that are solved; as many random points too, and fresh ones once the tolerance is kept everywhere."""
+"""Random corners that are solved, and random points too; as many fresh points are tried in the end."""
 
 WORST = 3
 """Points with the largest errors whose lack is made up at once."""
@@ -328,7 +328,9 @@ def union(several: Iterable[Chosen]) -> Chosen:
 
 
 def with_choice(scene: scenes.Scene, chosen: Chosen, ranges: CaseRanges) -> scenes.Scene:
-    """The scene with a discretisation fixed, and what it was chosen for."""
+    """The scene with a discretisation fixed, and what it was chosen for; as it is where it fixes its own."""
+    if scene.accuracy.fixed:
+        return scene
     fixed = with_discretisation(scene, chosen)
     return with_accuracy(fixed, chosen_for=list(ranges.described) or None)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
@@ -41,6 +42,7 @@ def export(
     name: str | None = None,
     *,
     error_estimate: float | None = None,
+    verified: Verified | None = None,
     derivatives: bool = False,
     dynamics: bool = False,
     stability: bool = False,
@@ -56,6 +58,7 @@ def export(
         directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
         name: what every symbol begins with, a C identifier.
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
+        verified: over which ranges the discretisation keeps the tolerance, for header, README and manifest.
         derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
             :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again.
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
@@ -90,7 +93,15 @@ def export(
         names = scene_names(chosen, without_contacts(model.scene))
         files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
     else:
-        files = folder_files(model, chosen, error_estimate, **asked, period=period, estimate_errors=estimate_errors)
+        files = folder_files(
+            model,
+            chosen,
+            error_estimate,
+            verified=verified,
+            **asked,
+            period=period,
+            estimate_errors=estimate_errors,
+        )
     write_folder(folder, files, stale)
     return folder
 
@@ -124,6 +135,7 @@ def folder_files(
     name: str,
     error_estimate: float | None = None,
     *,
+    verified: Verified | None = None,
     derivatives: bool = False,
     dynamics: bool = False,
     stability: bool = False,
@@ -137,6 +149,7 @@ def folder_files(
         model: what is exported.
         name: the library.
         error_estimate: as for :func:`export`.
+        verified: as for :func:`export`.
         derivatives: as for :func:`export`.
         dynamics: as for :func:`export`.
         stability: as for :func:`export`.
@@ -160,6 +173,7 @@ def folder_files(
         parts,
         generated,
         error_estimate,
+        verified=verified,
         derivatives=derivatives,
         stability=stability,
         motion=motion,
@@ -178,7 +192,7 @@ def folder_files(
     }
     if derivatives:
         files |= _derivative_source(model, names)
-    described = manifest(model, names, functions, error_estimate)
+    described = manifest(model, names, functions, error_estimate, verified)
     if motion is not None:
         described["motion"] = motion_entry(model)
     described["turn"] = budget.entry

@@ -13,6 +13,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
@@ -74,6 +75,7 @@ def write_fmu(
     name: str,
     *,
     error_estimate: float | None = None,
+    verified: Verified | None = None,
     compiler: str | None = None,
     progress: Progress | None = None,
 ) -> Path:
@@ -89,6 +91,7 @@ def write_fmu(
         path: the file, ending in ``.fmu``.
         name: what every symbol begins with, a C identifier.
         error_estimate: as for :func:`cosserat_casadi.export`.
+        verified: as for :func:`cosserat_casadi.export`.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
         progress: told what is compiled, how many files are, and of how many.
 
@@ -106,7 +109,7 @@ def write_fmu(
     if simulation is not None and simulation.step is not None:
         step = simulation.step
     listed = variables(model, outputs.entries, step)
-    texts = folder_files(model, name, error_estimate, dynamics=True, estimate_errors=False)
+    texts = folder_files(model, name, error_estimate, verified=verified, dynamics=True, estimate_errors=False)
     sources = {file: text for file, text in texts.items() if file.endswith((".c", ".h")) and "_demo." not in file}
     sources |= _fmu_sources(model, names, outputs, step)
     token = _token(sources)

@@ -10,6 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
@@ -111,6 +112,7 @@ def library_sources(
     generated: Mapping[str, str],
     error_estimate: float | None,
     *,
+    verified: Verified | None = None,
     derivatives: bool = False,
     stability: bool = False,
     motion: MotionInC | None = None,
@@ -125,13 +127,14 @@ def library_sources(
         parts: the equations of an assembly in parts.
         generated: source and header of the kernels by file name.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
+        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
         derivatives: whether the folder holds the derivatives too.
         stability: whether it holds the stability of equilibria.
         motion: the equations of motion, where the folder has them.
         rows: what solves batches side by side, where the folder has it.
         budget: what a turn of a control loop may take by default.
     """
-    words = _words(model, names, parts, generated, error_estimate, motion, rows)
+    words = _words(model, names, parts, generated, _accuracy_note(model, error_estimate, verified), motion, rows)
     words |= {
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
@@ -197,7 +200,7 @@ def _words(
     names: Names,
     parts: Assembled | None,
     generated: Mapping[str, str],
-    error_estimate: float | None,
+    accuracy_note: str,
     motion: MotionInC | None,
     rows: InLanes | None,
 ) -> dict[str, Any]:
@@ -236,7 +239,7 @@ def _words(
         "version": version("cosserat-casadi"),
         **version_words(),
         "casadi_version": ca.CasadiMeta.version(),
-        "accuracy_note": _accuracy_note(model, error_estimate),
+        "accuracy_note": accuracy_note,
     }
 
 
@@ -426,8 +429,10 @@ def _file_rows(
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 
 
-def _accuracy_note(model: Model, error_estimate: float | None) -> str:
+def _accuracy_note(model: Model, error_estimate: float | None, verified: Verified | None) -> str:
     tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
+    if verified is not None:
+        return f"{tolerance} {verified.sentence}"
     if error_estimate is None:
         return f"{tolerance} How far the discretisation here is from that was not estimated."
     return (

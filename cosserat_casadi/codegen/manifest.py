@@ -13,6 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.compiler import EXPORT_ANEW
 from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
@@ -116,7 +117,13 @@ def input_count(described: Mapping[str, Any]) -> int:
     return sum(len(entry["value"]) for entry in described["inputs"])
 
 
-def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: float | None) -> dict[str, Any]:
+def manifest(
+    model: Model,
+    names: Names,
+    kernels: list[Kernel],
+    error_estimate: float | None,
+    verified: Verified | None = None,
+) -> dict[str, Any]:
     """The manifest as plain data.
 
     Args:
@@ -124,6 +131,7 @@ def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: 
         names: what things are called.
         kernels: the generated kernels.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
+        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
@@ -139,6 +147,7 @@ def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: 
         "tolerance": model.scene.accuracy.tolerance,
         "tolerance_binds": model.scene.accuracy.binds,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
+        **({} if verified is None else {"verified": verified.plain()}),
         "functions": [_function_entry(kernel, known) for kernel in kernels],
     }
 

@@ -474,7 +474,8 @@ def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> No
     assert manifest["inputs"][0]["value"] == [0.1, 0, 0]
     kept = read_scene(wire / "c" / "scene.toml")
     assert kept.rods[0].length == 0.3
-    assert kept == read_scene(wire / "wire.toml", (*changes, "push.force=[0.1,0,0]", "wire.length=0.3"))
+    written = (*changes, 'accuracy.rotation="magnus6"', "push.force=[0.1,0,0]", "wire.length=0.3")
+    assert kept == read_scene(wire / "wire.toml", written)
 
 
 def test_export_refuses_name_and_folder_at_once(wire: Path) -> None:
@@ -647,3 +648,34 @@ def test_command_that_is_written_wrongly_is_told_where_to_look(
     last = done.stderr.splitlines()[-1]
     assert last.startswith("Help: ")
     assert last.endswith(helps)
+
+
+def test_an_export_says_for_which_ranges_its_modes_were_chosen(wire: Path) -> None:
+    """Those that are asked for, in the README, the manifest and the scene of the folder."""
+    asked = [f"push.force.{axis}=-0.1:0.1" for axis in "xyz"]
+    options = [word for text in asked for word in ("--range", text)]
+    done = cosserat("export", "wire.toml", "--output", "c", "--set", "accuracy.tolerance=1e-3", *options, cwd=wire)
+    assert done.returncode == 0, done.stdout + done.stderr
+    verified = json.loads((wire / "c" / "manifest.json").read_text())["verified"]
+    assert set(asked) <= set(verified["ranges"])
+    assert verified["error_estimate"] <= 1e-3
+    assert verified["without_equilibrium"] == 0
+    readme = (wire / "c" / "README.md").read_text()
+    assert f"was verified by {verified['solves']} solves over" in readme
+    assert "judged at the scene's own inputs" not in readme
+    kept = read_scene(wire / "c" / "scene.toml")
+    assert kept.accuracy.chosen_for is not None
+    assert list(kept.accuracy.chosen_for) == verified["ranges"]
+
+
+def test_an_export_refuses_ranges_and_writes_nothing(wire: Path) -> None:
+    for text, sentence in (
+        ("push.force.x=1:1", "two different ends"),
+        ("push.force.x=1:-1", "the lower end first"),
+        ("push.force.x=0:inf", "no two finite numbers"),
+        ("pull.force.x=0:1", "is not an input or a parameter"),
+    ):
+        refused = cosserat("export", "wire.toml", "--output", "c", "--range", text, cwd=wire)
+        assert refused.returncode == 2, refused.stdout + refused.stderr
+        assert sentence in " ".join(refused.stderr.split())
+        assert not (wire / "c").exists()

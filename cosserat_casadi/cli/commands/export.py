@@ -11,13 +11,15 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cosserat_casadi.accuracy.choose import with_choice
 from cosserat_casadi.cli.commands.cases import load_cases
+from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_export
+from cosserat_casadi.cli.reports.model import print_choice, print_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -25,11 +27,12 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.load_cases import case_layout
+from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import read_scene
@@ -65,7 +68,8 @@ def export(
         Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
     ] = None,
     ranges: Annotated[
-        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="The same as a range of an input.")
+        list[str] | None,
+        typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input that modes are chosen for."),
     ] = None,
     samples: Annotated[int, typer.Option(min=1, max=10_000, help="Load cases spread over the ranges.")] = 32,
     period: Annotated[
@@ -85,7 +89,8 @@ def export(
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
     is one file that other simulators step.
 
-    Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
+    Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
+    [ranges] or [[bounds]], or their scale; those that the scene fixes are verified over them.
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
@@ -141,8 +146,10 @@ def export(
             "batches": batches,
         }
         check_contact(exported_scene, asked_of_contact)
-    if over is not None or ranges:
-        cases = load_cases(over, ranges or [], samples, case_layout(exported_scene))
+    layout = case_layout(exported_scene)
+    asked_ranges = ends_by_column(ranges or [], layout)
+    if over is not None or (ranges and exported_scene.touches_exactly):
+        cases = load_cases(over, ranges or [], samples, layout)
         check_load_cases(exported_scene, cases)
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
@@ -157,7 +164,16 @@ def export(
         find_wasm_compiler()
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
-    solution = solve_with_progress(exported_scene.held() if moves else exported_scene)
+    solved_scene = exported_scene.held() if moves else exported_scene
+    choice = None
+    verified = None
+    if exported_scene.touches_exactly:
+        solution = solve_with_progress(solved_scene)
+    else:
+        choice = choose_with_progress(solved_scene, asked_ranges)
+        verified = choice.verified
+        solution = solve(choice.model)
+        exported_scene = with_choice(exported_scene, choice.model.discretisation, choice.ranges)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
@@ -165,7 +181,6 @@ def export(
     model = solution.model
     if moves or exported_scene.parameters:
         model = build(exported_scene, model.discretisation, moving=moves)
-    # Folder and FMU keep the estimate, which is for these inputs; tune gives one for a range of them.
     estimate = solution.error_estimate
     if output is not None:
         export_model(
@@ -173,6 +188,7 @@ def export(
             output,
             name,
             error_estimate=estimate,
+            verified=verified,
             derivatives=derivatives,
             dynamics=dynamics,
             stability=stability,
@@ -182,9 +198,11 @@ def export(
             estimate_errors=estimate_errors,
         )
         print_export(console, solution, output)
+        if choice is not None:
+            print_choice(console, choice)
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
-            write_fmu(model, fmu, name, error_estimate=estimate)
+            write_fmu(model, fmu, name, error_estimate=estimate, verified=verified)
         print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
     if page is not None:
         with Console(stderr=True).status("Compiling the page"):

@@ -15,6 +15,7 @@ from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
 from cosserat_casadi.cli.progress import count_display
+from cosserat_casadi.cli.reports.format import discretisation_table
 from cosserat_casadi.cli.reports.model import print_choice, print_tuning
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
@@ -48,6 +49,7 @@ def tune(
         asked = ends_by_column(ranges or [], layout)
         free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
         tuning = choose_with_progress(free, asked, samples)
+        Console().print(discretisation_table(tuning.model))
         print_choice(Console(), tuning)
     elif ranges:
         raise SceneError(Problem("--over", "stands beside --range", "give one of them"))

@@ -85,8 +85,7 @@ def print_tuning(console: Console, tuning: Tuning, layout: CaseLayout, cases: Fl
 
 
 def print_choice(console: Console, choice: Choice) -> None:
-    """Print the discretisation that was chosen for ranges, what they are, and the point that is worst on it."""
-    console.print(discretisation_table(choice.model))
+    """Print what a discretisation was chosen for, and the point that is worst on it."""
     tolerance = choice.scene.accuracy.tolerance
     if choice.met:
         print_plain(console, f"[bold green]All {choice.solves} points of the ranges are within {tolerance:g}.[/]")
