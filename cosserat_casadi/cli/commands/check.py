@@ -7,13 +7,14 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
-from cosserat_casadi.cli.reports.model import print_check
+from cosserat_casadi.cli.reports.model import print_check, print_ranges
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
@@ -48,6 +49,7 @@ def check(
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
     print_check(Console(), build(checked_scene), varying)
+    print_ranges(Console(), input_ranges(checked_scene))
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
