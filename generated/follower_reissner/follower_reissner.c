@@ -178,8 +178,8 @@ void follower_reissner_unpack(const follower_reissner_real *inputs, follower_rei
   memcpy(named->thruster_moment, inputs + FOLLOWER_REISSNER_INPUT_THRUSTER_MOMENT, sizeof named->thruster_moment);
 }
 
-static const follower_reissner_real LEAST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-static const follower_reissner_real LARGEST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const follower_reissner_real LEAST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {-(follower_reissner_real)HUGE_VAL, -(follower_reissner_real)HUGE_VAL, -(follower_reissner_real)HUGE_VAL, -(follower_reissner_real)HUGE_VAL, -(follower_reissner_real)HUGE_VAL, -(follower_reissner_real)HUGE_VAL};
+static const follower_reissner_real LARGEST_INPUTS[FOLLOWER_REISSNER_INPUTS] = {(follower_reissner_real)HUGE_VAL, (follower_reissner_real)HUGE_VAL, (follower_reissner_real)HUGE_VAL, (follower_reissner_real)HUGE_VAL, (follower_reissner_real)HUGE_VAL, (follower_reissner_real)HUGE_VAL};
 
 int follower_reissner_in_range(const follower_reissner_real *inputs) {
   for (int i = 0; i < FOLLOWER_REISSNER_INPUTS; i++) {

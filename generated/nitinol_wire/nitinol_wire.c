@@ -176,8 +176,8 @@ void nitinol_wire_unpack(const nitinol_wire_real *inputs, nitinol_wire_inputs *n
   memcpy(named->push_force, inputs + NITINOL_WIRE_INPUT_PUSH_FORCE, sizeof named->push_force);
 }
 
-static const nitinol_wire_real LEAST_INPUTS[NITINOL_WIRE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-static const nitinol_wire_real LARGEST_INPUTS[NITINOL_WIRE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const nitinol_wire_real LEAST_INPUTS[NITINOL_WIRE_INPUTS] = {-(nitinol_wire_real)HUGE_VAL, -(nitinol_wire_real)HUGE_VAL, -(nitinol_wire_real)HUGE_VAL, -(nitinol_wire_real)HUGE_VAL, -(nitinol_wire_real)HUGE_VAL, -(nitinol_wire_real)HUGE_VAL};
+static const nitinol_wire_real LARGEST_INPUTS[NITINOL_WIRE_INPUTS] = {(nitinol_wire_real)HUGE_VAL, (nitinol_wire_real)HUGE_VAL, (nitinol_wire_real)HUGE_VAL, (nitinol_wire_real)HUGE_VAL, (nitinol_wire_real)HUGE_VAL, (nitinol_wire_real)HUGE_VAL};
 
 int nitinol_wire_in_range(const nitinol_wire_real *inputs) {
   for (int i = 0; i < NITINOL_WIRE_INPUTS; i++) {

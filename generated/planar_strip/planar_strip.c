@@ -175,8 +175,8 @@ void planar_strip_unpack(const planar_strip_real *inputs, planar_strip_inputs *n
   memcpy(named->push_moment, inputs + PLANAR_STRIP_INPUT_PUSH_MOMENT, sizeof named->push_moment);
 }
 
-static const planar_strip_real LEAST_INPUTS[PLANAR_STRIP_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-static const planar_strip_real LARGEST_INPUTS[PLANAR_STRIP_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const planar_strip_real LEAST_INPUTS[PLANAR_STRIP_INPUTS] = {-(planar_strip_real)HUGE_VAL, -(planar_strip_real)HUGE_VAL, -(planar_strip_real)HUGE_VAL, -(planar_strip_real)HUGE_VAL, -(planar_strip_real)HUGE_VAL, -(planar_strip_real)HUGE_VAL};
+static const planar_strip_real LARGEST_INPUTS[PLANAR_STRIP_INPUTS] = {(planar_strip_real)HUGE_VAL, (planar_strip_real)HUGE_VAL, (planar_strip_real)HUGE_VAL, (planar_strip_real)HUGE_VAL, (planar_strip_real)HUGE_VAL, (planar_strip_real)HUGE_VAL};
 
 int planar_strip_in_range(const planar_strip_real *inputs) {
   for (int i = 0; i < PLANAR_STRIP_INPUTS; i++) {

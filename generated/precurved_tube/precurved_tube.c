@@ -177,8 +177,8 @@ void precurved_tube_unpack(const precurved_tube_real *inputs, precurved_tube_inp
   memcpy(named->tissue_moment, inputs + PRECURVED_TUBE_INPUT_TISSUE_MOMENT, sizeof named->tissue_moment);
 }
 
-static const precurved_tube_real LEAST_INPUTS[PRECURVED_TUBE_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-static const precurved_tube_real LARGEST_INPUTS[PRECURVED_TUBE_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const precurved_tube_real LEAST_INPUTS[PRECURVED_TUBE_INPUTS] = {-(precurved_tube_real)HUGE_VAL, -(precurved_tube_real)HUGE_VAL, -(precurved_tube_real)HUGE_VAL, -(precurved_tube_real)HUGE_VAL, -(precurved_tube_real)HUGE_VAL, -(precurved_tube_real)HUGE_VAL};
+static const precurved_tube_real LARGEST_INPUTS[PRECURVED_TUBE_INPUTS] = {(precurved_tube_real)HUGE_VAL, (precurved_tube_real)HUGE_VAL, (precurved_tube_real)HUGE_VAL, (precurved_tube_real)HUGE_VAL, (precurved_tube_real)HUGE_VAL, (precurved_tube_real)HUGE_VAL};
 
 int precurved_tube_in_range(const precurved_tube_real *inputs) {
   for (int i = 0; i < PRECURVED_TUBE_INPUTS; i++) {

@@ -66,9 +66,9 @@ static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
 #define SOLVER_MISSING 12
 #define SOLVER_WATCHED 2
 enum { ERROR_SWEEPS = 4 };
-static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.3;
+static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.1;
 static const precurved_tube_real ERROR_SETTLED = (precurved_tube_real)0.2;
-static const precurved_tube_real ERROR_ENOUGH = (precurved_tube_real)7.692307692307693e-05;
+static const precurved_tube_real ERROR_ENOUGH = (precurved_tube_real)9.09090909090909e-05;
 static const precurved_tube_real ERROR_FASTEST = (precurved_tube_real)0.02;
 static const precurved_tube_real ERROR_SLOWEST = (precurved_tube_real)0.7;
 static const precurved_tube_real ERROR_FLOOR = (precurved_tube_real)2e-14;

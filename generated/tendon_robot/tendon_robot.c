@@ -219,8 +219,8 @@ void tendon_robot_unpack(const tendon_robot_real *inputs, tendon_robot_inputs *n
   memcpy(named->upper_south_tension, inputs + TENDON_ROBOT_INPUT_UPPER_SOUTH_TENSION, sizeof named->upper_south_tension);
 }
 
-static const tendon_robot_real LEAST_INPUTS[TENDON_ROBOT_INPUTS] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, 0, 0, 0, 0};
-static const tendon_robot_real LARGEST_INPUTS[TENDON_ROBOT_INPUTS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+static const tendon_robot_real LEAST_INPUTS[TENDON_ROBOT_INPUTS] = {-(tendon_robot_real)HUGE_VAL, -(tendon_robot_real)HUGE_VAL, -(tendon_robot_real)HUGE_VAL, -(tendon_robot_real)HUGE_VAL, -(tendon_robot_real)HUGE_VAL, -(tendon_robot_real)HUGE_VAL, 0, 0, 0, 0};
+static const tendon_robot_real LARGEST_INPUTS[TENDON_ROBOT_INPUTS] = {(tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL, (tendon_robot_real)HUGE_VAL};
 
 int tendon_robot_in_range(const tendon_robot_real *inputs) {
   for (int i = 0; i < TENDON_ROBOT_INPUTS; i++) {
