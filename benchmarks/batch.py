@@ -19,7 +19,7 @@ from row_cost import drawn_inputs, robot, wire
 from cosserat_casadi import Model, export
 from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.compiled import load
-from cosserat_casadi.codegen.compiled_results import Info
+from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.plain import pointer
 
@@ -36,7 +36,7 @@ def microseconds(model: Model, *, batches: bool) -> float:
     """Processor time of a case."""
     inputs = drawn_inputs(model)[:CASES]
     x = np.zeros((CASES, model.size))
-    infos = (Info * CASES)()
+    infos = (AnswerInfo * CASES)()
     with tempfile.TemporaryDirectory() as folder:
         library = ctypes.CDLL(
             str(load(export(model, Path(folder) / "batch", "batch", batches=batches, estimate_errors=False)).library)

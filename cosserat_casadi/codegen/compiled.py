@@ -17,9 +17,9 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.compiled_motion import CompiledMotion
 from cosserat_casadi.codegen.compiled_results import (
     VERDICTS,
+    AnswerInfo,
     CompiledSolution,
     CompiledStability,
-    Info,
     Sensitivity,
     StabilityInfo,
     solution_of,
@@ -144,7 +144,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         """
         given = self.inputs.stacked(inputs)
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
-        info = Info()
+        info = AnswerInfo()
         p = self.parameters.passed(parameters)
         self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
         return solution_of(x, info, self.tolerance)
@@ -205,7 +205,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         old = self.inputs.stacked(before, "before")
         given = self.inputs.stacked(inputs)
         x = vector(start, self.size, "start").copy()
-        info = Info()
+        info = AnswerInfo()
         old_p = self.parameters.passed(parameters_before)
         p = self.parameters.passed(parameters)
         work = self._workspace()
@@ -233,7 +233,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
         p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
         x = np.zeros((count, self.size))
-        infos = (Info * count)()
+        infos = (AnswerInfo * count)()
         passed = [pointer(p)] if self.parameters.size else []
         side_by_side = lanes_files(self._names.name)[0] in self.manifest["files"]
         work = room(self._function("batch_workspace_size")()) if side_by_side else self._workspace()

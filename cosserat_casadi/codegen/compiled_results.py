@@ -24,8 +24,13 @@ class Info(ctypes.Structure):
         ("jacobians", ctypes.c_int),
         ("residual_norm", ctypes.c_double),
         ("load_factor", ctypes.c_double),
-        ("error_estimate", ctypes.c_double),
     )
+
+
+class AnswerInfo(Info):
+    """The same of a solve whose answer may know its error."""
+
+    _fields_ = (("error_estimate", ctypes.c_double),)
 
 
 class StabilityInfo(ctypes.Structure):
@@ -124,7 +129,7 @@ class Sensitivity:
     bodies: dict[str, FloatArray]
 
 
-def solution_of(x: FloatArray, info: Info, tolerance: float | None = None) -> CompiledSolution:
+def solution_of(x: FloatArray, info: AnswerInfo, tolerance: float | None = None) -> CompiledSolution:
     """A solution from its unknowns and the struct beside them."""
     return CompiledSolution(
         x,

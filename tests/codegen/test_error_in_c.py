@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise, export, load, read_scene, solve
 from cosserat_casadi.codegen.compiled import Compiled
-from cosserat_casadi.codegen.compiled_results import Info
+from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium import answer_error
@@ -75,7 +75,7 @@ def test_unknowns_that_are_no_equilibrium_have_no_error(in_c: Compiled) -> None:
 def test_a_turn_of_a_control_loop_estimates_nothing(in_c: Compiled) -> None:
     start = in_c.solve()
     x = start.x.copy()
-    info = Info(error_estimate=0.5)
+    info = AnswerInfo(error_estimate=0.5)
     library = ctypes.CDLL(str(in_c.library))
     # More than the workspace, and more than the memory of a turn needs.
     workspace, memory = (ctypes.create_string_buffer(ROOM) for _ in range(2))

@@ -248,7 +248,7 @@ def test_starts_inside_and_bars_too_thin_are_refused_by_what_they_are() -> None:
     with pytest.raises(SceneError, match=r"a rod is inside an obstacle by 0\.025"):
         simulate(moving(rod(inside)))
     thin = 'kind = "capsule", from = [0.2, -0.1, -0.03], to = [0.2, 0.1, -0.03], radius = 1e-4'
-    with pytest.raises(SceneError, match=r"obstacles\.bar\.radius.*below 0\.0004 m"):
+    with pytest.raises(SceneError, match=r"obstacles\.bar: its radius.*below 0\.0004 m"):
         simulate(moving(rod(thin)))
 
 

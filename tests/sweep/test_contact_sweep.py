@@ -74,9 +74,9 @@ def test_compiled_rows_of_smooth_contact_are_those_of_python() -> None:
 def test_a_row_starts_from_the_row_before(monkeypatch: pytest.MonkeyPatch) -> None:
     starts = []
 
-    def noted(model, inputs, start=None):  # type: ignore[no-untyped-def]
+    def noted(model, inputs, start=None, estimate_error=True):  # type: ignore[no-untyped-def]
         starts.append(start)
-        return solve(model, inputs, start=start)
+        return solve(model, inputs, start=start, estimate_error=estimate_error)
 
     monkeypatch.setattr("cosserat_casadi.sweep.row_model.solve", noted)
     RowModel(SCENE).solve(np.array([[0.0, 0.0, -0.5], [0.0, 0.0, -0.6]]))
@@ -87,7 +87,7 @@ def test_a_row_starts_from_the_row_before(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_row_whose_contacts_are_not_found_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     unsettled = Outcome.CONTACT_UNSETTLED
 
-    def lost(model, inputs, start=None):  # type: ignore[no-untyped-def]
+    def lost(model, inputs, start=None, estimate_error=True):  # type: ignore[no-untyped-def]
         return replace(solve(model, inputs), outcome=unsettled, message=unsettled.value)
 
     monkeypatch.setattr("cosserat_casadi.sweep.row_model.solve", lost)

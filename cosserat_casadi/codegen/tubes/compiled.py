@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import Info
+from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
@@ -28,7 +28,7 @@ SOLVED = (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED)
 """Ends after which x is a solution for the inputs, if of the discrete equations alone."""
 
 
-class TubeInfo(Info):
+class TubeInfo(AnswerInfo):
     """The struct in C that says how a call ended: what there is of every solve, then what there is of tubes."""
 
     _fields_ = (("determinant", ctypes.c_double),)
