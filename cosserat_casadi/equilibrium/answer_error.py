@@ -63,18 +63,16 @@ class AnswerError:
             cables over the length; of held rods at sections between the ends too.
         shape: of the poses of all sections, those between nodes included; no smaller than that of what is watched.
         wrench: of the forces and moments of bases, supports and joints, and of tensions that are unknown, relative.
-        settled: whether the corrections that it was taken from settled.
     """
 
     watched: float
     shape: float
     wrench: float
-    settled: bool
 
 
 @dataclass(frozen=True)
 class Correction:
-    """Where a sweep or a step has led.
+    """A correction of an answer after a sweep, or after a step of Newton's method on the richer model.
 
     Attributes:
         known: change of the unknowns of the answer, shape (n,).
@@ -140,13 +138,13 @@ def answer_error(solution: Solution) -> AnswerError:
     """
     believed, correction = believed_correction(solution)
     if not believed:
-        return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN, settled=False)
+        return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
     rest = _rest_of_series(solution, correction)
     watched = SAFETY * (correction.change + rest) + ROUNDING
     corrected = _richer_answer(solution, correction)
     shape = SAFETY * (_shape_change(solution, corrected) + rest) + ROUNDING
     wrench = SAFETY * _wrench_change(solution, corrected, correction) + ROUNDING
-    return AnswerError(watched, max(shape, watched), wrench, settled=True)
+    return AnswerError(watched, max(shape, watched), wrench)
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
