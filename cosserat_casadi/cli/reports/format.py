@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import STRAINS
@@ -60,6 +61,18 @@ def listed(numbers: Sequence[int], noun: str) -> str:
     if len(numbers) > 1:
         noun = f"{noun}s"
     return f"{noun} {numbers_text}"
+
+
+def error_words(error: float, within: bool | None, tolerance: float) -> str:
+    """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
+    words = f"{error:.1e} of the length"
+    if error == UNKNOWN:
+        words = "not known"
+    if within is None:
+        return words
+    if within:
+        return f"{words}, within the tolerance of {tolerance:g}"
+    return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"
 
 
 def discretisation_sentences(model: Model) -> list[str]:
