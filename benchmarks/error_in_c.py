@@ -1,7 +1,7 @@
 """What the estimate of an answer's error costs in C, beside a solve and a turn of a control loop.
 
-Processor time of one core, gcc -O2, best of many runs; every figure of a row is of one program. `--write` puts the table
-into docs/c-interface.md.
+Processor time of one core, gcc -O2, best of many runs; every figure of a row is of one program. `--write` puts the
+table into docs/c-interface.md.
 """
 
 from __future__ import annotations
@@ -119,7 +119,9 @@ def row(words: str, model: Model) -> tuple[str, ...]:
     )
 
 
-def main(write: Annotated[bool, typer.Option("--write", help="Put the table into docs/c-interface.md.")] = False) -> None:
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put the table into docs/c-interface.md.")] = False,
+) -> None:
     """Print times in µs."""
     rows = []
     for words, (example, change) in SCENES.items():
