@@ -39,7 +39,7 @@ CONTRACTING = 0.5
 """Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""
 
 SHORTEST = 1e-10
-"""Length of a step of the missing modes, as strain times length, below which it is rounding: 10 times that of Newton."""
+"""Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
 
 FASTEST = 0.02
 """Smallest ratio of the errors with and without two more modes that is believed."""
