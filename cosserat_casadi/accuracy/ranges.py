@@ -2,14 +2,15 @@
 
 Where nobody gives the range of an input, it reaches as far around the scene's value as turns a rod by about a radian
 from end to end, by the linear response of the unloaded scene. So a force F at the tip of a clamped rod is taken up to
-2 EI/ℓ². Tensions and pressures begin at zero. Lengths change by a tenth at most, and gravity keeps its size; bases stay
-where they are, and so do parameters.
+2 EI/ℓ². Tensions and pressures begin at zero. Lengths change by a tenth at most, gravity keeps its size, and bases move
+by a tenth of the longest rod. A base turns into every direction where nothing else holds the rods, else by a fifth of a
+radian about each axis. Parameters keep their values.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -25,13 +26,17 @@ from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.model.input_ranges import limits_of, narrowed
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
 TURN = 1.0
 """Turn of a rod from end to end that the scale of an input makes, rad."""
 
 STRETCH = 0.1
-"""Share of a length by which it changes at most."""
+"""Share of a length by which it changes at most; share of the longest rod by which a base moves."""
+
+TILT = 0.1
+"""Change of each entry of a unit quaternion, which is half an angle in rad, where a base may only tilt."""
 
 GRAVITY = 9.81
 """Acceleration where the scene's own is zero, m/s²."""
@@ -63,6 +68,9 @@ class Origin(Enum):
     TURN = "turns a rod by about a radian"
     LENGTH = "a tenth of the length"
     GRAVITY = "gravity in any direction"
+    BASE = "a tenth of the longest rod"
+    TILT = "tilts by a fifth of a radian"
+    DIRECTION = "any direction"
     VALUE = "the scene's value"
 
 
@@ -90,6 +98,15 @@ class CaseRanges:
     def moving(self) -> npt.NDArray[np.intp]:
         """Indices of the entries that do not keep one value."""
         return np.flatnonzero(self.lower < self.upper)
+
+    def where_still(self, others: CaseRanges) -> CaseRanges:
+        """These ranges, with those of others where an entry keeps its value."""
+        still = self.lower == self.upper
+        lower = np.where(still, others.lower, self.lower)
+        upper = np.where(still, others.upper, self.upper)
+        pairs = zip(still.tolist(), self.origins, others.origins, strict=True)
+        origins = tuple(other if is_still else own for is_still, own, other in pairs)
+        return replace(self, lower=lower, upper=upper, origins=origins)
 
     @property
     def described(self) -> tuple[str, ...]:
@@ -229,8 +246,13 @@ def _scale(model: Model, entry: Input, turns: FloatArray, component: int) -> tup
         component: which entry it is.
     """
     value = float(entry.default.ravel(order="F")[component])
-    if entry.field.startswith("base."):
-        return value, value, Origin.VALUE
+    if entry.field == "base.position":
+        move = STRETCH * max(rod.length for rod in model.discrete.rods.values())
+        return value - move, value + move, Origin.BASE
+    if entry.field == "base.quaternion":
+        if model.discrete.unknowns.count(BlockKind.MULTIPLIER):
+            return value - TILT, value + TILT, Origin.TILT
+        return -1.0, 1.0, Origin.DIRECTION
     largest = float(turns.max())
     # An entry that turns nothing by itself, such as a thrust along a straight rod, takes the scale of its neighbours.
     turn = turns[component] if turns[component] > NO_TURN * largest else largest

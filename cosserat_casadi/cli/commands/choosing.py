@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from cosserat_casadi.accuracy.choose import SAMPLES, Choice, choose
 from cosserat_casadi.accuracy.ranges import Given
+from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.progress import count_display
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.scene import Scene
 
 
@@ -12,3 +15,15 @@ def choose_with_progress(scene: Scene, ranges: Given | None = None, samples: int
     """One discretisation for ranges of inputs; see :func:`cosserat_casadi.accuracy.choose.choose`."""
     with count_display("Choosing modes and nodes") as show_count:
         return choose(scene, ranges, progress=show_count, samples=samples)
+
+
+def solve_for_ranges(scene: Scene, ranges: Given | None = None) -> tuple[Solution, Choice | None]:
+    """The equilibrium at the scene's own inputs, on modes that are chosen for ranges.
+
+    Returns:
+        the equilibrium, and the choice; None in exact contact, where modes suit the scene's own inputs.
+    """
+    if scene.touches_exactly:
+        return solve_with_progress(scene), None
+    choice = choose_with_progress(scene, ranges)
+    return solve(choice.model), choice
