@@ -9,7 +9,6 @@ from importlib.metadata import version
 
 from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_motion import (
@@ -109,7 +108,6 @@ __all__ = [
     "TubePath",
     "TubeSolution",
     "TubeStatus",
-    "Tuning",
     "acados_expressions",
     "all_equilibria",
     "build",
@@ -154,7 +152,6 @@ __all__ = [
     "sweep_scene",
     "tube_path_result",
     "tubes_result",
-    "tune",
     "with_exact_contact",
     "write_acados",
     "write_fmu",

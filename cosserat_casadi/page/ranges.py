@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cosserat_casadi.accuracy.fixing import with_accuracy
 from cosserat_casadi.accuracy.ranges import input_ranges
-from cosserat_casadi.accuracy.tune import with_accuracy
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.inputs import column_suffixes
 

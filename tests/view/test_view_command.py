@@ -37,7 +37,7 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
         finally:
             running.kill()
     # The modes are those of the sliders, not of the scene's own inputs.
-    assert re.search(r"All \d+ points of the ranges are within 1e-06", said)
+    assert re.search(r"All \d+ load cases are within 1e-06", said)
     assert "turns a rod by about a radian" in said
     assert "<title>Plastic strip" in page
     assert "class ServerRobot" in page

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.accuracy.choose import with_choice
+from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.commands.tubes import export_tube_scene
@@ -166,7 +166,7 @@ def export(
     verified = None
     if choice is not None:
         verified = choice.verified
-        exported_scene = with_choice(exported_scene, choice.model.discretisation, choice.ranges)
+        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
