@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.accuracy.choose import Choice as Choice
     from cosserat_casadi.accuracy.choose import choose as choose
     from cosserat_casadi.accuracy.refine import solve_scene as solve_scene
-    from cosserat_casadi.accuracy.tune import Tuning as Tuning
-    from cosserat_casadi.accuracy.tune import tune as tune
     from cosserat_casadi.codegen.acados import acados_expressions as acados_expressions
     from cosserat_casadi.codegen.acados import write_acados as write_acados
     from cosserat_casadi.codegen.compiled import Compiled as Compiled
@@ -112,7 +110,6 @@ if TYPE_CHECKING:
 _NAMES = {
     "accuracy.choose": ("Choice", "choose"),
     "accuracy.refine": ("solve_scene",),
-    "accuracy.tune": ("Tuning", "tune"),
     "codegen.acados": ("acados_expressions", "write_acados"),
     "codegen.compiled": ("Compiled", "load"),
     "codegen.compiled_motion": (

@@ -28,7 +28,7 @@ from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
-from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.numerics.neutral import regular, regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
 Mask = npt.NDArray[np.bool_]
@@ -114,13 +114,7 @@ class Preview:
     @cached_property
     def _regular_jacobian(self) -> FloatArray:
         """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
-        left, singular, right = np.linalg.svd(self.jacobian)
-        largest = float(singular.max(initial=0.0))
-        neutral = singular <= SINGULAR * largest
-        neutral_left = left[:, neutral]
-        neutral_right = right[neutral]
-        added = largest * neutral_left @ neutral_right
-        return np.asarray(self.jacobian + added)
+        return regular(self.jacobian)
 
     @cached_property
     def tips(self) -> WatchedNumbers:
@@ -214,7 +208,7 @@ class Preview:
         """
         model = self.model
         richer = Richer(model.discrete, discrete_scene(model.scene, model.inputs, dict(grids)))
-        inverse = _inverse(self._regular_jacobian)
+        inverse = regular_inverse(self.jacobian)
 
         def system(known: FloatArray, missing: FloatArray) -> System:
             unknowns = richer.joined(ca.DM(known), ca.DM(missing))

@@ -20,7 +20,7 @@ from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES
-from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SAFETY = 1.1
@@ -247,9 +247,7 @@ def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -
     return float(np.max(changes))
 
 
-def _corrected(
-    solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True
-) -> Correction:
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
     return Correction(known, missing, largest_change(solution, known, missing), contracts)
 
 
@@ -320,11 +318,3 @@ def _relative_change(values: FloatArray, difference: FloatArray, least: float = 
     """Size of a difference relative to that of the values, or to the least size that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return float(np.linalg.norm(difference)) / size
-
-
-def regular_inverse(matrix: FloatArray) -> FloatArray:
-    """The inverse, with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
-    left, singular, right = np.linalg.svd(matrix)
-    largest = float(singular.max(initial=0.0))
-    regular = np.where(singular <= SINGULAR * largest, largest, singular)
-    return np.asarray((right.T / regular) @ left.T)

@@ -339,7 +339,7 @@ def test_tune_fixes_a_discretisation_for_ranges(wire: Path) -> None:
     options = ("--tolerance", "1e-3", "--range", "push.force.x=-0.1:0.2")
     done = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "points of the ranges are within 0.001" in done.stdout
+    assert "load cases are within 0.001" in done.stdout
     tuned = read_scene(wire / "tuned.toml")
     assert tuned.accuracy.chosen_for is not None
     assert "push.force.x=-0.1:0.2" in tuned.accuracy.chosen_for
