@@ -34,7 +34,7 @@ from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.node_residual import min_modes
-from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
@@ -153,7 +153,11 @@ def _with_tolerance(solver: SceneSolver) -> Solution:
 
 def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Solution:
     """A reference for a tolerance, refined from the level that it begins with; or a failure."""
-    first = Level.first(tolerance, solver.signal_modes)
+    least = solver.signal_modes
+    if solver.is_assembly:
+        # On fewer modes what is extrapolated is far too large, and so is the model that it leads to.
+        least = max(least, TELLING)
+    first = Level.first(tolerance, least)
     return _refined(solver, first, tolerance)
 
 

@@ -15,7 +15,7 @@ from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene import Scene, Tube, parse_scene
 from cosserat_casadi.scene.number_table import shortened
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 from cosserat_casadi.sweep.outcome_table import ENDINGS
 from cosserat_casadi.sweep.row_model import error_numbers
 from cosserat_casadi.sweep.table import Table

@@ -20,14 +20,15 @@ from cosserat_casadi.cli.options import (
     given_files,
 )
 from cosserat_casadi.cli.progress import sweep_display
-from cosserat_casadi.cli.reports.format import error_words, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.estimation import Estimate, estimate_scene
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 WRITERS = {".json": estimate_text, ".csv": estimate_table}
 

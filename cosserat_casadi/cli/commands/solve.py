@@ -9,7 +9,6 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progress
-from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -69,6 +68,9 @@ def solve(
     if problems:
         raise SceneError(*problems)
     if read.tubes:
+        # Imported here, because no scene of rods needs the modules of tubes.
+        from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
+
         outputs = Outputs(output, plot, as_json=as_json)
         if every:
             solve_all_of_tubes(read, outputs)

@@ -9,8 +9,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, table_of, title_line
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import digits
+from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.equilibria import TubeEquilibria
 from cosserat_casadi.tubes.path import TubePath
 from cosserat_casadi.tubes.robot import Robot
