@@ -11,7 +11,7 @@ from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
-from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import (
     CompiledStep,
     LinearMotion,
@@ -20,13 +20,14 @@ from cosserat_casadi.codegen.compiled_motion import (
     StepSensitivity,
     StepState,
 )
-from cosserat_casadi.codegen.contact.compiled import CompiledContact, CompiledContactSolution, load_in_contact
+from cosserat_casadi.codegen.contact.compiled import CompiledContact, CompiledContactSolution
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.fmu import write_fmu
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
 from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
-from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution, load_tubes
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution
 from cosserat_casadi.codegen.tubes.sources import export_tubes
 from cosserat_casadi.codegen.tubes.status import TubeStatus
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
@@ -132,8 +133,6 @@ __all__ = [
     "inverse_scene",
     "linearise",
     "load",
-    "load_in_contact",
-    "load_tubes",
     "modes_of",
     "modes_of_scene",
     "modes_result",

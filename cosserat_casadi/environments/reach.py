@@ -16,9 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.codegen.plain import vector
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
@@ -289,4 +290,6 @@ def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
 
 def _compiled(model: Model) -> Compiled:
     with tempfile.TemporaryDirectory() as folder:
-        return load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+        library = load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+    assert isinstance(library, Compiled)
+    return library

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
-from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import TUBES
 from cosserat_casadi.codegen.plain import pointer, vector
-from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
 from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -91,10 +86,22 @@ class CompiledTubes(LoadedLibrary):
         manifest: what the folder says of itself.
     """
 
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of concentric tubes is there."""
+        tubes = described[TUBES]
+        names = isinstance(tubes, list) and all(isinstance(tube, str) for tube in tubes)
+        return names and isinstance(described["unknowns"], int)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Number of the unknowns by its macro."""
+        return {"UNKNOWNS": described["unknowns"]}
+
     @property
     def tubes(self) -> list[str]:
         """Names of the tubes, in order."""
-        return list(self.manifest[KIND])
+        return list(self.manifest[TUBES])
 
     @property
     def unknowns(self) -> int:
@@ -214,40 +221,3 @@ class CompiledTubes(LoadedLibrary):
             load_factor=info.load_factor,
             **more,
         )
-
-
-def load_tubes(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> CompiledTubes:
-    """Compile an exported folder of concentric tubes, once, and load it.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export_tubes`.
-        compiler: C compiler, as for :func:`cosserat_casadi.load`.
-        progress: told what is compiled, likewise.
-
-    Raises:
-        ExportError: the folder is not one of concentric tubes, another version has written it, its files do not belong
-            together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if not is_sound(described, _has_tubes):
-        problem = "is not the manifest of concentric tubes"
-        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
-    check_folder(folder, described, {"INPUTS": input_count(described), "UNKNOWNS": described["unknowns"]})
-    name = described["name"]
-    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
-    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [folder / file for file in VERBATIM]
-    return CompiledTubes(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
-
-
-def _has_tubes(described: Any) -> bool:
-    """Whether what is read of a manifest of concentric tubes is there."""
-    tubes = described[KIND]
-    return (
-        isinstance(tubes, list)
-        and isinstance(described["unknowns"], int)
-        and all(isinstance(tube, str) for tube in tubes)
-    )

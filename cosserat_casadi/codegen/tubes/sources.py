@@ -25,7 +25,7 @@ from cosserat_casadi.codegen.library import (
     version_words,
     words_of_inputs,
 )
-from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA
+from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
@@ -56,9 +56,6 @@ OTHERS = ("solver_sensitivity.c", "solver_recover.c")
 
 VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
-
-KIND = "tubes"
-"""Key of the manifest that a folder of tubes has alone."""
 
 
 def export_tubes(
@@ -218,7 +215,7 @@ def _manifest(solution: TubeSolution, names: Names) -> dict[str, Any]:
         "title": robot.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(robot),
-        KIND: list(robot.names),
+        TUBES: list(robot.names),
         "unknowns": solution.model.unknowns,
         "steps": solution.model.steps,
         "tolerance": robot.tolerance,
