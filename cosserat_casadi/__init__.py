@@ -29,7 +29,6 @@ from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution
 from cosserat_casadi.codegen.tubes.sources import export_tubes
-from cosserat_casadi.codegen.tubes.status import TubeStatus
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -61,7 +60,7 @@ from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices
 from cosserat_casadi.tubes.equilibria import TubeEquilibria, all_equilibria
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.path import TubeEvent, TubePath, follow_tubes
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution
+from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import solve_tubes
 
 __version__ = version("cosserat-casadi")
@@ -106,10 +105,8 @@ __all__ = [
     "TubeEquilibria",
     "TubeEvent",
     "TubeModel",
-    "TubeOutcome",
     "TubePath",
     "TubeSolution",
-    "TubeStatus",
     "Tuning",
     "acados_expressions",
     "all_equilibria",

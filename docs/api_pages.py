@@ -109,7 +109,6 @@ CONCEPTS = (
             "all_equilibria",
             "follow_tubes",
             "TubeSolution",
-            "TubeOutcome",
             "TubeEquilibria",
             "TubePath",
             "TubeEvent",
@@ -117,7 +116,6 @@ CONCEPTS = (
             "export_tubes",
             "CompiledTubes",
             "CompiledTubesSolution",
-            "TubeStatus",
         ),
     ),
     Concept(

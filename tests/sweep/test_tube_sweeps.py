@@ -11,8 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
+    Outcome,
     SceneError,
-    TubeOutcome,
     parse_scene,
     read_scene,
     read_sweep,
@@ -70,9 +70,9 @@ def test_loads_are_swept_and_moments_leave_stability_open() -> None:
 
 
 @pytest.mark.parametrize(
-    ("outcome", "label"), [(TubeOutcome.NOT_FOUND, "load_stalled"), (TubeOutcome.UNRESOLVED, "unresolved")]
+    ("outcome", "label"), [(Outcome.LOAD_STALLED, "load_stalled"), (Outcome.UNRESOLVED, "unresolved")]
 )
-def test_what_did_not_converge_has_no_poses(outcome: TubeOutcome, label: str) -> None:
+def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> None:
     names = tube_results(SCENE, stability=True)
     solution = replace(solve_tubes(SCENE), outcome=outcome)
     row = TubeRows(scene_text(SCENE), stability=True)._row(solution, len(names))

@@ -13,9 +13,9 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import (
     CompiledTubes,
     ExportError,
+    Outcome,
     Scene,
     TubeSolution,
-    TubeStatus,
     export_tubes,
     follow_tubes,
     load,
@@ -25,9 +25,9 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
-from cosserat_casadi.codegen.tubes.status import STATUSES
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
@@ -116,7 +116,7 @@ def test_batch_vs_single_solves(robot: Robot) -> None:
     converged = compiled._function("solve_batch")(len(rows), *arguments)
     assert converged == sum(one.converged for one in singles) == 5
     for own, info, single in zip(x, infos, singles, strict=True):
-        assert info.status == STATUSES.index(single.status)
+        assert info.status == TUBE_OUTCOMES.index(single.outcome)
         assert info.determinant == single.determinant
         if single.converged:
             assert_allclose(own, single.x, rtol=0, atol=0)
@@ -137,7 +137,7 @@ def test_loaded_equilibria_are_those_of_python(loaded_robot: Robot, seed: int) -
 def test_a_loaded_robot_in_c_snaps_where_it_does_in_python(loaded_robot: Robot) -> None:
     snap = follow_tubes(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(loaded_robot, 0.01)
-    assert lost.status is TubeStatus.LOST_TRACK
+    assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
     assert lost.inputs[2] - last.inputs[2] < 0.011
 
@@ -174,7 +174,7 @@ def turned(robot: Robot, step: float) -> tuple[CompiledTubesSolution, CompiledTu
 def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
     snap = follow_tubes(robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(robot, step)
-    assert lost.status is TubeStatus.LOST_TRACK
+    assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
     assert lost.inputs[2] - last.inputs[2] < 1.001 * step
     assert last.determinant > 0.0
@@ -184,7 +184,7 @@ def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
     back[2] -= step
     agrees(robot, robot.compiled.track(back, last))
     beyond = robot.compiled.follow(last, lost.inputs)
-    assert beyond.status is TubeStatus.LOAD_STALLED
+    assert beyond.outcome is Outcome.LOAD_STALLED
     assert beyond.load_factor < 1.0
     # From straight tubes there is another equilibrium at the same inputs.
     agrees(robot, robot.compiled.solve(lost.inputs))
@@ -216,7 +216,7 @@ def test_the_work_of_a_turn_is_bounded(robot: Robot) -> None:
     found = robot.compiled.solve()
     far = found.inputs + np.array([0.0, 0.05, 1.5, -0.1])
     short = robot.compiled.track(far, found, max_iterations=2, max_continuation_steps=1)
-    assert short.status is TubeStatus.LOST_TRACK
+    assert short.outcome is Outcome.LOST_TRACK
     assert short.iterations <= 4
     assert_allclose(short.x, found.x, rtol=0, atol=0)
 
@@ -226,18 +226,18 @@ def test_translations_out_of_range_are_refused(robot: Robot, translation: float)
     found = robot.compiled.solve()
     inputs = found.inputs.copy()
     inputs[3] = translation
-    assert robot.compiled.solve(inputs).status is TubeStatus.OUT_OF_RANGE
-    assert robot.compiled.follow(found, inputs).status is TubeStatus.OUT_OF_RANGE
+    assert robot.compiled.solve(inputs).outcome is Outcome.OUT_OF_RANGE
+    assert robot.compiled.follow(found, inputs).outcome is Outcome.OUT_OF_RANGE
     turn = robot.compiled.track(inputs, found)
-    assert turn.status is TubeStatus.OUT_OF_RANGE
+    assert turn.outcome is Outcome.OUT_OF_RANGE
     assert not turn.tips
     assert_allclose(turn.x, found.x, rtol=0, atol=0)
 
 
 def test_other_inputs_without_an_equilibrium(robot: Robot) -> None:
-    assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).status is TubeStatus.OUT_OF_RANGE
-    assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).status is TubeStatus.NOT_FINITE
-    assert robot.compiled.solve([0.1, np.nan, 0.0, 0.2]).status is not TubeStatus.CONVERGED
+    assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).outcome is Outcome.OUT_OF_RANGE
+    assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).outcome is Outcome.NOT_FINITE
+    assert robot.compiled.solve([0.1, np.nan, 0.0, 0.2]).outcome is not Outcome.CONVERGED
     found = robot.compiled.solve()
     elsewhere = CompiledTubesSolution(**{**vars(found), "inputs": found.inputs + np.array([0.0, 0.0, 0.3, 0.0])})
     assert robot.compiled.sensitivity(elsewhere) is None

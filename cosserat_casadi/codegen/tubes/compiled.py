@@ -15,11 +15,12 @@ from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import TUBES
 from cosserat_casadi.codegen.plain import pointer, vector
-from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 
-SOLVED = (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED)
+SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
 """Ends after which x is a solution for the inputs, if of the discrete equations alone."""
 
 
@@ -40,7 +41,7 @@ class CompiledTubesSolution:
     """What the solver in C found.
 
     Attributes:
-        status: how it ended.
+        outcome: how it ended.
         inputs: that it is of, shape (m,).
         x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
             the frame at the tip of the robot less 1 0 0 0 behind them.
@@ -54,7 +55,7 @@ class CompiledTubesSolution:
         memory: what the next turn begins with.
     """
 
-    status: TubeStatus
+    outcome: Outcome
     inputs: FloatArray
     x: FloatArray
     tips: Mapping[str, FloatArray]
@@ -69,12 +70,12 @@ class CompiledTubesSolution:
     @property
     def converged(self) -> bool:
         """Whether it is an equilibrium for the inputs."""
-        return self.status is TubeStatus.CONVERGED
+        return self.outcome is Outcome.CONVERGED
 
     @property
     def message(self) -> str:
         """A sentence that says how it ended."""
-        return self.status.value
+        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ class CompiledTubes(LoadedLibrary):
         x = self._start(start)
         info = TubeInfo()
         status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        end = STATUSES[status]
+        end = TUBE_OUTCOMES[status]
         return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
@@ -143,7 +144,7 @@ class CompiledTubes(LoadedLibrary):
         info = TubeInfo()
         arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         status = self._function("follow")(*arguments)
-        end = STATUSES[status]
+        end = TUBE_OUTCOMES[status]
         return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def track(
@@ -178,9 +179,9 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("track")(
             pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
         )
-        end = STATUSES[status]
-        found = by_tip(self.tubes, columns) if derivatives and end is TubeStatus.CONVERGED else None
-        solved = end is TubeStatus.CONVERGED
+        end = TUBE_OUTCOMES[status]
+        found = by_tip(self.tubes, columns) if derivatives and end is Outcome.CONVERGED else None
+        solved = end is Outcome.CONVERGED
         return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
@@ -202,7 +203,7 @@ class CompiledTubes(LoadedLibrary):
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
     def _answer(
-        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
+        self, outcome: Outcome, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
     ) -> CompiledTubesSolution:
         tips: dict[str, FloatArray] = {}
         if solved:
@@ -210,7 +211,7 @@ class CompiledTubes(LoadedLibrary):
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            status=status,
+            outcome=outcome,
             inputs=inputs,
             x=x,
             tips=tips,

@@ -29,7 +29,7 @@ from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
-from cosserat_casadi.codegen.status import tube_status_words
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
@@ -140,7 +140,7 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         **dense_words(render, basics),
         "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
-        **tube_status_words(names),
+        **status_words(names, TUBE_OUTCOMES),
         **words_of_inputs(input_entries(robot), names),
         **version_words(),
         "version": version("cosserat-casadi"),
