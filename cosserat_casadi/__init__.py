@@ -28,7 +28,6 @@ from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_m
 from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution
-from cosserat_casadi.codegen.tubes.sources import export_tubes
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -118,7 +117,6 @@ __all__ = [
     "equilibria_result",
     "export",
     "export_page",
-    "export_tubes",
     "follow_path",
     "follow_scene_path",
     "follow_tubes",

@@ -113,7 +113,6 @@ CONCEPTS = (
             "TubePath",
             "TubeEvent",
             "TubeModel",
-            "export_tubes",
             "CompiledTubes",
             "CompiledTubesSolution",
         ),

@@ -262,7 +262,7 @@ class _Way:
             position = int(np.searchsorted(lengths, event.point.length, side="right"))
             events.append(self._event(model, event, position, factors, solutions))
         return TubePath(
-            title=self.robot.title,
+            title=self.robot.scene.title,
             name=self.name,
             unit=self.unit,
             outcome=traced.outcome or PathOutcome.MAX_STEPS,

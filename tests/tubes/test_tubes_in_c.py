@@ -16,7 +16,7 @@ from cosserat_casadi import (
     Outcome,
     Scene,
     TubeSolution,
-    export_tubes,
+    export,
     follow_tubes,
     load,
     parse_scene,
@@ -43,7 +43,7 @@ class Robot:
     def __init__(self, scene: Scene, folder: Path) -> None:
         self.scene = scene
         self.solution = solve_tubes(scene)
-        self.folder = export_tubes(scene, self.solution, folder, "robot")
+        self.folder = export(self.solution.model, folder, "robot", error_estimate=self.solution.error_estimate)
         compiled = load(folder)
         assert isinstance(compiled, CompiledTubes)
         self.compiled = compiled
@@ -302,7 +302,9 @@ def test_the_demo_prints_what_python_finds(robot: Robot, tmp_path: Path) -> None
 
 def test_refusals(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no name for a C library"):
-        export_tubes(robot.scene, robot.solution, tmp_path / "folder", "a b")
+        export(robot.solution.model, tmp_path / "folder", "a b")
+    with pytest.raises(ExportError, match=r"--batches: is for rods(?s:.*)--period: is for rods"):
+        export(robot.solution.model, tmp_path / "folder", batches=True, period=1e-3)
     (tmp_path / "manifest.json").write_text('{"name": "robot", "inputs": [], "files": [], "tubes": 3, "unknowns": 2}')
     with pytest.raises(ExportError, match="is not the manifest of an exported folder"):
         load(tmp_path)

@@ -27,6 +27,7 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
+from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
@@ -132,7 +133,7 @@ def export(
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
-        _refuse_for_tubes(unknown)
+        check_tubes(unknown)
         assert output is not None
         export_tube_scene(exported_scene, output, name)
         return
@@ -223,16 +224,5 @@ def _refuse_without_sources(options: Mapping[str, bool]) -> None:
     """Refuse options that only sources in C know: page and FMU hold what they hold."""
     remedy = "name a folder for them with --output, or leave it out"
     problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
-    if problems:
-        raise ExportError(*problems)
-
-
-def _refuse_for_tubes(options: Mapping[str, bool]) -> None:
-    """Refuse options that are for rods."""
-    problems = [
-        Problem(option, "is for rods, and the scene has concentric tubes", "leave it out")
-        for option, given in options.items()
-        if given
-    ]
     if problems:
         raise ExportError(*problems)

@@ -22,7 +22,8 @@ from cosserat_casadi.cli.reports.tubes import (
     print_tubes_unstable,
 )
 from cosserat_casadi.cli.terminal import binary_output
-from cosserat_casadi.codegen.tubes.sources import check_tube_names, export_tubes
+from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.tubes.sources import tube_names
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.maths.typing import FloatArray
@@ -147,12 +148,12 @@ def export_tube_scene(scene: Scene, output: Path, name: str) -> None:
         ExportError: the name is refused.
         Exit: no equilibrium was found.
     """
-    check_tube_names(name, scene)
+    tube_names(name, robot_of(scene))
     solution = solve_tubes(scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
-    export_tubes(scene, solution, output, name)
+    export(solution.model, output, name, error_estimate=solution.error_estimate)
     print_tubes_export(Console(), solution, output)
 
 
