@@ -21,7 +21,8 @@ from doc_tables import put, table
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import Model, Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene  # noqa: E402
+from cosserat_casadi import Model, Scene, Solution, build, discretise, read_scene, scene_from_dict, solve  # noqa: E402
+from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_error_estimate  # noqa: E402
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong  # noqa: E402
 from cosserat_casadi.errors import CosseratError  # noqa: E402
@@ -105,7 +106,7 @@ def scenes() -> Iterator[tuple[str, Scene]]:
 
 def cases_of(scene: Scene, points: int) -> list[Case]:
     """Answers of a scene at random inputs, of which one in six lies outside of the range."""
-    first = solve_scene(scene)
+    first = solve_rods(scene)
     if not first.converged:
         return []
     model = build(scene, first.model.discretisation)

@@ -41,26 +41,24 @@ from cosserat_casadi.motion.resolve import simulate_scene
 from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
 from cosserat_casadi.paths.follow import follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
-from cosserat_casadi.paths.trace import PathOutcome
 from cosserat_casadi.results.identification_file import identification_result
 from cosserat_casadi.results.inverse_file import inverse_result
 from cosserat_casadi.results.modes_file import modes_result
 from cosserat_casadi.results.motion_file import motion_result, write_motion
 from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
-from cosserat_casadi.results.tubes_file import equilibria_result, tube_path_result, tubes_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict, with_exact_contact
 from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
 from cosserat_casadi.tubes.equilibria import TubeEquilibria, all_equilibria
 from cosserat_casadi.tubes.model import TubeModel
-from cosserat_casadi.tubes.path import TubeEvent, TubePath, follow_tubes
+from cosserat_casadi.tubes.path import TubeEvent, TubePath
 from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import solve_tubes
 
 __version__ = version("cosserat-casadi")
 
@@ -114,12 +112,10 @@ __all__ = [
     "compiled_motion_stage",
     "compiled_stage",
     "discretise",
-    "equilibria_result",
     "export",
     "export_page",
     "follow_path",
     "follow_scene_path",
-    "follow_tubes",
     "identification_result",
     "identify",
     "identify_scene",
@@ -144,10 +140,7 @@ __all__ = [
     "sobol_table",
     "solve",
     "solve_scene",
-    "solve_tubes",
     "sweep_scene",
-    "tube_path_result",
-    "tubes_result",
     "tune",
     "with_exact_contact",
     "write_acados",

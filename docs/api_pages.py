@@ -105,9 +105,7 @@ CONCEPTS = (
         "Concentric tubes",
         "Nested pre-curved tubes that turn and slide; see [concentric tubes](../tubes.md).",
         (
-            "solve_tubes",
             "all_equilibria",
-            "follow_tubes",
             "TubeSolution",
             "TubeEquilibria",
             "TubePath",
@@ -212,9 +210,6 @@ CONCEPTS = (
             "path_result",
             "inverse_result",
             "identification_result",
-            "tubes_result",
-            "equilibria_result",
-            "tube_path_result",
         ),
     ),
 )

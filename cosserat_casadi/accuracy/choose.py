@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.enough_modes import Chosen, enough_for, with_more_modes
 from cosserat_casadi.accuracy.ranges import CaseRanges, Given, input_ranges
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.accuracy.tune import unfixed, with_accuracy
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.equilibrium.solution import Solution
@@ -226,7 +226,7 @@ class _Search:
 
     def _first(self) -> Chosen:
         """What the scene's own inputs need."""
-        own = solve_scene(self._bare)
+        own = solve_rods(self._bare)
         return own.model.discretisation if own.converged else discretise(self._bare, 2, 6)
 
     def _unlocked(self, chosen: Chosen) -> Chosen:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -75,7 +75,7 @@ def tune(
 
     def solve_reporting(variant: scenes.Scene, values: Values) -> Solution:
         nonlocal solved_cases
-        solution = solve_scene(variant, values)
+        solution = solve_rods(variant, values)
         solved_cases += 1
         if progress is not None:
             progress(solved_cases, max(solved_cases, expected))
@@ -100,7 +100,7 @@ def _variant(free: scenes.Scene, layout: CaseLayout, values: Values) -> tuple[sc
 def common_discretisation(
     cases: Sequence[tuple[scenes.Scene, Values]],
     alone: Sequence[Solution],
-    solve_case: Callable[[scenes.Scene, Values], Solution] = solve_scene,
+    solve_case: Callable[[scenes.Scene, Values], Solution] = solve_rods,
 ) -> tuple[Discretisation, list[Solution]]:
     """One discretisation for many cases: the union of what each chose alone, refined while a case misses.
 

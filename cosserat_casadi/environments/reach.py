@@ -15,7 +15,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
@@ -114,7 +114,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
         described = (scene if isinstance(scene, Scene) else read_scene(Path(scene))).baked()
         self.rod = _rod_name(described, rod)
-        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
+        self.model = build(described, solve_rods(described).model.discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
         self._moves = _moving_entries(self.model)
         self._late = self._moves[self._acting.indices]

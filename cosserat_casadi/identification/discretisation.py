@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed, union_of
 from cosserat_casadi.identification.cases import Case, Datum
 from cosserat_casadi.identification.fitted import with_inputs
@@ -85,14 +85,14 @@ def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray) -> li
     if not len(inputs):
         return []
     chosen = [(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
-    alone = [solve_scene(one, values) for one, values in chosen]
+    alone = [solve_rods(one, values) for one, values in chosen]
     used = [i for i, solution in enumerate(alone) if solution.converged]
     if not used:
         return []
     discretisation, _ = common_discretisation(
         [chosen[i] for i in used],
         [alone[i] for i in used],
-        solve_scene,
+        solve_rods,
     )
     return [discretisation]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
@@ -102,7 +102,7 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
         nonlocal solved_cases
         progress("Choosing the discretisation", solved_cases, max(expected, solved_cases + 1))
         solved_cases += 1
-        return solve_scene(scene, inputs)
+        return solve_rods(scene, inputs)
 
     alone = [solve_reporting(scene, inputs) for scene, inputs in cases]
     with_equilibrium = [i for i, solution in enumerate(alone) if solution.converged]
@@ -151,7 +151,7 @@ def check(
     for done, row in enumerate(rows):
         progress("Checking rows", done, len(rows))
         scene = choice.scene(variants.scene_of_row(row))
-        solution = solve_scene(scene, variants.inputs_of_row(row))
+        solution = solve_rods(scene, variants.inputs_of_row(row))
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate

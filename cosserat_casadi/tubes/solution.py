@@ -72,6 +72,11 @@ class TubeSolution:
         return self.outcome is Outcome.CONVERGED
 
     @property
+    def within_tolerance(self) -> bool:
+        """Whether the estimated error is within the scene's tolerance."""
+        return self.error_estimate is not None and self.error_estimate <= self.robot.tolerance
+
+    @property
     def message(self) -> str:
         """A sentence for the user."""
         return self.outcome.value

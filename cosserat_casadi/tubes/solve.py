@@ -13,7 +13,7 @@ from cosserat_casadi.numerics.continuation import ContinuationResult, Path, Path
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.paths.trace import PathOutcome, trace
+from cosserat_casadi.numerics.trace import PathOutcome, trace
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.model import TubeModel
@@ -96,10 +96,10 @@ def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
     """A solution with the estimate of its error, and its outcome by that."""
-    outcome = solution.outcome
-    if solution.converged and (error is None or error > solution.robot.tolerance):
-        outcome = Outcome.UNRESOLVED
-    return replace(solution, outcome=outcome, error_estimate=error)
+    estimated = replace(solution, error_estimate=error)
+    if estimated.converged and not estimated.within_tolerance:
+        return replace(estimated, outcome=Outcome.UNRESOLVED)
+    return estimated
 
 
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:

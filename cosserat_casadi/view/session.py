@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.codegen.compiler import Progress
@@ -156,7 +156,7 @@ class Session:
         values = model.inputs.unpack(given)
         accuracy = model.scene.accuracy
         finer = accuracy.model_copy(update={"tolerance": REFINED_SHARE * accuracy.tolerance})
-        chosen = solve_scene(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
+        chosen = solve_rods(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
         refined = build(model.scene, chosen)
         coarse = replace(self.first, inputs=given, x=near)
         found = solve(refined, values, start=prolong(coarse, refined))

@@ -14,12 +14,12 @@ from rich.markup import escape
 from cosserat_casadi.accuracy.choose import with_choice
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
-from cosserat_casadi.cli.commands.solving import solve_with_progress
-from cosserat_casadi.cli.commands.tubes import export_tube_scene
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export
+from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -27,7 +27,8 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
-from cosserat_casadi.codegen.tubes.sources import check_tubes
+from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_names
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
@@ -36,7 +37,10 @@ from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.solve import solve_tubes
 
 
 def export(
@@ -135,7 +139,7 @@ def export(
         }
         check_tubes(unknown)
         assert output is not None
-        export_tube_scene(exported_scene, output, name)
+        _export_tubes(exported_scene, output, name)
         return
     check_period(exported_scene, period)
     cases = None
@@ -169,15 +173,13 @@ def export(
     choice = None
     verified = None
     if exported_scene.touches_exactly:
-        solution = solve_with_progress(solved_scene)
+        solution = solve_rods_with_progress(solved_scene)
     else:
         choice = choose_with_progress(solved_scene, asked_ranges)
         verified = choice.verified
         solution = solve(choice.model)
         exported_scene = with_choice(exported_scene, choice.model.discretisation, choice.ranges)
-    if not solution.converged:
-        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
-        raise typer.Exit(NOT_FOUND)
+    _check_solved(solution)
     console = Console()
     model = solution.model
     if moves or exported_scene.parameters:
@@ -209,6 +211,22 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
+
+
+def _check_solved(solution: Solution | TubeSolution) -> None:
+    """Write nothing where there is no equilibrium, and say why."""
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+
+
+def _export_tubes(scene: Scene, output: Path, name: str) -> None:
+    """Write concentric tubes with the steps that the scene's own inputs need."""
+    tube_names(name, robot_of(scene))
+    solution = solve_tubes(scene)
+    _check_solved(solution)
+    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    print_tubes_export(Console(), solution, output)
 
 
 def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:

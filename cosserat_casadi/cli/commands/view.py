@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
@@ -36,7 +36,7 @@ def view(
     viewed_scene = read_scene(scene, tuple(settings or ()))
     if is_compiled(viewed_scene):
         find_compiler()
-    solution = solve_with_progress(viewed_scene)
+    solution = solve_rods_with_progress(viewed_scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)

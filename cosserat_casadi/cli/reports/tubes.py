@@ -39,16 +39,6 @@ def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path
     print_written(console, written)
 
 
-def print_tubes_unstable(console: Console) -> None:
-    """Warn of an unstable equilibrium, and say what to do about it."""
-    print_plain(
-        console,
-        "[bold yellow]Warning:[/] this equilibrium is not stable: a real robot leaves it. "
-        "Add --stable for the stable one of least energy, or --all for all equilibria.",
-        soft_wrap=True,
-    )
-
-
 def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
     """Print what was written, at what accuracy, and how to try it."""
     robot = solution.robot
