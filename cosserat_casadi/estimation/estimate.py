@@ -16,7 +16,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.choose import choose
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
@@ -243,7 +243,7 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
         scene = model.scene
         if model.parameters.size:
             scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
-        solution = solve_scene(scene, model.inputs.unpack(result.inputs[row]))
+        solution = solve_rods(scene, model.inputs.unpack(result.inputs[row]))
         yield row, solution.error_estimate if solution.converged else None
 
 
