@@ -77,7 +77,8 @@ def prices_of_effects(model: Model, progress: PriceProgress | None = None) -> di
     scene = model.scene.baked()
     without = {cause.name: without_load for cause in scene.causes}
     without |= {obstacle.name: without_obstacle for obstacle in scene.obstacles if obstacle.is_smooth}
-    residuals = [build(scene).residual]
+    loaded = build(scene) if model.parameters.size else model
+    residuals = [loaded.residual]
     for done, (name, bare) in enumerate(without.items()):
         if progress is not None:
             progress(f"Counting the operations of {name}", done, len(without))
