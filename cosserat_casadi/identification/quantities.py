@@ -23,6 +23,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.interpolation import interpolation_weights
+from cosserat_casadi.model.section_poses import SectionPoses
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.motion.eigenproblem import ComplexArray
 from cosserat_casadi.scene.families import Kind, Kinds, register
@@ -73,7 +74,10 @@ class Site:
             frame = self.system.frame(FrameName("body", str(self.record.body)))
             poses = [(frame.position, frame.quaternion)] * self.sections
         else:
-            poses = self._sections(self.record.rod)
+            sections = SectionPoses(self.system, self.record.rod, self.weights(self.record.rod))
+            positions = ca.horzsplit(ca.densify(sections.positions))
+            quaternions = ca.horzsplit(ca.densify(sections.quaternions))
+            poses = list(zip(positions, quaternions, strict=True))
         offset = ca.DM(self.record.offset)
         markers: list[tuple[Matrix, Matrix]] = []
         for position, quaternion in poses:
@@ -84,22 +88,6 @@ class Site:
                 marker = position + quaternion_to_matrix(unit) @ offset
             markers.append((marker, unit))
         return markers
-
-    def _sections(self, rod: str) -> list[tuple[Matrix, Matrix]]:
-        """Poses of sections of a rod, world axes."""
-        rod_shape = self.system.rods[rod].shape
-        base = self.system.base(rod)
-        weights = self.weights(rod)
-        rotation = quaternion_to_matrix(base.quaternion)
-        positions = ca.horzsplit(ca.densify(ca.MX(rotation @ (rod_shape.position @ weights))))
-        quaternions = ca.horzsplit(ca.densify(ca.MX(rod_shape.quaternion @ weights)))
-        base_quaternion = ca.densify(ca.MX(base.quaternion))
-        poses: list[tuple[Matrix, Matrix]] = []
-        for position, quaternion in zip(positions, quaternions, strict=True):
-            # Between nodes an interpolated quaternion has the norm 1 to the accuracy of the grid only.
-            unit = quaternion / ca.sqrt(ca.sumsqr(quaternion))
-            poses.append((base.position + position, quaternion_product(base_quaternion, unit)))
-        return poses
 
 
 class Quantity(Kind, ABC, Generic[RecordType]):
