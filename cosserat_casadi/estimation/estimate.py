@@ -23,7 +23,6 @@ from cosserat_casadi.codegen.estimator import (
     EstimatorLibrary,
     Knowledge,
     MeasuredCases,
-    estimator_library,
 )
 from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
@@ -38,7 +37,8 @@ from cosserat_casadi.estimation.beforehand import (
 )
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
-from cosserat_casadi.estimation.stacking import differences, sections_of, stacked
+from cosserat_casadi.estimation.row_library import row_library
+from cosserat_casadi.estimation.stacking import sections_of, stacked
 from cosserat_casadi.identification.cases import Data, read_cases
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
@@ -95,8 +95,8 @@ def estimate(
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
     table.inputs[:, indices] = expected_values(known, table.inputs[:, indices])
-    report("Compiling", 0, 0)
-    library = estimator_library(model, differences(model, sections, indices, table.at), indices)
+    report("Writing and compiling", 0, 0)
+    library = row_library(model, sections, indices, table.at)
     tables = start_tables(table, layout, indices, model.scene)
     runs = _found(library, tables, known, cores or available_cores(), report)
     found = runs[0]
