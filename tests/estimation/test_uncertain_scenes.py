@@ -129,15 +129,15 @@ def test_a_known_force_tells_the_stiffness_vs_a_search_over_all_rows_at_once() -
             parts.append((solution.pose(AT, "rod").position.ravel() - numbers[row]) / SIGMA)
         return np.concatenate(parts)
 
-    # From the truth three steps are enough, each with differences on the solver in Python.
-    other = least_squares(misfit, [*forces, truth], max_nfev=3)
+    # From the truth a few steps are enough, each with differences on the solver in Python.
+    other = least_squares(misfit, [*forces, truth], max_nfev=6)
     covariance = np.linalg.inv(other.jac.T @ other.jac)
     assert found.shared is not None
     assert found.shared.settled
     sigma = np.sqrt(np.diag(covariance))
-    assert_allclose(found.shared.values, other.x[2:], rtol=0, atol=2e-3 * sigma[2])
+    assert_allclose(found.shared.values, other.x[2:], rtol=0, atol=5e-3 * sigma[2])
     assert_allclose(found.shared.sigma, sigma[2:], rtol=1e-3, atol=0)
-    assert_allclose(found.values[:, 0], other.x[:2], rtol=0, atol=2e-3 * sigma[:2].max())
+    assert_allclose(found.values[:, 0], other.x[:2], rtol=0, atol=5e-3 * sigma[:2].max())
     assert_allclose(found.sigma[:, 0], sigma[:2], rtol=1e-3, atol=0)
     assert found.shared.sigma < 0.9 * UNSURE * BENDING
     assert_allclose(found.consistency.squares, 2 * other.cost, rtol=1e-4, atol=0)
