@@ -35,8 +35,8 @@ from cosserat_casadi import (  # noqa: E402
     read_scene,
     scene_from_dict,
     solve,
-    solve_scene,
 )
+from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_error_estimate  # noqa: E402
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong  # noqa: E402
 from cosserat_casadi.errors import CosseratError  # noqa: E402
@@ -168,7 +168,7 @@ class Subject:
 
 def cases_of(scene: Scene, points: int) -> list[Case]:
     """Answers of a scene at random inputs, of which one in six lies outside of the range."""
-    first = solve_scene(scene)
+    first = solve_rods(scene)
     if not first.converged:
         return []
     model = build(scene, first.model.discretisation)
@@ -177,6 +177,7 @@ def cases_of(scene: Scene, points: int) -> list[Case]:
     rng = np.random.default_rng(len(model.pack()))
     with tempfile.TemporaryDirectory() as folder:
         in_c = None if scene.touches_exactly else load(export(model, Path(folder) / "robot", "robot"))
+        assert in_c is None or isinstance(in_c, Compiled)
         subject = Subject(model, _finer(model), in_c, model.parameters.pack())
         found = [_case(subject, rng, inside=k % 6 != 5) for k in range(points)]
     return [case for case in found if case is not None]

@@ -15,7 +15,8 @@ from typing import Annotated
 import typer
 from doc_tables import put, table
 
-from cosserat_casadi import Model, build, export, read_scene, solve_scene
+from cosserat_casadi import Model, build, export, read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "c-interface.md"
@@ -126,7 +127,7 @@ def main(
     rows = []
     for words, (example, change) in SCENES.items():
         scene = read_scene(ROOT / "examples" / f"{example}.toml", (change,) if change else ())
-        model = build(scene, solve_scene(scene).model.discretisation)
+        model = build(scene, solve_rods(scene).model.discretisation)
         rows.append(row(words, model))
         print(rows[-1], flush=True)
     text = table(HEADINGS, rows)

@@ -12,7 +12,6 @@ from cosserat_casadi.codegen.rows import ERRORS, JUDGED, POSE
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene import Scene, Tube, parse_scene
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.spelling import closest
@@ -21,7 +20,7 @@ from cosserat_casadi.sweep.row_model import error_numbers
 from cosserat_casadi.sweep.table import Table
 from cosserat_casadi.sweep.variants import Variant, Variants
 from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution
+from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import TubeModels, solve_inputs
 
 ENERGY = "energy"
@@ -29,13 +28,6 @@ ENERGY = "energy"
 
 TUBE_STABILITY = ("falling_directions", "determinant", "stable")
 """Last columns of a row of results, where they are asked for."""
-
-ENDED = {
-    TubeOutcome.CONVERGED: Outcome.CONVERGED,
-    TubeOutcome.NOT_FOUND: Outcome.LOAD_STALLED,
-    TubeOutcome.UNRESOLVED: Outcome.UNRESOLVED,
-}
-"""How a row ends, in the words of all sweeps."""
 
 
 def tube_results(scene: Scene, *, estimate_errors: bool = False, stability: bool) -> tuple[str, ...]:
@@ -111,7 +103,7 @@ class TubeRows:
     def _row(self, solution: TubeSolution, width: int) -> FloatArray:
         """A solution as a row of results; of what did not converge nothing but how it ended."""
         row = np.full(width, np.nan)
-        ending = ENDINGS.index(ENDED[solution.outcome])
+        ending = ENDINGS.index(solution.outcome)
         row[: len(JUDGED)] = (ending, solution.iterations, solution.residual_norm)
         if not solution.converged:
             return row
