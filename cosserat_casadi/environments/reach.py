@@ -16,11 +16,12 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.codegen.plain import vector
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
@@ -115,7 +116,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
         described = (scene if isinstance(scene, Scene) else read_scene(Path(scene))).baked()
         self.rod = _rod_name(described, rod)
-        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
+        self.model = build(described, solve_rods(described).model.discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
         self._moves = _moving_entries(self.model)
         self._late = self._moves[self._acting.indices]
@@ -293,4 +294,6 @@ def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
 
 def _compiled(model: Model) -> Compiled:
     with tempfile.TemporaryDirectory() as folder:
-        return load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+        library = load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+    assert isinstance(library, Compiled)
+    return library

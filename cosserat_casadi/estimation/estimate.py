@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import tune
+from cosserat_casadi.accuracy.choose import choose
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
@@ -166,7 +166,7 @@ def estimate_scene(
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
         expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
-        completed = tune(completed, list(expected)).scene
+        completed = choose(completed, cases=list(expected)).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 
@@ -243,7 +243,7 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
         scene = model.scene
         if model.parameters.size:
             scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
-        solution = solve_scene(scene, model.inputs.unpack(result.inputs[row]))
+        solution = solve_rods(scene, model.inputs.unpack(result.inputs[row]))
         yield row, solution.error_estimate if solution.converged else None
 
 

@@ -11,10 +11,10 @@ from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check, print_ranges
+from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
@@ -23,6 +23,7 @@ from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
+from cosserat_casadi.tubes.robot import robot_of
 
 
 def check(
@@ -39,7 +40,7 @@ def check(
     if checked_scene.tubes:
         if timed:
             raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
-        check_tube_scene(checked_scene)
+        print_tubes_check(Console(), robot_of(checked_scene))
         return
     if timed:
         # A compiler that is missing is reported before anything is printed.
