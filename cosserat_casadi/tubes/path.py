@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
@@ -247,13 +247,7 @@ class _Way:
             first = solution_near(model, self.start, self.at_start.x)
         if not first.converged:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
-        change = self.end - self.start
-        path = Path(
-            residual=lambda x, t: np.ravel(model.residual(x, self.inputs(t), 1.0).full()),
-            jacobian=lambda x, t: model.jacobian(x, self.inputs(t), 1.0)[0].full(),
-            rate=lambda x, t: np.ravel(model.input_rate(x, self.inputs(t), 1.0, change).full()),
-            start=first.x,
-        )
+        path = input_path(model, first.x, self.start, self.end)
         usual = SLIDING if self.unit == "m" else TURNING
         traced = trace(Curve(path, DETERMINANT, self.limits or usual), progress=progress)
         return self._path(model, traced)

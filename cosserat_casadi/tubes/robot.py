@@ -109,11 +109,11 @@ class Robot:
         """Where the numbers of a load begin in the inputs."""
         return 2 * self.size + COMPONENTS * index
 
-    def with_loads(self, inputs: FloatArray, factor: float) -> FloatArray:
-        """The inputs with all loads times a factor."""
-        scaled = inputs.copy()
-        scaled[2 * self.size :] *= factor
-        return scaled
+    def without_loads(self, inputs: FloatArray) -> FloatArray:
+        """The inputs with all loads zero."""
+        unloaded = inputs.copy()
+        unloaded[2 * self.size :] = 0.0
+        return unloaded
 
     def input_index(self, name: str) -> int:
         """Place of an input in the inputs.
