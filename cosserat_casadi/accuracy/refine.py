@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
@@ -34,7 +35,7 @@ from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.node_residual import min_modes
-from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
@@ -47,9 +48,9 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
-from cosserat_casadi.tubes.equilibria import stable_tubes
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import solve_tubes
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -103,9 +104,11 @@ def solve_scene(
     """
     if not scene.tubes:
         return solve_rods(scene, values, stable=stable, progress=progress, report=report)
-    if stable:
-        return stable_tubes(scene, values)
-    return solve_tubes(scene, values)
+    # Imported here, because no scene of rods needs the modules of tubes.
+    from cosserat_casadi.tubes.equilibria import stable_tubes
+    from cosserat_casadi.tubes.solve import solve_tubes
+
+    return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
 
 
 def solve_rods(
@@ -178,7 +181,11 @@ def _with_tolerance(solver: SceneSolver) -> Solution:
 
 def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Solution:
     """A reference for a tolerance, refined from the level that it begins with; or a failure."""
-    first = Level.first(tolerance, solver.signal_modes)
+    least = solver.signal_modes
+    if solver.is_assembly:
+        # On fewer modes what is extrapolated is far too large, and so is the model that it leads to.
+        least = max(least, TELLING)
+    first = Level.first(tolerance, least)
     return _refined(solver, first, tolerance)
 
 

@@ -13,7 +13,7 @@ from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.errors import CosseratError
+from cosserat_casadi.errors import NoReferenceError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import load_values
@@ -30,12 +30,6 @@ MORE_NODES = 8
 
 AGREEMENT = 1e-6
 """Largest distance of the two references, relative to the length: beyond, neither is believed."""
-
-
-class NoReferenceError(CosseratError):
-    """No reference was found."""
-
-    page = "accuracy"
 
 
 @dataclass(frozen=True)

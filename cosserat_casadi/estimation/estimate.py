@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.choose import choose
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.accuracy.tune import tune
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
@@ -166,7 +166,7 @@ def estimate_scene(
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
         expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
-        completed = tune(completed, list(expected)).scene
+        completed = choose(completed, cases=list(expected)).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 

@@ -20,7 +20,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 RECHOSEN = 2
 """Times that a discretisation is chosen again at what was found."""

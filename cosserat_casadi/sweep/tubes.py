@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene import Scene, Tube, parse_scene
 from cosserat_casadi.scene.number_table import shortened
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 from cosserat_casadi.sweep.outcome_table import ENDINGS
 from cosserat_casadi.sweep.table import Table
 from cosserat_casadi.sweep.variants import Variant, Variants

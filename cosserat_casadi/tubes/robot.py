@@ -16,7 +16,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad, loads_of
 
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)

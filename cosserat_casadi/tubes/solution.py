@@ -12,7 +12,7 @@ from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stability import Stability, stability_of

@@ -22,9 +22,9 @@ from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
-from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.errors import NoReferenceError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import is_damped, price, price_of_motion, without_damping
 from tests.moving_scenes import model_of

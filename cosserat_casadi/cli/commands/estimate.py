@@ -26,7 +26,7 @@ from cosserat_casadi.estimation import Estimate, estimate_scene
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 WRITERS = {".json": estimate_text, ".csv": estimate_table}
 

@@ -11,10 +11,9 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.accuracy.choose import with_choice
+from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.cli.commands.cases import load_cases
-from cosserat_casadi.cli.commands.choosing import choose_with_progress
-from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
+from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
@@ -29,7 +28,6 @@ from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_names
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -110,7 +108,6 @@ def export(
             "--stability": stability,
             "--batches": batches,
             "--over": over is not None,
-            "--range": bool(ranges),
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
@@ -170,15 +167,11 @@ def export(
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     solved_scene = exported_scene.held() if moves else exported_scene
-    choice = None
+    solution, choice = solve_for_ranges(solved_scene, asked_ranges)
     verified = None
-    if exported_scene.touches_exactly:
-        solution = solve_rods_with_progress(solved_scene)
-    else:
-        choice = choose_with_progress(solved_scene, asked_ranges)
+    if choice is not None:
         verified = choice.verified
-        solution = solve(choice.model)
-        exported_scene = with_choice(exported_scene, choice.model.discretisation, choice.ranges)
+        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
     _check_solved(solution)
     console = Console()
     model = solution.model

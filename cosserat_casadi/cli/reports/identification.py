@@ -10,16 +10,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import (
-    discretisation_sentences,
-    print_plain,
-    print_written,
-    table_of,
-    title_line,
-)
+from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
+from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 MOST_CASES = 10
 """Unknowns of single cases that are printed for so many cases; the file has them all."""

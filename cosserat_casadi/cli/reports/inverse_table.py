@@ -12,7 +12,7 @@ from cosserat_casadi.cli.reports.format import print_plain, print_written
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
 from cosserat_casadi.results.inverse_table import MET
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 MOST_TOLD = 20
 """Rows that failed which are told; the file has them all."""

@@ -11,14 +11,13 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
-from cosserat_casadi.accuracy.tune import Tuning
-from cosserat_casadi.cli.reports.format import discretisation_table, print_plain, table_of, title_line
+from cosserat_casadi.cli.reports.discretisation import discretisation_table
+from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.price import price, price_of_load, price_of_obstacle
 from cosserat_casadi.scene.varying import VaryingValue
 
@@ -68,37 +67,21 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
-def print_tuning(console: Console, tuning: Tuning, layout: CaseLayout, cases: FloatArray) -> None:
-    """Print the discretisation that was chosen, and the load case that is worst on it."""
-    worst = tuning.solutions[tuning.worst]
-    console.print(discretisation_table(worst.model))
-    print_plain(console, _tuning_verdict(tuning, len(cases)))
-    ranges = tuning.scene.accuracy.chosen_for
-    if ranges:
-        print_plain(console, "It holds for " + ", ".join(map(escape, ranges)))
-
-    point = _point(layout.unpack(cases[tuning.worst]))
-    ending = worst.message
-    if worst.error_estimate is not None:
-        ending = f"estimated error {worst.error_estimate:.1e}"
-    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(point)}: {ending}")
-
-
 def print_choice(console: Console, choice: Choice) -> None:
     """Print what a discretisation was chosen for, and the point that is worst on it."""
     tolerance = choice.scene.accuracy.tolerance
     if choice.met:
-        print_plain(console, f"[bold green]All {choice.solves} points of the ranges are within {tolerance:g}.[/]")
+        print_plain(console, f"[bold green]All {choice.solves} load cases are within {tolerance:g}.[/]")
     else:
-        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every point of the ranges.[/]")
+        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
     print_ranges(console, choice.ranges)
     if choice.without_equilibrium:
         count = len(choice.without_equilibrium)
         point = escape(_point(choice.without_equilibrium[0]))
-        print_plain(console, f"[bold yellow]No equilibrium was found at {count} points[/], such as {point}")
+        print_plain(console, f"[bold yellow]No equilibrium was found at {count} load cases[/], such as {point}")
     if choice.error_estimate is not None:
         error = f"estimated error {choice.error_estimate:.1e}"
-        print_plain(console, f"Worst point: {escape(_point(choice.worst))}: {error}")
+        print_plain(console, f"Worst case: {escape(_point(choice.worst))}: {error}")
 
 
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
@@ -114,16 +97,6 @@ def _point(values: Mapping[str, FloatArray]) -> str:
     """Inputs and parameters in words."""
     # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
     return ", ".join(f"{name} = {value.T.squeeze().tolist()}" for name, value in values.items())
-
-
-def _tuning_verdict(tuning: Tuning, count: int) -> str:
-    tolerance = tuning.scene.accuracy.tolerance
-    failed = [solution for solution in tuning.solutions if not solution.converged]
-    if failed:
-        return f"[bold red]{len(failed)} of {count} load cases did not converge.[/]"
-    if tuning.met:
-        return f"[bold green]All {count} load cases are within {tolerance:g}.[/]"
-    return f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]"
 
 
 def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:

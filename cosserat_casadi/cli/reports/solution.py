@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import (
-    digits,
-    discretisation_sentences,
-    print_plain,
-    print_written,
-    table_of,
-    title_line,
-)
-from cosserat_casadi.control.inverse_result import Inverse
-from cosserat_casadi.control.targets import Gap
+from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
+from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
+
+# Only named in signatures: what prints a solution needs no solver of inverse problems.
+if TYPE_CHECKING:
+    from cosserat_casadi.control.inverse_result import Inverse
+    from cosserat_casadi.control.targets import Gap
 
 STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
 

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweep.outcome_file import STABLE, record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan
