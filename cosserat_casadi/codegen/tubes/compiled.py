@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -123,10 +123,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        end = TUBE_OUTCOMES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("solve", pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
@@ -141,11 +139,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        status = self._function("follow")(*arguments)
-        end = TUBE_OUTCOMES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("follow", pointer(start.inputs), pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def track(
         self,
@@ -175,14 +170,11 @@ class CompiledTubes(LoadedLibrary):
         memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
         columns = np.zeros((len(self.tubes), given.size, POSE_SIZE))
         wanted = pointer(columns) if derivatives else None
-        info = TubeInfo()
-        status = self._function("track")(
-            pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
-        )
-        end = TUBE_OUTCOMES[status]
-        found = by_tip(self.tubes, columns) if derivatives and end is Outcome.CONVERGED else None
-        solved = end is Outcome.CONVERGED
-        return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
+        info = self._ended("track", pointer(given), pointer(x), memory, options, None, wanted)
+        # After any other end x is that of the turn before, for its inputs.
+        solved = TUBE_OUTCOMES[info.status] is Outcome.CONVERGED
+        found = by_tip(self.tubes, columns) if derivatives and solved else None
+        return self._answer(given, x, info, solved=(Outcome.CONVERGED,), derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -202,11 +194,18 @@ class CompiledTubes(LoadedLibrary):
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
+    def _ended(self, word: str, *arguments: Any) -> TubeInfo:
+        """How a call of a function of the solver ended."""
+        info = TubeInfo()
+        self._function(word)(*arguments, self._workspace(), ctypes.byref(info))
+        return info
+
     def _answer(
-        self, outcome: Outcome, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
+        self, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: Sequence[Outcome] = SOLVED, **more: Any
     ) -> CompiledTubesSolution:
+        outcome = TUBE_OUTCOMES[info.status]
         tips: dict[str, FloatArray] = {}
-        if solved:
+        if outcome in solved:
             poses = np.zeros((len(self.tubes), POSE_SIZE))
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import (
+    PLAIN_BUILD,
     SHARED,
     comment,
     solver_constants,
@@ -97,7 +98,7 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
         f"{name}.c": render("tubes_library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("tubes_demo.c.in", words),
-        "CMakeLists.txt": render("solver_cmake.in", words),
+        "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("tubes_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
@@ -133,8 +134,9 @@ def _words(
         "version": version("cosserat-casadi"),
         "casadi_version": ca.CasadiMeta.version(),
         "title": comment(robot.scene.title or names.name),
-        "included": "tubes_turn.c",
+        **PLAIN_BUILD,
         "inner": "any_",
+        "inner_equations": "",
         "first": 1.0,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
