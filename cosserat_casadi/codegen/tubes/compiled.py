@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import AnswerInfo
+from cosserat_casadi.codegen.compiled_results import AnswerInfo, CompiledAnswer, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import TUBES
@@ -36,46 +36,26 @@ class TubeOptions(ctypes.Structure):
     _fields_ = (("max_iterations", ctypes.c_int), ("max_continuation_steps", ctypes.c_int))
 
 
-@dataclass(frozen=True)
-class CompiledTubesSolution:
+@dataclass(frozen=True, kw_only=True)
+class CompiledTubesSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
-        outcome: how it ended.
         inputs: that it is of, shape (m,).
         x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
             the frame at the tip of the robot less 1 0 0 0 behind them.
         tips: position and quaternion of the tip of each tube, shape (7,); none without a solution.
         determinant: 1 of tubes that do not twist, 0 where the robot snaps, negative where it cannot stay.
-        iterations: Newton steps.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
-        load_factor: share of the way that x has come; 1 where it converged.
         derivatives: of the tip of each tube with the inputs, shape (7, m), where they were asked for.
         memory: what the next turn begins with.
     """
 
-    outcome: Outcome
     inputs: FloatArray
     x: FloatArray
     tips: Mapping[str, FloatArray]
     determinant: float
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     derivatives: Mapping[str, FloatArray] | None = None
     memory: bytes = field(default=b"", repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def message(self) -> str:
-        """A sentence that says how it ended."""
-        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -203,21 +183,16 @@ class CompiledTubes(LoadedLibrary):
     def _answer(
         self, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: Sequence[Outcome] = SOLVED, **more: Any
     ) -> CompiledTubesSolution:
-        outcome = TUBE_OUTCOMES[info.status]
         tips: dict[str, FloatArray] = {}
-        if outcome in solved:
+        if TUBE_OUTCOMES[info.status] in solved:
             poses = np.zeros((len(self.tubes), POSE_SIZE))
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            outcome=outcome,
+            **answer_words(info, TUBE_OUTCOMES),
             inputs=inputs,
             x=x,
             tips=tips,
             determinant=info.determinant,
-            iterations=info.iterations,
-            jacobians=info.jacobians,
-            residual_norm=info.residual_norm,
-            load_factor=info.load_factor,
             **more,
         )
