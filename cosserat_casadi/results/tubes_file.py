@@ -94,7 +94,7 @@ def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
         "determinant": solution.stability.determinant,
         "energy": solution.energy,
         "steps": solution.model.steps,
-        "inputs": dict(zip(robot.input_names, solution.inputs.tolist(), strict=True)),
+        "inputs": dict(zip(robot.columns, solution.inputs.tolist(), strict=True)),
         "tip_angles": solution.angles,
         "centre_line": {"distance": shape.distance, "position": shape.position, "quaternion": shape.quaternion},
         "tubes": entries,

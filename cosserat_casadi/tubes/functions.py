@@ -17,6 +17,8 @@ import numpy as np
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
@@ -55,6 +57,16 @@ class TubeFunctions(ABC):
     def size(self) -> int:
         """Number of tubes."""
         return self.robot.size
+
+    @property
+    def scene(self) -> Scene:
+        """The scene this is a model of."""
+        return self.robot.scene
+
+    @property
+    def inputs(self) -> InputLayout:
+        """Names, order and default values of the inputs."""
+        return self.robot.layout
 
     # What a model says
 

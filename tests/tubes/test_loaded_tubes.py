@@ -67,7 +67,7 @@ def weighed(text: str) -> str:
 
 def forces_of(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
     """Force at the tip of each tube, N, and per length along it, N/m, in world axes, shapes (n, 3)."""
-    inputs = dict(zip(found.robot.input_names, found.inputs, strict=True))
+    inputs = dict(zip(found.robot.columns, found.inputs, strict=True))
 
     def value(name: str) -> np.ndarray:
         return np.array([inputs.get(f"{name}.{axis}", 0.0) for axis in "xyz"])
@@ -330,7 +330,7 @@ def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
 def test_derivatives_of_energy_and_tips() -> None:
     found = solve_scene(parse_scene(weighed(TWO) + PUSH + WEIGHT))
     robot = found.robot
-    for index, name in enumerate(robot.input_names):
+    for index, name in enumerate(robot.columns):
         ahead = moved(found, index, DIFFERENCE)
         behind = moved(found, index, -DIFFERENCE)
         assert ahead.converged

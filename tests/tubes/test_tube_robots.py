@@ -409,7 +409,7 @@ def test_refused_scenes(text: str, where: list[str]) -> None:
         ({"inner.translation": 0.31}, "inner.translation: must be from 0 to the length"),
         ({"inner.turn": 1.0}, "inner.turn: is no input"),
         ({"inner.rotation": [1.0, 2.0]}, "inner.rotation: must be a number"),
-        ([0.0, 0.1, 0.0], "inputs: must have 4 entries"),
+        ([0.0, 0.1, 0.0], "inputs: must be 4 numbers"),
         ({"inner.translation": 0.0, "outer.translation": 0.0}, "no tube stands out"),
     ],
 )

@@ -101,7 +101,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
     unknowns = model_of(robot, FEWEST_STEPS).unknowns
-    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.input_names)}")
+    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 
 def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:
