@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
@@ -47,9 +48,9 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
-from cosserat_casadi.tubes.equilibria import stable_tubes
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import solve_tubes
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -103,9 +104,11 @@ def solve_scene(
     """
     if not scene.tubes:
         return solve_rods(scene, values, stable=stable, progress=progress, report=report)
-    if stable:
-        return stable_tubes(scene, values)
-    return solve_tubes(scene, values)
+    # Imported here, because no scene of rods needs the modules of tubes.
+    from cosserat_casadi.tubes.equilibria import stable_tubes
+    from cosserat_casadi.tubes.solve import solve_tubes
+
+    return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
 
 
 def solve_rods(

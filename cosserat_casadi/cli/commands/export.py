@@ -26,7 +26,7 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
-from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_names
+from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
@@ -36,7 +36,6 @@ from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import solve_tubes
 
@@ -215,7 +214,7 @@ def _check_solved(solution: Solution | TubeSolution) -> None:
 
 def _export_tubes(scene: Scene, output: Path, name: str) -> None:
     """Write concentric tubes with the steps that the scene's own inputs need."""
-    tube_names(name, robot_of(scene))
+    scene_names(name, scene)
     solution = solve_tubes(scene)
     _check_solved(solution)
     export_model(solution.model, output, name, error_estimate=solution.error_estimate)
