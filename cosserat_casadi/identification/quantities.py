@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Generic, TypeVar, final
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, as_vector, is_symbolic
 from cosserat_casadi.maths.rotation import (
     quaternion_conjugate,
     quaternion_product,
@@ -74,13 +75,13 @@ class Site:
             poses = [(frame.position, frame.quaternion)] * self.sections
         else:
             poses = self._sections(self.record.rod)
-        offset = ca.DM(self.record.offset)
+        offset = as_matrix(as_vector(self.record.offset))
         markers: list[tuple[Matrix, Matrix]] = []
         for position, quaternion in poses:
             # A planar rod leaves entries of its quaternion structurally zero.
             unit = ca.densify(ca.MX(quaternion))
             marker = position
-            if any(self.record.offset):
+            if any_symbolic(self.record.offset) or any(self.record.offset):
                 marker = position + quaternion_to_matrix(unit) @ offset
             markers.append((marker, unit))
         return markers
@@ -250,7 +251,7 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
         system = site.system
         discrete = system.discrete.rods[rod]
         x, y = site.record.fibre
-        place = ca.DM([x, y, 0.0])
+        place = ca.MX(as_matrix(as_vector((x, y, 0.0))))
         ratio = ratio_of(system.discrete, rod, system.arguments)
         q = system.arguments.x[system.discrete.unknowns.strain(rod)]
         # Strains are polynomials that the nodes resolve: the interpolant through them is exact.
@@ -319,11 +320,11 @@ def _strains(rows: Sequence[Matrix | None], count: int) -> Matrix:
     return ca.vertcat(*full)
 
 
-def _stretch(strain: Matrix, place: ca.DM) -> Matrix:
+def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
     """Length of a fibre per length of the centreline at each section, 1×k."""
     columns = []
     for column in ca.horzsplit(strain):
-        direction = column[3:] + ca.cross(column[:3], ca.MX(place))
+        direction = column[3:] + ca.cross(column[:3], place)
         columns.append(ca.norm_2(direction))
     return ca.horzcat(*columns)
 
@@ -333,7 +334,7 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
 
     Args:
         model: with parameters.
-        record: the measurement.
+        record: the measurement as the scene of the model's equations has it, its unknown numbers expressions of p.
         sections: number k of sections that are asked for at once.
 
     Returns:
@@ -346,7 +347,10 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     p = discrete.parameters.symbol
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
-    site = Site(System(discrete, Arguments(x, inputs)), record, at, measured)
+    place = getattr(record, "at", None)
+    # A place that is unknown is a number of p, whatever the rows say.
+    places = ca.repmat(place, 1, sections) if is_symbolic(place) else at
+    site = Site(System(discrete, Arguments(x, inputs)), record, places, measured)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
     derivatives = [ca.densify(ca.jacobian(stacked, argument)) for argument in (x, inputs, p)]
     return ca.Function("difference", [x, inputs, p, at, measured], [stacked, *derivatives])
