@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 DOUBTED = 4.0
 """Deviations of a normal distribution beyond which chance is no explanation: 1 of 30 000 times on one side."""

@@ -16,15 +16,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import tune
+from cosserat_casadi.accuracy.choose import choose
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
     EstimatorLibrary,
     Knowledge,
     MeasuredCases,
-    estimator_library,
 )
 from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
@@ -42,8 +41,9 @@ from cosserat_casadi.estimation.consistency import Consistency, consistency
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
 from cosserat_casadi.estimation.posterior import Sampled, sampled
+from cosserat_casadi.estimation.row_library import row_library
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
-from cosserat_casadi.estimation.stacking import differences, sections_of, sensor_names, stacked
+from cosserat_casadi.estimation.stacking import sections_of, sensor_names, stacked
 from cosserat_casadi.identification.cases import Data, read_cases
 from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
@@ -98,8 +98,8 @@ def estimate(
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
     table.inputs[:, indices[:own]] = expected_values(known, table.inputs[:, indices[:own]])
-    report("Compiling", 0, 0)
-    library = estimator_library(model, differences(model, sections, indices, table.at), indices)
+    report("Writing and compiling", 0, 0)
+    library = row_library(model, sections, indices, table.at)
     tables = start_tables(table, layout, indices, model.scene)
     search = Search(library, tables, known, indices, cores or available_cores(), report)
     (found, second), shared, added = _rows_and_shared(search, layout)
@@ -286,7 +286,7 @@ def estimate_scene(
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
         expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
-        completed = tune(completed, list(expected)).scene
+        completed = choose(completed, cases=list(expected)).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 
@@ -351,7 +351,7 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
         scene = model.scene
         if model.parameters.size:
             scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
-        solution = solve_scene(scene, model.inputs.unpack(result.inputs[row]))
+        solution = solve_rods(scene, model.inputs.unpack(result.inputs[row]))
         yield row, solution.error_estimate if solution.converged else None
 
 

@@ -116,11 +116,14 @@ class Estimate:
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether every case that was solved again is within the scene's tolerance; None where none was."""
-        if not self.checked:
+        """Whether every case that was solved again is within the scene's tolerance.
+
+        None where none was, and where no tolerance has a meaning.
+        """
+        accuracy = self.model.scene.accuracy
+        if not self.checked or not accuracy.binds:
             return None
-        tolerance = self.model.scene.accuracy.tolerance
-        return all(error is not None and error <= tolerance for _, error in self.checked)
+        return all(error is not None and error <= accuracy.tolerance for _, error in self.checked)
 
     @property
     def holds(self) -> bool:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed, union_of
+from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
+from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with_accuracy
 from cosserat_casadi.identification.cases import Case, Datum
 from cosserat_casadi.identification.fitted import with_inputs
 from cosserat_casadi.identification.misfit import inputs_of, moving
@@ -77,24 +77,21 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
             warnings.append(f"The discretisation for motions: {motion.message}")
     if not chosen:
         return Choice(scene)
-    return Choice(fixed(scene, union_of(chosen)), tuple(warnings))
+    # Written out: a tolerance that nobody has written asks nothing of modes that are fixed.
+    asked = with_accuracy(scene, tolerance=scene.accuracy.tolerance)
+    return Choice(fixed_alike(asked, union_of(chosen)), tuple(warnings))
 
 
 def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray) -> list[Discretisation]:
     """One for the equilibria of some rows of inputs, shape (cases, size); none where none has an equilibrium."""
     if not len(inputs):
         return []
-    chosen = [(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
-    alone = [solve_scene(one, values) for one, values in chosen]
-    used = [i for i, solution in enumerate(alone) if solution.converged]
-    if not used:
+    cases = [LoadCase(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
+    search = CommonModes(cases)
+    answers = search.refined(no_more)
+    if len(search.without_equilibrium) == len(cases):
         return []
-    discretisation, _ = common_discretisation(
-        [chosen[i] for i in used],
-        [alone[i] for i in used],
-        solve_scene,
-    )
-    return [discretisation]
+    return list(answers.chosen.values())
 
 
 def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.refine import FINER_MODES, solve_scene
+from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
@@ -290,7 +290,7 @@ def modes_of_scene(
     refuse_obstacles(scene, "an analysis of modes")
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
-    equilibrium = solve_scene(scene, values, progress=progress, report=report)
+    equilibrium = solve_rods(scene, values, progress=progress, report=report)
     if not equilibrium.converged:
         return _no_equilibrium(equilibrium)
     if scene.accuracy.fixed:

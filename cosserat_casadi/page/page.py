@@ -11,6 +11,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.codegen.texts import fill
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
@@ -31,7 +32,8 @@ def export_page(solution: Solution, file: Path) -> Path:
     """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
 
     Args:
-        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps.
+        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
+            :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
         file: what is written.
 
     Raises:
@@ -52,13 +54,20 @@ def export_page(solution: Solution, file: Path) -> Path:
 
 
 def chosen_for(solution: Solution) -> list[list[float]] | None:
-    """Ends of each input between which the error of the modes was judged: the scene's own inputs, shape (inputs, 2).
+    """Ends of each input between which the error of the modes was judged, shape (inputs, 2).
 
-    None where no tolerance has a meaning, or nobody judged.
+    Those of the ranges that the scene's modes were chosen for; else the scene's own inputs. None where no tolerance has
+    a meaning, or nobody judged.
     """
     if solution.within_tolerance is None:
         return None
-    return [[value, value] for value in solution.inputs.tolist()]
+    scene = solution.model.scene
+    if not scene.accuracy.chosen_for:
+        return [[value, value] for value in solution.inputs.tolist()]
+    ranges = input_ranges(scene)
+    ends = zip(ranges.lower.tolist(), ranges.upper.tolist(), strict=True)
+    # Parameters, which come after the inputs, have no sliders.
+    return [[least, most] for least, most in ends][: solution.model.inputs.size]
 
 
 def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:

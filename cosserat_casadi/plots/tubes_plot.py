@@ -76,7 +76,7 @@ def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
     panel.legend(fontsize=9)
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
     first = solutions[0]
-    add_title(figure, first.robot.title)
+    add_title(figure, first.robot.scene.title)
     _draw_subtitle(canvas.axes, solutions)
     return figure
 

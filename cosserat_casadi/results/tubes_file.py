@@ -12,7 +12,7 @@ from cosserat_casadi.tubes.solution import TubeSolution
 
 def tubes_result(solution: TubeSolution) -> dict[str, Any]:
     """An equilibrium as the plain data of a file; a number that is not finite becomes null."""
-    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.title, **_equilibrium(solution)})
+    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.scene.title, **_equilibrium(solution)})
     return data
 
 
@@ -21,7 +21,7 @@ def equilibria_result(equilibria: TubeEquilibria) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
-            "title": equilibria.robot.title,
+            "title": equilibria.robot.scene.title,
             "complete": equilibria.complete,
             "message": equilibria.message,
             "equilibria": [_equilibrium(solution) for solution in equilibria.solutions],

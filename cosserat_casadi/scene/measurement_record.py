@@ -16,7 +16,6 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.records import Entry, HashedTable, Record
-from cosserat_casadi.scene.spelling import counted
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
     SEVERAL,
@@ -29,6 +28,7 @@ from cosserat_casadi.scene.values import (
     Whole,
     numbers_of,
 )
+from cosserat_casadi.spelling import counted
 
 
 class InputColumn(Record):

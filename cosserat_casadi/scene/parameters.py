@@ -21,7 +21,7 @@ from cosserat_casadi.scene.fields import unit_of, varies_by_component, varying_m
 from cosserat_casadi.scene.inputs import AXES
 from cosserat_casadi.scene.profiles import ENDS
 from cosserat_casadi.scene.records import Entry, Record, keys_of
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 
 PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "supports", "measurements")
 """Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""

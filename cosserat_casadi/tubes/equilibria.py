@@ -116,6 +116,25 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
     return _without_loads(TubeModel(robot, model.steps), at)
 
 
+def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
+    """The equilibrium of :func:`solve_tubes`; the stable one of least energy where it is not stable and there is one.
+
+    Args:
+        scene: a scene with tubes.
+        values: as in :func:`solve_tubes`.
+
+    Raises:
+        SceneError: as :func:`all_equilibria`, and where the loads have no energy.
+    """
+    if not robot_of(scene).has_energy:
+        problem = "the loads have no energy, which would tell what is stable"
+        raise SceneError(Problem("--stable", problem, "leave it out"))
+    solution = solve_tubes(scene, values)
+    if solution.stable:
+        return solution
+    return next(iter(all_equilibria(scene, values).stable), solution)
+
+
 def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
     """The equilibria that those without loads lead to."""
     robot = model.robot

@@ -16,7 +16,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad, loads_of
 
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)
@@ -39,7 +39,7 @@ class Robot:
     """Tubes as arrays with one entry a tube, in the order of the scene.
 
     Attributes:
-        title: of the scene.
+        scene: where the tubes are from.
         names: of the tubes.
         bending: EI, shape (n,), N m².
         torsion: GJ, shape (n,), N m².
@@ -49,10 +49,9 @@ class Robot:
         loads: what acts on the tubes, m inputs of three numbers.
         inputs: rotation and translation of each tube in the scene, then the loads, shape (2 n + 3 m,), rad, m and the
             units of the loads.
-        tolerance: wanted pose error of the tips, distances relative to the length that stands out.
     """
 
-    title: str
+    scene: scenes.Scene
     names: tuple[str, ...]
     bending: FloatArray
     torsion: FloatArray
@@ -61,7 +60,11 @@ class Robot:
     curved: FloatArray
     loads: tuple[TubeLoad, ...]
     inputs: FloatArray
-    tolerance: float
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted pose error of the tips, distances relative to the length that stands out."""
+        return self.scene.accuracy.tolerance
 
     @property
     def size(self) -> int:
@@ -202,7 +205,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
     inputs = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
     inputs += [value for load in loads for value in load.value]
     return Robot(
-        title=scene.title,
+        scene=scene,
         names=tuple(tube.name for tube in scene.tubes),
         bending=stiffness[:, 0],
         torsion=stiffness[:, 1],
@@ -211,7 +214,6 @@ def robot_of(scene: scenes.Scene) -> Robot:
         curved=np.array([tube.curved for tube in scene.tubes]),
         loads=loads,
         inputs=np.array(inputs, dtype=float),
-        tolerance=scene.accuracy.tolerance,
     )
 
 

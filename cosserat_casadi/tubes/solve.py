@@ -13,12 +13,12 @@ from cosserat_casadi.numerics.continuation import ContinuationResult, Path, Path
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.paths.trace import PathOutcome, trace
+from cosserat_casadi.numerics.trace import PathOutcome, trace
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
+from cosserat_casadi.tubes.solution import TubeSolution, tip_error
 
 FEWEST_STEPS = 2
 """Steps of a piece that the search begins with."""
@@ -96,10 +96,10 @@ def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
     """A solution with the estimate of its error, and its outcome by that."""
-    outcome = solution.outcome
-    if solution.converged and (error is None or error > solution.robot.tolerance):
-        outcome = TubeOutcome.UNRESOLVED
-    return replace(solution, outcome=outcome, error_estimate=error)
+    estimated = replace(solution, error_estimate=error)
+    if estimated.converged and not estimated.within_tolerance:
+        return replace(estimated, outcome=Outcome.UNRESOLVED)
+    return estimated
 
 
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
@@ -186,9 +186,9 @@ def solution_at(
         found: whether they are an equilibrium.
         iterations: Newton steps of the search.
     """
-    outcome = TubeOutcome.NOT_FOUND
+    outcome = Outcome.LOAD_STALLED
     if found:
-        outcome = TubeOutcome.CONVERGED
+        outcome = Outcome.CONVERGED
     residual = model.residual(x, inputs, 1.0).full()
     missed = float(np.abs(residual).max())
     return TubeSolution(model, inputs, x, outcome, missed, None, iterations)

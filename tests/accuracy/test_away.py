@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import build, discretise, scene_from_dict, solve, solve_scene
-from cosserat_casadi.accuracy.choose import choose, freedom
+from cosserat_casadi.accuracy.choose import choose
+from cosserat_casadi.accuracy.common_modes import freedom
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene import Scene
 

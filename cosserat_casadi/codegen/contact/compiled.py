@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.codegen.compiled_results import Info
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
-from cosserat_casadi.codegen.contact.sources import VERBATIM
 from cosserat_casadi.codegen.input_values import ArgumentValues
-from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, check_folder, input_count, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
@@ -112,6 +106,18 @@ class CompiledContact(LoadedLibrary):
         library: the shared object.
         manifest: what the folder says of itself.
     """
+
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of exact contact is there."""
+        names = [*described["rods"], *described["obstacles"]]
+        contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
+        return contacts and all(isinstance(name, str) for name in names)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Number of the arrangements by its macro."""
+        return {"ARRANGEMENTS": len(described[ARRANGEMENTS])}
 
     @property
     def rods(self) -> list[str]:
@@ -251,40 +257,3 @@ class CompiledContact(LoadedLibrary):
             raise ValueError("the start is a solution of another library")
         ctypes.memmove(state, solution.state, len(solution.state))
         return state
-
-
-def load_in_contact(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> CompiledContact:
-    """Compile an exported folder of a scene in exact contact, once, and load it.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export`.
-        compiler: C compiler, as for :func:`cosserat_casadi.load`.
-        progress: told what is compiled, likewise.
-
-    Raises:
-        ExportError: the folder is not one of a scene in exact contact, another version has written it, its files do
-            not belong together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if not is_sound(described, _has_contacts):
-        problem = "is not the manifest of a scene in exact contact"
-        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
-    sizes = {"INPUTS": input_count(described), "ARRANGEMENTS": len(described[ARRANGEMENTS])}
-    check_folder(folder, described, sizes)
-    name = described["name"]
-    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
-    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [
-        folder / file for file in described["files"] if file in {*VERBATIM, *FOURS, f"{name}_kernels_in_fours.h"}
-    ]
-    return CompiledContact(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
-
-
-def _has_contacts(described: Any) -> bool:
-    """Whether what is read of a manifest of exact contact is there."""
-    names = [*described["rods"], *described["obstacles"]]
-    contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
-    return contacts and all(isinstance(name, str) for name in names)

@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.library import comment, input_words, version_words
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
-from cosserat_casadi.codegen.status import contact_status_words
+from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
 from cosserat_casadi.model.build import Model, build
@@ -152,7 +152,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "default_iterations": TRACK_ITERATIONS,
         "default_parts": TRACK_PARTS,
         **_limits(chosen),
-        **contact_status_words(names),
+        **status_words(names, CONTACT_OUTCOMES, "CONTACT"),
     }
 
 

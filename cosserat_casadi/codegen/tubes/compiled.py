@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
-from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import TUBES
 from cosserat_casadi.codegen.plain import pointer, vector
-from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
-from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 
-SOLVED = (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED)
+SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
 """Ends after which x is a solution for the inputs, if of the discrete equations alone."""
 
 
@@ -45,7 +41,7 @@ class CompiledTubesSolution:
     """What the solver in C found.
 
     Attributes:
-        status: how it ended.
+        outcome: how it ended.
         inputs: that it is of, shape (m,).
         x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
             the frame at the tip of the robot less 1 0 0 0 behind them.
@@ -59,7 +55,7 @@ class CompiledTubesSolution:
         memory: what the next turn begins with.
     """
 
-    status: TubeStatus
+    outcome: Outcome
     inputs: FloatArray
     x: FloatArray
     tips: Mapping[str, FloatArray]
@@ -74,12 +70,12 @@ class CompiledTubesSolution:
     @property
     def converged(self) -> bool:
         """Whether it is an equilibrium for the inputs."""
-        return self.status is TubeStatus.CONVERGED
+        return self.outcome is Outcome.CONVERGED
 
     @property
     def message(self) -> str:
         """A sentence that says how it ended."""
-        return self.status.value
+        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -91,10 +87,22 @@ class CompiledTubes(LoadedLibrary):
         manifest: what the folder says of itself.
     """
 
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of concentric tubes is there."""
+        tubes = described[TUBES]
+        names = isinstance(tubes, list) and all(isinstance(tube, str) for tube in tubes)
+        return names and isinstance(described["unknowns"], int)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Number of the unknowns by its macro."""
+        return {"UNKNOWNS": described["unknowns"]}
+
     @property
     def tubes(self) -> list[str]:
         """Names of the tubes, in order."""
-        return list(self.manifest[KIND])
+        return list(self.manifest[TUBES])
 
     @property
     def unknowns(self) -> int:
@@ -117,7 +125,7 @@ class CompiledTubes(LoadedLibrary):
         x = self._start(start)
         info = TubeInfo()
         status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        end = STATUSES[status]
+        end = TUBE_OUTCOMES[status]
         return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
@@ -136,7 +144,7 @@ class CompiledTubes(LoadedLibrary):
         info = TubeInfo()
         arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         status = self._function("follow")(*arguments)
-        end = STATUSES[status]
+        end = TUBE_OUTCOMES[status]
         return self._answer(end, given, x, info, solved=end in SOLVED)
 
     def track(
@@ -171,9 +179,9 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("track")(
             pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
         )
-        end = STATUSES[status]
-        found = by_tip(self.tubes, columns) if derivatives and end is TubeStatus.CONVERGED else None
-        solved = end is TubeStatus.CONVERGED
+        end = TUBE_OUTCOMES[status]
+        found = by_tip(self.tubes, columns) if derivatives and end is Outcome.CONVERGED else None
+        solved = end is Outcome.CONVERGED
         return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
@@ -195,7 +203,7 @@ class CompiledTubes(LoadedLibrary):
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
     def _answer(
-        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
+        self, outcome: Outcome, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
     ) -> CompiledTubesSolution:
         tips: dict[str, FloatArray] = {}
         if solved:
@@ -203,7 +211,7 @@ class CompiledTubes(LoadedLibrary):
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            status=status,
+            outcome=outcome,
             inputs=inputs,
             x=x,
             tips=tips,
@@ -214,40 +222,3 @@ class CompiledTubes(LoadedLibrary):
             load_factor=info.load_factor,
             **more,
         )
-
-
-def load_tubes(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> CompiledTubes:
-    """Compile an exported folder of concentric tubes, once, and load it.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export_tubes`.
-        compiler: C compiler, as for :func:`cosserat_casadi.load`.
-        progress: told what is compiled, likewise.
-
-    Raises:
-        ExportError: the folder is not one of concentric tubes, another version has written it, its files do not belong
-            together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if not is_sound(described, _has_tubes):
-        problem = "is not the manifest of concentric tubes"
-        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
-    check_folder(folder, described, {"INPUTS": input_count(described), "UNKNOWNS": described["unknowns"]})
-    name = described["name"]
-    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
-    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [folder / file for file in VERBATIM]
-    return CompiledTubes(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
-
-
-def _has_tubes(described: Any) -> bool:
-    """Whether what is read of a manifest of concentric tubes is there."""
-    tubes = described[KIND]
-    return (
-        isinstance(tubes, list)
-        and isinstance(described["unknowns"], int)
-        and all(isinstance(tube, str) for tube in tubes)
-    )
