@@ -34,7 +34,8 @@ class Choice:
     """A discretisation for ranges of inputs and parameters, or for load cases.
 
     Attributes:
-        scene: the scene with this discretisation fixed, and the ranges that it was chosen for.
+        scene: the scene with this discretisation fixed; where the tolerance is met, with the ranges that it was chosen
+            for.
         model: of that scene.
         ranges: what it was chosen for, entry by entry.
         solves: points of the ranges, or load cases, that were solved on it, or on fewer modes if these already left an
@@ -58,7 +59,18 @@ class Choice:
     @property
     def verified(self) -> Verified:
         """What a folder says of it."""
-        return Verified(self.ranges.described, self.solves, self.error_estimate, len(self.without_equilibrium))
+        return Verified(
+            self.ranges.described,
+            self.solves,
+            self.error_estimate,
+            len(self.without_equilibrium),
+            self.within_tolerance,
+        )
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """As ``met``; None where modes are fixed and nobody asks for a tolerance."""
+        return self.met if self.scene.accuracy.binds else None
 
 
 def choose(
@@ -219,7 +231,8 @@ class _Search:
         failed = [unpack(self.points[number]) for number in self.modes.without_equilibrium]
         largest = error if np.isfinite(error) else None
         within = largest is not None and largest <= self.scene.accuracy.tolerance
-        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described)
+        met = within and not (every and failed)
+        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described if met else ())
         return Choice(
             scene=fixed,
             model=build(fixed, chosen),
@@ -228,5 +241,5 @@ class _Search:
             error_estimate=largest,
             worst=unpack(self.points[worst]),
             without_equilibrium=tuple(failed),
-            met=within and not (every and failed),
+            met=met,
         )

@@ -15,12 +15,14 @@ class Verified:
         solves: points of the ranges that were solved.
         error_estimate: the largest of their estimates; None where none has an equilibrium.
         without_equilibrium: how many of them have no equilibrium.
+        within: whether the error is within the tolerance at all the others; None where no tolerance is asked for.
     """
 
     ranges: tuple[str, ...]
     solves: int
     error_estimate: float | None
     without_equilibrium: int
+    within: bool | None
 
     @property
     def sentence(self) -> str:
@@ -29,6 +31,8 @@ class Verified:
         text = f"The discretisation was verified by {self.solves} solves over {where}:"
         if self.error_estimate is not None:
             text += f" largest estimated error {self.error_estimate:.1e}."
+        if self.within is False:
+            text += " The tolerance is not kept there."
         if self.without_equilibrium:
             text += f" No equilibrium was found at {self.without_equilibrium} of these points."
         return f"{text} Inputs beyond these ranges need it chosen anew."
@@ -41,4 +45,5 @@ class Verified:
             "solves": self.solves,
             "error_estimate": None if error is None else float(f"{error:.2g}"),
             "without_equilibrium": self.without_equilibrium,
+            "within_tolerance": self.within,
         }

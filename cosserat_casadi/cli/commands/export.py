@@ -18,7 +18,7 @@ from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_choice, print_export
+from cosserat_casadi.cli.reports.model import print_choice, print_export, print_missed
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -82,7 +82,10 @@ def export(
     ] = True,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources, a page for a browser, or an FMU.
+
+    Exit codes: 0 written; 2 refused; 3 not solved and nothing written, or written with an error above the tolerance
+    somewhere in the ranges, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
     is one file that other simulators step.
@@ -166,7 +169,8 @@ def export(
     verified = None
     if choice is not None:
         verified = choice.verified
-        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
+        chosen_for = choice.ranges.described if choice.met else ()
+        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, chosen_for)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
@@ -191,8 +195,6 @@ def export(
             estimate_errors=estimate_errors,
         )
         print_export(console, solution, output)
-        if choice is not None:
-            print_choice(console, choice)
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, fmu, name, error_estimate=estimate, verified=verified)
@@ -201,6 +203,11 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
+    if choice is not None:
+        print_choice(console, choice)
+        if choice.within_tolerance is False:
+            print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
+            raise typer.Exit(NOT_FOUND)
 
 
 def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
