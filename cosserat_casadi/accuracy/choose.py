@@ -43,8 +43,10 @@ class Choice:
         error_estimate: the largest of their estimates; None where none has an equilibrium.
         worst: inputs and parameters of the point with that estimate.
         without_equilibrium: inputs and parameters of the points at which no equilibrium was found.
-        met: whether the error is within the tolerance wherever there is an equilibrium, and every load case that was
-            asked for has one.
+        locked: names of the inputs that move nothing on this discretisation, and would on more modes: of one that the
+            scene fixes.
+        met: whether the error is within the tolerance wherever there is an equilibrium, every load case that was asked
+            for has one, and no input is locked.
     """
 
     scene: scenes.Scene
@@ -54,6 +56,7 @@ class Choice:
     error_estimate: float | None
     worst: dict[str, FloatArray]
     without_equilibrium: tuple[dict[str, FloatArray], ...]
+    locked: tuple[str, ...]
     met: bool
 
     @property
@@ -65,12 +68,13 @@ class Choice:
             self.error_estimate,
             len(self.without_equilibrium),
             self.within_tolerance,
+            self.locked,
         )
 
     @property
     def within_tolerance(self) -> bool | None:
-        """As ``met``; None where modes are fixed and nobody asks for a tolerance."""
-        return self.met if self.scene.accuracy.binds else None
+        """As ``met``; None where modes are fixed that are not locked, and nobody asks for a tolerance."""
+        return self.met if self.locked or self.scene.accuracy.binds else None
 
 
 def choose(
@@ -231,7 +235,8 @@ class _Search:
         failed = [unpack(self.points[number]) for number in self.modes.without_equilibrium]
         largest = error if np.isfinite(error) else None
         within = largest is not None and largest <= self.scene.accuracy.tolerance
-        met = within and not (every and failed)
+        locked = self.modes.locked(answers)
+        met = within and not locked and not (every and failed)
         fixed = fixed_by_rod(self.scene, chosen, self.ranges.described if met else ())
         return Choice(
             scene=fixed,
@@ -241,5 +246,6 @@ class _Search:
             error_estimate=largest,
             worst=unpack(self.points[worst]),
             without_equilibrium=tuple(failed),
+            locked=locked,
             met=met,
         )

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene
 from cosserat_casadi.accuracy.choose import Choice, choose
-from cosserat_casadi.accuracy.common_modes import freedom
 from cosserat_casadi.accuracy.ranges import Origin, input_ranges
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import STIFFNESS, WEIGHT, push, rod, scene
@@ -155,5 +155,5 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
     held = scene(
         push(), supports=[{"rod": "rod", "kind": "clamped", "position": [0.1, 0, 0.7], "quaternion": [1, 0, 0, 0]}]
     )
-    assert freedom(build(held, discretise(held, 2, 6))) == 0
-    assert freedom(build(held, discretise(held, 3, 8))) == 3
+    assert degrees_of_freedom(build(held, discretise(held, 2, 6))) == 0
+    assert degrees_of_freedom(build(held, discretise(held, 3, 8))) == 3

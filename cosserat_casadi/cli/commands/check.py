@@ -14,8 +14,10 @@ from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
-from cosserat_casadi.cli.reports.model import print_check, print_ranges
+from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, locking_note
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import is_damped, price, without_damping
@@ -48,8 +50,13 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    print_check(Console(), build(checked_scene), varying)
+    model = build(checked_scene)
+    print_check(Console(), model, varying)
     print_ranges(Console(), input_ranges(checked_scene))
+    held = degrees_of_freedom(model) is not None and not checked_scene.touches_exactly
+    if held and checked_scene.accuracy.fixed:
+        # Constraints can lock modes that the scene fixes: an equilibrium tells.
+        print_locking(Console(), locking_note(solve(model, estimate_error=False)))
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:

@@ -18,7 +18,7 @@ from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_choice, print_export, print_missed
+from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -26,6 +26,7 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
+from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -205,6 +206,7 @@ def export(
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
     if choice is not None:
         print_choice(console, choice)
+        print_locking(Console(stderr=True), locking_sentence(choice.locked))
         if choice.within_tolerance is False:
             print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
             raise typer.Exit(NOT_FOUND)

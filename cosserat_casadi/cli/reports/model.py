@@ -98,6 +98,12 @@ def print_missed(console: Console, *, fixed: bool) -> None:
     print_plain(console, f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
 
 
+def print_locking(console: Console, sentence: str) -> None:
+    """Print that modes are locked, where they are."""
+    if sentence:
+        print_plain(console, f"[bold red]{escape(sentence)}[/]")
+
+
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
     """Print the ranges that a discretisation is chosen for, and where each comes from."""
     table = table_of("range", "where it comes from")
