@@ -75,7 +75,7 @@ CONCEPTS = (
         "solving",
         "Solving",
         "Equilibria, and discretisations within a tolerance.",
-        ("solve_scene", "solve", "Solution", "Outcome", "SolveError", "choose", "Choice", "tune", "Tuning"),
+        ("solve_scene", "solve", "Solution", "Outcome", "SolveError", "choose", "Choice"),
     ),
     Concept(
         "motion",

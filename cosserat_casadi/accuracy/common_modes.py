@@ -9,7 +9,7 @@ Newton steps.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.enough_modes import enough_for, with_more_modes
 from cosserat_casadi.accuracy.fixing import Chosen, on_elements_of, union
 from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.equilibrium.answer_error import watched_error
 from cosserat_casadi.equilibrium.locking import has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
@@ -246,7 +247,13 @@ class CommonModes:
         self._solves += 1
         if self.progress is not None:
             self.progress(self._solves, max(self._solves, 2 * len(self.cases)))
-        return solve(model, case.inputs, parameters=case.parameters, start=start)
+        accuracy = case.scene.accuracy
+        # Of most scenes the tips alone count, which are estimated with less effort than shapes and wrenches.
+        tips_alone = not accuracy.shape and not case.scene.touches_exactly
+        solution = solve(model, case.inputs, parameters=case.parameters, start=start, estimate_error=not tips_alone)
+        if not tips_alone or not solution.converged:
+            return solution
+        return replace(solution, error_estimate=watched_error(solution))
 
     def _first(self) -> Chosen:
         """What the first case needs."""

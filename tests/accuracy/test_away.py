@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from cosserat_casadi import build, discretise, scene_from_dict, solve, solve_scene
 from cosserat_casadi.accuracy.choose import choose
@@ -90,6 +91,7 @@ def platform(**accuracy: Any) -> Scene:
     return scene_from_dict({**tables, "bodies": [{"name": "platform", "mass": 0.1}]})
 
 
+@pytest.mark.slow
 def test_a_platform_is_not_locked() -> None:
     """Two modes of bending and one of torsion leave no freedom, whatever the load: they are not chosen."""
     free = platform(tolerance=1e-2)
@@ -105,7 +107,7 @@ def test_a_platform_is_not_locked() -> None:
 
 def test_a_platform_on_fixed_modes_is_told_to_be_locked() -> None:
     """With eighteen degrees of freedom too, none of which moves the plate; with two more in bending it moves."""
-    for modes, freedom, locked in (([2, 2, 1], 0, True), ([3, 3, 2], 18, True), ([4, 4, 2], 30, False)):
+    for modes, freedom, locked in (([3, 3, 2], 18, True), ([4, 4, 2], 30, False)):
         model = build(platform(modes=modes, nodes=8))
         assert degrees_of_freedom(model) == freedom
         answer = solve(model)
