@@ -97,20 +97,24 @@ class Correction:
 
 
 def with_error_estimate(solution: Solution) -> Solution:
-    """A solution with the estimates of its errors; as it is where it is no equilibrium.
+    """A solution with the estimates of its errors, told where they are above the tolerance.
 
-    The estimate of a solution that has one stays: it was made with more care.
+    A solution that is no equilibrium stays as it is, and so does one that has an estimate: it was made with more care.
     """
     if not solution.converged or solution.error_estimate is not None:
         return solution
+    return with_tolerance_note(estimated(solution))
+
+
+def estimated(solution: Solution) -> Solution:
+    """An equilibrium with the estimates of its errors, its message as it is."""
     error = answer_error(solution)
-    estimated = replace(
+    return replace(
         solution,
         error_estimate=error.watched,
         shape_error_estimate=error.shape,
         wrench_error_estimate=error.wrench,
     )
-    return with_tolerance_note(estimated)
 
 
 def with_tolerance_note(solution: Solution) -> Solution:

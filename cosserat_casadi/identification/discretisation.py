@@ -9,7 +9,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
-from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
+from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with_accuracy
 from cosserat_casadi.identification.cases import Case, Datum
 from cosserat_casadi.identification.fitted import with_inputs
 from cosserat_casadi.identification.misfit import inputs_of, moving
@@ -77,7 +77,9 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
             warnings.append(f"The discretisation for motions: {motion.message}")
     if not chosen:
         return Choice(scene)
-    return Choice(fixed_alike(scene, union_of(chosen)), tuple(warnings))
+    # Written out: a tolerance that nobody has written asks nothing of modes that are fixed.
+    asked = with_accuracy(scene, tolerance=scene.accuracy.tolerance)
+    return Choice(fixed_alike(asked, union_of(chosen)), tuple(warnings))
 
 
 def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray) -> list[Discretisation]:

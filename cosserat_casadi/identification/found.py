@@ -94,6 +94,9 @@ class Identification:
         starts: how many starts there were, and how many ended here.
         step: of the motions that were measured, s; None where nothing was measured over time.
         step_error: largest error that these steps leave in a residual, in standard deviations; None likewise.
+        error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
+            solution: distance over the length, angle in rad, 1 where it is not known; None where there are none.
+        error_case: the case in which it is largest; None likewise.
     """
 
     model: Model
@@ -117,6 +120,16 @@ class Identification:
     starts: tuple[int, int]
     step: float | None = None
     step_error: float | None = None
+    error_estimate: float | None = None
+    error_case: str | None = None
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning."""
+        accuracy = self.model.scene.accuracy
+        if self.error_estimate is None or not accuracy.binds:
+            return None
+        return self.error_estimate <= accuracy.tolerance
 
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:

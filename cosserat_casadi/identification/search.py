@@ -13,6 +13,7 @@ from cosserat_casadi.identification.cases import Case, Data, read_cases
 from cosserat_casadi.identification.discretisation import with_discretisation
 from cosserat_casadi.identification.found import Identification
 from cosserat_casadi.identification.measured_modes import check_vibrations
+from cosserat_casadi.identification.model_error import with_model_error
 from cosserat_casadi.identification.motions import StartInputs, check_motions
 from cosserat_casadi.identification.task import SEED, Progress, Task
 from cosserat_casadi.identification.unknowns import UnknownLayout, refuse_row_parameters, unknown_layout
@@ -67,7 +68,8 @@ def identify(
         report or (lambda stage: None),
         progress,
     )
-    return task.run(fitted, held_out)
+    found = task.run(fitted, held_out)
+    return with_model_error(found, {case.where: case for case in fitted})
 
 
 def identify_scene(

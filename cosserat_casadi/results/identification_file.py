@@ -45,6 +45,9 @@ def identification_result(found: Identification) -> dict[str, Any]:
         "unstable": list(found.unstable),
         "left_out": [{"where": case.where, "reason": case.reason} for case in found.left_out],
         "warnings": list(found.warnings),
+        "error_estimate": found.error_estimate,
+        "error_case": found.error_case,
+        "within_tolerance": found.within_tolerance,
         **_steps(found),
         "discretisation": discretisation_entries(found.model),
     }

@@ -50,7 +50,8 @@ per_row = true
     input: str | None = Field(None, description="'load.field' of the input, or of a part such as 'push.force.z'")
     per_row: bool = Field(
         False,
-        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds",
+        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds; an "
+        "estimate asks for a prior where not",
     )
     lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
     upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")

@@ -10,6 +10,7 @@ import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
+from typing import Self
 
 import casadi as ca
 import numpy as np
@@ -52,6 +53,10 @@ class TubeFunctions(ABC):
     def __init__(self, robot: Robot, steps: int) -> None:
         self.robot = robot
         self.steps = steps
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Robot, int]]:
+        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        return type(self), (self.robot, self.steps)
 
     @property
     def size(self) -> int:

@@ -18,7 +18,7 @@ from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.price import is_damped, price, without_damping
+from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
@@ -49,8 +49,16 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    print_check(Console(), build(checked_scene), varying)
-    print_ranges(Console(), input_ranges(checked_scene))
+    with progress_bar() as bar:
+        show_count = count_reporter(bar, "Building the model")
+        model = build(checked_scene)
+        of_effects = prices_of_effects(model, show_count)
+        show_count("Counting the operations of residual and Jacobian", 0, 0)
+        cost = price(model)
+        show_count("Choosing the ranges of inputs", 0, 0)
+        ranges = input_ranges(checked_scene)
+    print_check(Console(), model, varying, cost, of_effects)
+    print_ranges(Console(), ranges)
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
