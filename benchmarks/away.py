@@ -166,12 +166,6 @@ class Subject:
         return Subject(model, _finer(model), self.in_c, parameters)
 
 
-def _in_c(model: Model, folder: Path) -> Compiled:
-    library = load(export(model, folder / "robot", "robot"))
-    assert isinstance(library, Compiled)
-    return library
-
-
 def cases_of(scene: Scene, points: int) -> list[Case]:
     """Answers of a scene at random inputs, of which one in six lies outside of the range."""
     first = solve_rods(scene)
