@@ -47,7 +47,7 @@ class LoadedLibrary(ABC):
 
     def __getstate__(self) -> dict[str, Any]:
         """What pickle and copy take along: where the shared object lies, not the object that this process opened."""
-        return {own.name: getattr(self, own.name) for own in fields(self)}
+        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Raises an ExportError where the shared object is not on this machine, or was removed."""

@@ -120,6 +120,16 @@ class Model(ModelFunctions, MotionFunctions):
         return self.discrete.size
 
     @property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces less."""
+        return self.discrete.unknowns.step_weights
+
+    @property
+    def is_assembly(self) -> bool:
+        """Whether joints or frames tie rods together, so that the Jacobian is sparse."""
+        return self.discrete.is_assembly
+
+    @property
     def discretisation(self) -> dict[str, Discretisation]:
         """Modes, nodes and element ends of every rod."""
         return {name: discrete_rod.discretisation for name, discrete_rod in self.discrete.rods.items()}

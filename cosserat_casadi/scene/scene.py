@@ -42,18 +42,18 @@ class FreeInput:
     """A field of one of the scene's tables that stays free at run time.
 
     Attributes:
-        record: the rod, load or actuator that it belongs to.
+        record: the rod, tube, load or actuator that it belongs to.
         field: its name in that record, with dots where it is in an inner table.
         declared: what the record says of it: unit, components, axes.
     """
 
-    record: Rod | Load | Actuator
+    record: Rod | Tube | Load | Actuator
     field: str
     declared: InputField
 
     @property
     def owner(self) -> str:
-        """Name of the rod, load or actuator."""
+        """Name of the rod, tube, load or actuator."""
         return self.record.name
 
     @property
@@ -127,17 +127,20 @@ inputs = ["push.force", "cable.tension"]
         """What stays free at run time: the inputs that the scene lists, or else every magnitude that it gives.
 
         Returns:
-            listed inputs in their order; magnitudes of loads, then of actuators, in the order of the file.
+            listed inputs in their order; rotations and translations of tubes, then magnitudes of loads, then of
+            actuators, in the order of the file.
         """
         # An empty list is an answer too: nothing stays free.
         if self.inputs is not None:
             return tuple(self._named_input(name) for name in self.inputs)
-        return tuple(
+        of_tubes = [FreeInput(tube, *entry) for tube in self.tubes for entry in tube.inputs.items()]
+        magnitudes = [
             FreeInput(record, field, declared)
             for record in self.causes
             for field, declared in record.inputs.items()
             if field in record.model_fields_set and not declared.on_request
-        )
+        ]
+        return (*of_tubes, *magnitudes)
 
     def input_names(self) -> tuple[str, ...]:
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
