@@ -6,10 +6,11 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
+.PHONY: help demo gallery test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
 
 help:
-	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
+	@echo "make demo       set up .venv, solve a handful of example scenes, write results, figures and C sources to out/"
+	@echo "make gallery    solve the other examples too, and draw the motions (minutes)"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make test-ROOM  the tests in tests/ROOM: make test-rod, make test-codegen"
@@ -30,6 +31,9 @@ $(STAMP): pyproject.toml
 
 demo: $(STAMP)
 	$(BIN)/python examples/demo.py --output out
+
+gallery: demo
+	$(BIN)/python examples/demo.py --output out --rest
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -1,4 +1,7 @@
-"""Solve the example scenes, simulate those that move: a table for each, result files and figures in a folder."""
+"""Solve example scenes, simulate those that move: a table for each, result files and figures in a folder.
+
+Without options a handful of them, in less than a minute, and one as C sources; with ``--rest`` all others, in minutes.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,19 @@ from pathlib import Path
 from cosserat_casadi.cli.main import app, run
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.page.webassembly import find_wasm_compiler
+
+HANDFUL = (
+    "nitinol_wire",
+    "two_section_robot",
+    "six_rod_platform",
+    "rod_over_bar",
+    "finger_to_point",
+    "snapping_arch",
+)
+"""Scenes that show the main job: a wire, a tendon robot, a parallel robot, contact, inputs for a target, a motion."""
+
+EXPORTED = "nitinol_wire"
+"""The scene of the handful that C sources are written of."""
 
 SCENES = (
     "planar_strip",
@@ -111,19 +127,34 @@ def can_write_pages() -> bool:
     return True
 
 
+def export_arguments(name: str, folder: Path) -> list[str]:
+    """The command line that writes a scene as C sources."""
+    scene = Path(__file__).with_name(f"{name}.toml")
+    return ["export", str(scene), "--output", str(folder / name)]
+
+
+def command_lines(folder: Path, *, rest: bool) -> list[list[str]]:
+    """The command lines of the handful, or of the rest."""
+    if not rest:
+        return [*(arguments_of(name, folder) for name in HANDFUL), export_arguments(EXPORTED, folder)]
+    lines = [arguments_of(name, folder) for name in (*SCENES, *MOTIONS) if name not in HANDFUL]
+    if can_write_pages():
+        lines += [page_arguments(name, folder) for name in PAGES]
+    return lines
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path("out"), help="folder for results and figures")
-    folder: Path = parser.parse_args().output
+    parser.add_argument("--rest", action="store_true", help="all scenes but the handful: takes minutes")
+    options = parser.parse_args()
+    folder: Path = options.output
     folder.mkdir(parents=True, exist_ok=True)
     worst = 0
-    lines = [arguments_of(name, folder) for name in (*SCENES, *MOTIONS)]
-    if can_write_pages():
-        lines += [page_arguments(name, folder) for name in PAGES]
-    for arguments in lines:
+    for arguments in command_lines(folder, rest=options.rest):
         worst = max(worst, run(lambda arguments=arguments, **options: app(arguments, **options)))
         print()
-    for name in PROGRAMS:
+    for name in PROGRAMS if options.rest else ():
         program = Path(__file__).with_name(f"{name}.py")
         command = [sys.executable, str(program), "--output", str(folder / f"{name}.png")]
         worst = max(worst, subprocess.run(command, check=False).returncode)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.enough_modes import enough_for, with_more_modes
 from cosserat_casadi.accuracy.fixing import Chosen, on_elements_of, union
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.equilibrium.answer_error import watched_error
 from cosserat_casadi.equilibrium.locking import has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import prolong
@@ -262,7 +262,7 @@ class CommonModes:
         scene = case.scene
         if case.parameters:
             scene = parameter_layout(scene).set_in(scene, case.parameters)
-        own = solve_scene(scene, case.inputs)
+        own = solve_rods(scene, case.inputs)
         return own.model.discretisation if own.converged else discretise(case.scene, FEW_MODES, FEW_NODES)
 
     def _unlocked(self, chosen: Chosen) -> Chosen:

@@ -59,6 +59,9 @@ UNKNOWN = 4
 CLOSING = 3
 """Modes of an assembly that are always kept: with fewer its rods may not reach each other."""
 
+TELLING = CLOSING + 4
+"""Modes of an assembly from which on two less and four less are two solutions, whose errors tell how fast they fall."""
+
 
 @dataclass(frozen=True)
 class Resolution:

@@ -84,6 +84,11 @@ class SceneSolver:
         coarsest = build(self.scene, discretise(self.scene, 1, 2))
         return can_relax(coarsest)
 
+    @property
+    def is_assembly(self) -> bool:
+        """Whether joints or rods that carry others close rods to each other."""
+        return bool(self.scene.joints) or any(rod.base.rod is not None for rod in self.scene.rods)
+
     @cached_property
     def unloaded_turn(self) -> float:
         """Bound of the angle through which an unloaded rod turns from end to end, rad."""

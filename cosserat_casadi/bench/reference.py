@@ -8,12 +8,12 @@ from math import asin
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.errors import CosseratError
+from cosserat_casadi.errors import NoReferenceError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import load_values
@@ -30,12 +30,6 @@ MORE_NODES = 8
 
 AGREEMENT = 1e-6
 """Largest distance of the two references, relative to the length: beyond, neither is believed."""
-
-
-class NoReferenceError(CosseratError):
-    """No reference was found."""
-
-    page = "accuracy"
 
 
 @dataclass(frozen=True)
@@ -155,7 +149,7 @@ def _wrench_distance(truth: RodState, approximation: RodState) -> float:
 def _finest(scene: scenes.Scene) -> Solution:
     """A solution far finer than any that is measured."""
     plain = with_tolerance(scene, FINEST)
-    near = solve_scene(plain)
+    near = solve_rods(plain)
     if not near.converged:
         raise NoReferenceError(f"no reference was found: {near.message}")
     chosen = near.model.discretisation.values()

@@ -9,29 +9,11 @@ import sys
 from collections.abc import Callable
 from typing import Annotated
 
-import casadi as ca
 import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi import __version__
-from cosserat_casadi.bench.reference import NoReferenceError
-from cosserat_casadi.cli.commands.bench import bench
-from cosserat_casadi.cli.commands.check import check
-from cosserat_casadi.cli.commands.docs import docs
-from cosserat_casadi.cli.commands.estimate import estimate
-from cosserat_casadi.cli.commands.examples import examples
-from cosserat_casadi.cli.commands.export import export
-from cosserat_casadi.cli.commands.identify import identify
-from cosserat_casadi.cli.commands.inverse import inverse
-from cosserat_casadi.cli.commands.modes import modes
-from cosserat_casadi.cli.commands.new import new
-from cosserat_casadi.cli.commands.path import path
-from cosserat_casadi.cli.commands.simulate import simulate
-from cosserat_casadi.cli.commands.solve import solve
-from cosserat_casadi.cli.commands.sweep import sweep
-from cosserat_casadi.cli.commands.tune import tune
-from cosserat_casadi.cli.commands.view import view
+from cosserat_casadi.cli.command_group import CommandGroup
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.problems import print_refusal
@@ -46,7 +28,7 @@ from cosserat_casadi.cli.signals import (
     was_terminated,
 )
 from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence_output
-from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
+from cosserat_casadi.errors import CosseratError, ExportError, NoReferenceError, SceneError, WriteError
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
@@ -54,36 +36,21 @@ STOPPED = "Stopped. Files that were not finished were not written."
 """Said of a command that a signal has stopped."""
 
 app = typer.Typer(
+    cls=CommandGroup,
     help="Cosserat rods: from a scene file to the deformed rod.",
     no_args_is_help=True,
     pretty_exceptions_show_locals=False,
 )
 
-# In the order in which --help lists them.
-for command in (
-    new,
-    examples,
-    docs,
-    solve,
-    view,
-    path,
-    simulate,
-    modes,
-    inverse,
-    identify,
-    estimate,
-    sweep,
-    check,
-    export,
-    tune,
-    bench,
-):
-    app.command()(command)
-
 
 def _print_version(asked: bool) -> None:
     """Print what runs here, and end."""
     if asked:
+        # Imported here, because CasADi takes long to load and the help of the commands needs none of it.
+        import casadi as ca
+
+        from cosserat_casadi import __version__
+
         typer.echo(f"cosserat_casadi {__version__}, CasADi {ca.__version__}, Python {platform.python_version()}")
         raise typer.Exit
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import (
@@ -20,7 +21,10 @@ from rich.progress import (
 from rich.text import Text
 
 from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt, take_time
-from cosserat_casadi.motion.trajectory import MotionProgress
+
+# Only named in a signature: a solve shows how far it is without any module of motions.
+if TYPE_CHECKING:
+    from cosserat_casadi.motion.trajectory import MotionProgress
 
 CountCallback = Callable[[str, int, int], None]
 """Takes a stage, how much of it is done, and how much there is; 0 of 0 where that is not known."""

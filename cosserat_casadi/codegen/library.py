@@ -67,6 +67,11 @@ VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *la
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
+PLAIN_BUILD = dict.fromkeys(
+    ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
+)
+"""Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
+
 ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",
     "{name}.c": "the equations of this scene, and by inclusion the solver: compile this",
@@ -155,6 +160,8 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
+    for part in ("cmake_options", "cmake_definitions", "cmake_dependencies"):
+        words[part] = render(f"{part}.in", words)
     words["more_compiled"] = ""
     if rows is not None:
         words["more_sources"] += f" {name}_lanes.c"

@@ -11,8 +11,9 @@ Variations of poses are [δθ; δr] and wrenches [moment; force], the angular pa
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -23,6 +24,9 @@ from cosserat_casadi.maths.pose import NumericPose, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
+
+KEPT_KERNELS = 128
+"""Constraints whose kernels are kept for further models."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ class Poses(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Target:
+class Target:
     """What a section is held to.
 
     Attributes:
@@ -134,19 +138,19 @@ class SectionConstraint:
 
     def residual(self, poses: Poses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
-        residual: Matrix = self._residual_kernel(*poses.stacked, *self._free_target)[0]
+        residual: Matrix = self._kernels.residual(*poses.stacked, *self._free_target)[0]
         return residual
 
     def residual_variation(self, poses: Poses) -> Variations:
         """Derivative of the residual with the poses, size×6 each."""
-        _, *by_poses = self._residual_kernel(*poses.stacked, *self._free_target)
+        _, *by_poses = self._kernels.residual(*poses.stacked, *self._free_target)
         return Variations(*by_poses)
 
     def wrench_basis(self, poses: Poses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
         return self._wrench_basis(poses, self._given_target)
 
-    def _wrench_basis(self, poses: Poses, target: _Target) -> Matrix:
+    def _wrench_basis(self, poses: Poses, target: Target) -> Matrix:
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
@@ -167,24 +171,36 @@ class SectionConstraint:
         if not self.held.turn_with_place:
             zero = ca.DM(6, 6)
             return Variations(zero, zero, zero)
-        _, *by_poses = self._wrench_kernel(*poses.stacked, *self._free_target, multipliers)
+        _, *by_poses = self._kernels.wrench(*poses.stacked, *self._free_target, multipliers)
         return Variations(*by_poses)
 
     def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
-        reaction: Matrix = self._reaction_kernel(*poses.stacked, *self._free_target, multipliers)[0]
+        reaction: Matrix = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)[0]
         return reaction
 
     def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
-        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, *self._free_target, multipliers)
+        _, by_multipliers, *by_poses = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)
         return by_multipliers, Variations(*by_poses)
 
+    @cached_property
+    def _kernels(self) -> _Kernels:
+        place = None
+        if isinstance(self.place, NumericPose):
+            place = (_exact(self.place.position), _exact(self.place.quaternion))
+        turn: Hashable = None
+        if self.turn is not None:
+            # An expression is an argument of the kernels.
+            turn = "free" if is_symbolic(self.turn) else _exact(self.turn)
+        held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_place)
+        return _shared(_Kernels((self.rod.length, self.unit, held, place, turn), self))
+
     @property
-    def _given_target(self) -> _Target:
+    def _given_target(self) -> Target:
         """What the section is held to, as expressions."""
         place = self.place if isinstance(self.place, Pose) else self.place.pose
-        return _Target(place, self.turn)
+        return Target(place, self.turn)
 
     @property
     def _free_target(self) -> list[Matrix]:
@@ -194,7 +210,7 @@ class SectionConstraint:
             arguments.append(self.turn)
         return arguments
 
-    def _target_symbols(self) -> tuple[_Target, list[ca.SX]]:
+    def target_symbols(self) -> tuple[Target, list[ca.SX]]:
         """The target that the kernels are written in, and its symbols."""
         target = self._given_target
         symbols = []
@@ -206,7 +222,7 @@ class SectionConstraint:
             target = replace(target, turn=symbols[-1])
         return target, symbols
 
-    def _residual(self, poses: Poses, target: _Target) -> Matrix:
+    def residual_of(self, poses: Poses, target: Target) -> Matrix:
         """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
         section = poses.section
         held_to = target.seen_from(poses)
@@ -225,12 +241,13 @@ class SectionConstraint:
         about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
 
-    def _wrench(self, poses: Poses, target: _Target, multipliers: Matrix) -> Matrix:
+    def wrench_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
+        """The wrench on the section, base axes of the rod, 6×1."""
         return self._wrench_basis(poses, target) @ multipliers
 
-    def _reaction(self, poses: Poses, target: _Target, multipliers: Matrix) -> Matrix:
+    def reaction_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
         """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
-        wrench = self._wrench(poses, target, multipliers)
+        wrench = self.wrench_of(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
         if self.held.slides:
@@ -241,35 +258,64 @@ class SectionConstraint:
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 
+
+@dataclass(frozen=True)
+class _Kernels:
+    """The kernels of all constraints that are closed alike.
+
+    Attributes:
+        law: numbers that the kernels hold.
+        constraint: one of these constraints.
+    """
+
+    law: tuple[Hashable, ...]
+    constraint: SectionConstraint = field(compare=False)
+
     @cached_property
-    def _residual_kernel(self) -> ca.Function:
+    def residual(self) -> ca.Function:
         """Poses ↦ residual and its variations."""
         poses, motions = _symbols()
-        target, target_symbols = self._target_symbols()
-        moved = self._residual(_moved(poses, motions), target)
-        results = [self._residual(poses, target), *_at_rest(moved, motions, motions)]
+        target, target_symbols = self.constraint.target_symbols()
+        moved = self.constraint.residual_of(_moved(poses, motions), target)
+        results = [self.constraint.residual_of(poses, target), *_at_rest(moved, motions, motions)]
         return ca.Function("constraint", [*poses.stacked, *target_symbols], ca.cse(results))
 
     @cached_property
-    def _wrench_kernel(self) -> ca.Function:
+    def wrench(self) -> ca.Function:
         """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
         poses, motions = _symbols()
-        target, target_symbols = self._target_symbols()
-        multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._wrench(_moved(poses, motions), target, multipliers)
-        results = [self._wrench(poses, target, multipliers), *_at_rest(moved, motions, motions)]
+        target, target_symbols = self.constraint.target_symbols()
+        multipliers = ca.SX.sym("multipliers", self.constraint.size)
+        moved = self.constraint.wrench_of(_moved(poses, motions), target, multipliers)
+        results = [self.constraint.wrench_of(poses, target, multipliers), *_at_rest(moved, motions, motions)]
         return ca.Function("constraint_wrench", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
 
     @cached_property
-    def _reaction_kernel(self) -> ca.Function:
+    def reaction(self) -> ca.Function:
         """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
         poses, motions = _symbols()
-        target, target_symbols = self._target_symbols()
-        multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._reaction(_moved(poses, motions), target, multipliers)
+        target, target_symbols = self.constraint.target_symbols()
+        multipliers = ca.SX.sym("multipliers", self.constraint.size)
+        moved = self.constraint.reaction_of(_moved(poses, motions), target, multipliers)
         derivatives = _at_rest(moved, [multipliers, *motions], motions)
-        results = [self._reaction(poses, target, multipliers), *derivatives]
+        results = [self.constraint.reaction_of(poses, target, multipliers), *derivatives]
         return ca.Function("constraint_reaction", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
+
+
+@lru_cache(maxsize=KEPT_KERNELS)
+def _shared(kernels: _Kernels) -> _Kernels:
+    """The kernels with the same law that were asked for first.
+
+    A search for a discretisation builds many models of one scene, and to write the kernels takes longer than to
+    evaluate them.
+    """
+    return kernels
+
+
+def _exact(matrix: Matrix | FloatArray) -> Hashable:
+    """All digits of a matrix of numbers."""
+    numbers = matrix if isinstance(matrix, np.ndarray) else ca.DM(matrix).full()
+    return (numbers.shape, numbers.tobytes())
 
 
 def _symbols() -> tuple[Poses, list[ca.SX]]:

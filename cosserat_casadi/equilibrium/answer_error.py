@@ -35,6 +35,12 @@ MOST_STEPS = 6
 SETTLED = 0.2
 """Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
 
+CONTRACTING = 0.5
+"""Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""
+
+SHORTEST = 1e-10
+"""Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
+
 FASTEST = 0.02
 """Smallest ratio of the errors with and without two more modes that is believed."""
 
@@ -78,30 +84,37 @@ class Correction:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
         change: of what is watched.
+        contracts: whether the missing modes moved by at most half of their step before. A wall that they run into is
+            not in their stiffness: then they bounce, and what is watched may settle by chance.
         settled: whether the correction before it gave about the same change.
     """
 
     known: FloatArray
     missing: FloatArray
     change: float
+    contracts: bool = True
     settled: bool = False
 
 
 def with_error_estimate(solution: Solution) -> Solution:
-    """A solution with the estimates of its errors; as it is where it is no equilibrium.
+    """A solution with the estimates of its errors, told where they are above the tolerance.
 
-    The estimate of a solution that has one stays: it was made with more care.
+    A solution that is no equilibrium stays as it is, and so does one that has an estimate: it was made with more care.
     """
     if not solution.converged or solution.error_estimate is not None:
         return solution
+    return with_tolerance_note(estimated(solution))
+
+
+def estimated(solution: Solution) -> Solution:
+    """An equilibrium with the estimates of its errors, its message as it is."""
     error = answer_error(solution)
-    estimated = replace(
+    return replace(
         solution,
         error_estimate=error.watched,
         shape_error_estimate=error.shape,
         wrench_error_estimate=error.wrench,
     )
-    return with_tolerance_note(estimated)
 
 
 def with_tolerance_note(solution: Solution) -> Solution:
@@ -176,9 +189,9 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                if abs(correction.change - before) <= SETTLED * correction.change:
+                if correction.contracts and abs(correction.change - before) <= SETTLED * correction.change:
                     return True, replace(correction, settled=True)
-                if correction.change <= enough:
+                if correction.contracts and correction.change <= enough:
                     return True, correction
                 before = correction.change
     return False, correction
@@ -190,19 +203,34 @@ def enough_for(tolerance: float) -> float:
 
 
 def _sweeps(solution: Solution) -> Iterator[Correction]:
-    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow."""
+    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow.
+
+    They end with the first step of the missing modes that does not contract.
+    """
     model = solution.model
     inputs = solution.inputs
     inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
+    before = None
     for _ in range(MOST_SWEEPS):
         step, missing_step, _ = balance_lacks(solution, known, missing)
+        if before is not None and not _contracts(before, missing_step):
+            return
         known = known + step
         missing = missing + missing_step
-        _, _, residual = balance_lacks(solution, known, missing)
+        _, next_step, residual = balance_lacks(solution, known, missing)
         known = known - inverse @ residual
-        yield _corrected(solution, known, missing)
+        # What the missing modes would do next tells of the first step whether they bounce.
+        contracts = before is not None or _contracts(missing_step, next_step)
+        yield _corrected(solution, known, missing, contracts=contracts)
+        before = missing_step
+
+
+def _contracts(before: FloatArray, step: FloatArray) -> bool:
+    """Whether a step of the missing modes is at most half as long as the one before it, or rounding."""
+    longest = max(CONTRACTING * float(np.linalg.norm(before)), SHORTEST)
+    return bool(np.linalg.norm(step) <= longest)
 
 
 def balance_lacks(
@@ -221,13 +249,18 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
     model = solution.model.richer
     unknowns = np.zeros(model.size)
     unknowns[richer.known] = solution.x
+    before = None
     for _ in range(MOST_STEPS):
         residual = column(model.path_residual(unknowns, solution.inputs, 1.0))
         jacobian = model.path_jacobian(unknowns, solution.inputs, 1.0).full()
         if not np.all(np.isfinite(jacobian)):
             return
-        unknowns = unknowns - regular_inverse(jacobian) @ residual
-        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known])
+        step = -regular_inverse(jacobian) @ residual
+        unknowns = unknowns + step
+        missing_step = step[~richer.known]
+        contracts = before is not None and _contracts(before, missing_step)
+        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known], contracts=contracts)
+        before = missing_step
 
 
 def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -> float:
@@ -236,8 +269,8 @@ def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -
     return float(np.max(changes))
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
-    return Correction(known, missing, largest_change(solution, known, missing))
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
+    return Correction(known, missing, largest_change(solution, known, missing), contracts)
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:

@@ -15,7 +15,7 @@ from cosserat_casadi.identification.time_steps import STEP_ERROR
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""

@@ -68,6 +68,7 @@ class UnloadedScene:
     scene: scenes.Scene
     rods: Mapping[str, DiscreteRod]
     _shapes: dict[str, Shape] = field(default_factory=dict, repr=False)
+    _sections: dict[tuple[str, float], NumericPose] = field(default_factory=dict, repr=False)
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:
@@ -115,7 +116,12 @@ class UnloadedScene:
         return self.section(carrier, record.base.at).then(own)
 
     def section(self, rod: str, at: float) -> NumericPose:
-        """World pose of a section of a rod."""
+        """World pose of a section of a rod, kept: bodies and joints ask for the same ones."""
+        if (rod, at) not in self._sections:
+            self._sections[rod, at] = self._new_section(rod, at)
+        return self._sections[rod, at]
+
+    def _new_section(self, rod: str, at: float) -> NumericPose:
         node = self.rods[rod].grid.node_at(at)
         rod_shape = self._shape(rod)
         in_base = numeric(Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node]))
@@ -126,7 +132,7 @@ class UnloadedScene:
         """Shape of an unloaded rod in its base, kept: several sections of a rod are asked for."""
         if rod not in self._shapes:
             discrete_rod = self.rods[rod]
-            unknowns = ca.MX.zeros(discrete_rod.size)
+            unknowns = ca.DM.zeros(discrete_rod.size)
             self._shapes[rod] = shape(discrete_rod, unknowns, discrete_rod.properties.ratio)
         return self._shapes[rod]
 

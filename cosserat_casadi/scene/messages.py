@@ -16,7 +16,7 @@ from cosserat_casadi.scene.faults import Fault, Path, shortened, shown
 from cosserat_casadi.scene.overrides import Assignment
 from cosserat_casadi.scene.records import REFUSED, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
-from cosserat_casadi.scene.spelling import close_matches, closest
+from cosserat_casadi.spelling import close_matches, closest
 
 WANTED = {
     "finite_number": "finite",

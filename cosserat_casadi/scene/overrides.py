@@ -10,8 +10,8 @@ from typing import Any
 
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.scene.faults import Path, shown
-from cosserat_casadi.scene.spelling import closest
 from cosserat_casadi.scene.toml import keys_are_too_deep
+from cosserat_casadi.spelling import closest
 
 NAMED_LISTS = ("obstacles", "supports", "joints", "bodies", "rods", "actuators", "loads", "tubes")
 """Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
 from cosserat_casadi.scene.faults import Fault, Table, shown
-from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.spelling import closest
 
 MOST_CONVERTED = 10
 """Most coefficients that become those of other polynomials: powers of a higher degree lose half of their digits."""

@@ -88,7 +88,7 @@ class Record(BaseModel):
 
     example: ClassVar[str] = ""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

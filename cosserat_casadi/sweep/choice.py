@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_angles
@@ -145,7 +145,7 @@ def check(
     for done, row in enumerate(rows):
         progress("Checking rows", done, len(rows))
         scene = choice.scene(variants.scene_of_row(row))
-        solution = solve_scene(scene, variants.inputs_of_row(row))
+        solution = solve_rods(scene, variants.inputs_of_row(row))
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import NAME, STABILITY, RowLibrary, row_library, row_results
+from cosserat_casadi.codegen.rows import ERRORS, NAME, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
@@ -58,6 +58,7 @@ class Plan:
         output: file of the results, if one is wanted.
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable.
+        estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
     """
 
     scene: Scene
@@ -66,6 +67,7 @@ class Plan:
     output: Path | None
     samples: int
     stability: bool = False
+    estimate_errors: bool = True
 
     @property
     def identity(self) -> str:
@@ -79,6 +81,7 @@ class Plan:
             [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
             self.stability,
             self.table.factors,
+            self.estimate_errors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
         values = np.ascontiguousarray(self.table.values, dtype="<f8")
@@ -96,9 +99,8 @@ class Plan:
     @property
     def results(self) -> tuple[str, ...]:
         """Names of the numbers that a row is answered with."""
-        if self.scene.tubes:
-            return tube_results(self.scene, stability=self.stability)
-        return row_results(self.scene, stability=self.stability)
+        names = tube_results if self.scene.tubes else row_results
+        return names(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
 
     @property
     def part(self) -> Path | None:
@@ -117,7 +119,13 @@ class Plan:
 
 
 def plan_sweep(
-    scene: Scene, table: Table, output: Path | None = None, samples: int = SAMPLES, *, stability: bool = False
+    scene: Scene,
+    table: Table,
+    output: Path | None = None,
+    samples: int = SAMPLES,
+    *,
+    stability: bool = False,
+    estimate_errors: bool = True,
 ) -> Plan:
     """A sweep, refused before anything is computed where it could not be done.
 
@@ -127,6 +135,7 @@ def plan_sweep(
         output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
         samples: rows that the discretisation is chosen on, at least 1.
         stability: whether each row says whether its equilibrium is stable.
+        estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
 
     Raises:
         SceneError: with every fault of scene, table and output.
@@ -141,7 +150,7 @@ def plan_sweep(
     try:
         refuse_held_by_contact(scene)
         seen = tube_variants(scene, table) if scene.tubes else variants_of(scene, table)
-        plan = Plan(scene, table, seen, output, samples, stability)
+        plan = Plan(scene, table, seen, output, samples, stability, estimate_errors)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -164,6 +173,7 @@ def sweep_scene(
     cores: int | None = None,
     samples: int = SAMPLES,
     stability: bool = False,
+    estimate_errors: bool = True,
     progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
@@ -179,6 +189,8 @@ def sweep_scene(
         stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
             units of EI/ℓ of the scene as it stands, and ``stable``, 1 or 0; NaN where the loads of a row have no
             potential.
+        estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
+            not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
         progress: told what is being done, how much of it is done, and of how much.
 
     Raises:
@@ -191,7 +203,7 @@ def sweep_scene(
     elif not isinstance(table, Table):
         table = read_table(Path(table))
     file = None if output is None else Path(output)
-    plan = plan_sweep(scene, table, file, samples, stability=stability)
+    plan = plan_sweep(scene, table, file, samples, stability=stability, estimate_errors=estimate_errors)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -300,7 +312,9 @@ def _tasks(
             progress("Compiling", 0, 0)
             scene = choice.scene(variants.entries[variant].scene)
             many = len(variants.entries[variant].rows) >= IN_LANES_FROM
-            library = row_library(build(scene), stability=plan.stability, lanes=many)
+            library = row_library(
+                build(scene), estimate_errors=plan.estimate_errors, stability=plan.stability, lanes=many
+            )
             library_of = variant
         answer: Answer = Parametrised(library) if variants.arguments else library
         yield chunk, [(answer, variants.given(rows))]
@@ -309,13 +323,14 @@ def _tasks(
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """What solves a chunk in Python: a model for each variant that it has rows of."""
     if plan.scene.tubes:
-        return [(TubeRows(scene_text(plan.scene), plan.stability), plan.variants.inputs[chunk.rows])]
+        tubes = TubeRows(scene_text(plan.scene), plan.stability, plan.estimate_errors)
+        return [(tubes, plan.variants.inputs[chunk.rows])]
     parts: list[Part] = []
     # Text, since models of CasADi do not travel to other processes.
     measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
     for variant, rows in chunk.pieces:
         scene = choice.scene(plan.variants.entries[variant].scene)
-        model = RowModel(scene_text(scene), plan.stability, measure)
+        model = RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
         parts.append((model, plan.variants.inputs[rows]))
     return parts
 
@@ -335,6 +350,9 @@ def _sweep(
     if plan.stability and not plan.scene.tubes:
         judged = rows_with_potential(plan.variants, work)
         results[~judged, -len(STABILITY) :] = np.nan
+    if plan.estimate_errors:
+        estimate, verdict = (names.index(name) for name in ERRORS)
+        results[:, verdict] = _within_tolerance(plan.scene, results[:, 0] == 0, results[:, estimate])
     # Rows of tubes are within tolerance each, or do not converge.
     checked = [] if plan.scene.tubes else check(plan.variants, choice, results, progress)
     result_names = plan.columns[len(plan.table.columns) :]
@@ -351,8 +369,17 @@ def _sweep(
     return sweep
 
 
+def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: FloatArray) -> FloatArray:
+    """Which rows are within the tolerance, 1 or 0, as of a solution; NaN where that is not known or has no meaning."""
+    if not scene.accuracy.binds:
+        return np.full(len(errors), np.nan)
+    within = np.where(np.isnan(errors), np.nan, errors <= scene.accuracy.tolerance)
+    return np.where(converged, within, 0.0)
+
+
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
     sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
+    missed = {"missed": int(sweep.missed.sum())} if plan.estimate_errors else {}
     return {
         "schema": 1,
         "sweep": plan.identity,
@@ -361,6 +388,8 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "rows": len(sweep.values),
         "outcomes": sweep.counts,
         "tolerance": plan.scene.accuracy.tolerance,
+        "tolerance_binds": plan.scene.accuracy.binds,
+        **missed,
         "chosen": choice.plain(),
         "checked": checked,
         "swept": list(sweep.swept),

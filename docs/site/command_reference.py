@@ -6,6 +6,7 @@ from typing import Any
 
 from typer.main import get_command
 
+from cosserat_casadi.cli.command_group import LINES, load_command
 from cosserat_casadi.cli.main import app
 
 WORDS = """# Every command and option
@@ -17,7 +18,7 @@ are for, how they end, and what is in the files that they write."""
 def command_page() -> str:
     """The page: a section for each command, in the order of ``cosserat --help``."""
     group: Any = get_command(app)
-    sections = [_section(name, command) for name, command in group.commands.items()]
+    sections = [_section(name, load_command(name)) for name in LINES]
     general = ["## Without a command", _table(group.params)]
     return "\n\n".join([WORDS, *sections, *general]) + "\n"
 

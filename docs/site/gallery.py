@@ -75,7 +75,7 @@ def draw_examples(runs: Path) -> None:
     """Run the examples whose picture is older than the scene or than the package.
 
     Args:
-        runs: folder of result files and pictures, that of ``make demo``.
+        runs: folder of result files and pictures, that of ``make gallery``.
 
     Raises:
         ExampleError: one of them fails.
@@ -92,7 +92,7 @@ def draw_examples(runs: Path) -> None:
 
 
 def run_example(arguments: list[str]) -> None:
-    """Run one command line of ``make demo``.
+    """Run one command line of ``make gallery``.
 
     Raises:
         ExampleError: it ends with an exit code other than 0.

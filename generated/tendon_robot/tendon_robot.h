@@ -111,7 +111,7 @@ typedef enum {
   TENDON_ROBOT_NOT_FINITE         = 2, /* No equilibrium found: the equations gave a value that is not a finite number. */
   TENDON_ROBOT_SINGULAR           = 3, /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
   TENDON_ROBOT_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
-  TENDON_ROBOT_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
+  TENDON_ROBOT_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
   TENDON_ROBOT_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   TENDON_ROBOT_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
   TENDON_ROBOT_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */

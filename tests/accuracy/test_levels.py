@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cosserat_casadi import Scene, Solution, build, discretise, solve
+from cosserat_casadi import Scene, Solution, build, discretise, read_scene, solve, solve_scene
 from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
 from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level
 from cosserat_casadi.numerics.outcome import Outcome
+from tests.conftest import ROOT
 from tests.scenes import WEIGHT, push, scene
 
 BENT = scene(push(force=[3.0, 1.0, -0.5]), WEIGHT)
@@ -103,3 +104,15 @@ def test_grid_is_given_up_after_some_factors() -> None:
 @pytest.mark.parametrize(("tolerance", "index"), [(1e-2, 1), (1e-4, 1), (1e-5, 2), (1e-12, 2)])
 def test_first_level(tolerance: float, index: int) -> None:
     assert Level.first(tolerance) == Level(index)
+
+
+def test_first_level_of_an_assembly_tells_how_fast_it_converges() -> None:
+    """Three modes are always kept there, so that on five modes nothing is left to compare with."""
+    platform = read_scene(ROOT / "examples" / "shaken_platform.toml")
+    assert Level.first(platform.accuracy.tolerance).modes == 5
+    tried: list[str] = []
+    solve_scene(platform, report=tried.append)
+    first = discretise(platform, 7, 10)
+    assert tried[0].startswith(f"{build(platform, first).size} unknowns")
+    # Nothing finer is needed: what follows is the coarsened model.
+    assert len(tried) == 2

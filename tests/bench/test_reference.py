@@ -10,8 +10,9 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import read_scene
 from cosserat_casadi.bench import reference as module
-from cosserat_casadi.bench.reference import NoReferenceError, find_reference
+from cosserat_casadi.bench.reference import find_reference
 from cosserat_casadi.bench.shooting import RodState, ShootingError
+from cosserat_casadi.errors import NoReferenceError
 from tests.conftest import ROOT
 from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene

@@ -13,6 +13,7 @@ from cosserat_casadi import Solution, build, read_scene, solve
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.solution_file import result_text
+from examples.demo import EXPORTED, HANDFUL, MOTIONS, SCENES, command_lines
 from tests.commands import WIRE, cosserat
 from tests.conftest import ROOT
 
@@ -311,10 +312,13 @@ def test_inverse_writes_what_was_found(wire: Path) -> None:
     assert "misses tip of wire" in found["message"]
 
 
-def test_demo_solves_every_example() -> None:
-    listed = (ROOT / "examples" / "demo.py").read_text()
-    for path in (ROOT / "examples").glob("*.toml"):
-        assert f'"{path.stem}"' in listed
+def test_demo_and_gallery_run_every_example_once(tmp_path: Path) -> None:
+    lines = [*command_lines(tmp_path, rest=False), *command_lines(tmp_path, rest=True)]
+    scenes = [Path(line[1]) for line in lines if "--plot" in line]
+    assert sorted(scenes) == sorted((ROOT / "examples").glob("*.toml"))
+    assert set(HANDFUL) <= {*SCENES, *MOTIONS}
+    (exported,) = (line for line in lines if line[0] == "export" and "--page" not in line)
+    assert exported == ["export", str(ROOT / "examples" / f"{EXPORTED}.toml"), "--output", str(tmp_path / EXPORTED)]
 
 
 def test_tune_fixes_a_discretisation_for_a_set_of_loads(wire: Path) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import pkgutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,12 +13,9 @@ import casadi as ca
 import pytest
 from rich.console import Console
 
-# Errors are defined where they are raised: all of these modules are loaded with the commands.
-import cosserat_casadi.cli.main
-import cosserat_casadi.plots.animation
-import cosserat_casadi.sweep.cluster
-import cosserat_casadi.sweep.outcome_file  # noqa: F401
+import cosserat_casadi
 from cosserat_casadi import SceneError, __version__, read_scene, solve_scene
+from cosserat_casadi.cli.command_group import LINES, load_command
 from cosserat_casadi.cli.commands.new import TEMPLATES, Template
 from cosserat_casadi.cli.main import app, run
 from cosserat_casadi.cli.shipped import examples, pages
@@ -72,6 +71,22 @@ def test_new_never_overwrites(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 def test_new_refuses_a_folder_that_is_not_there(tmp_path: Path) -> None:
     assert cosserat("new", str(tmp_path / "nowhere" / "robot.toml")) == 2
     assert list(tmp_path.iterdir()) == []
+
+
+# cosserat --help
+
+
+def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cosserat("--help") == 0
+    shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    for name, line in LINES.items():
+        assert f"{name} {line}" in shown
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_line_of_a_command_is_how_its_help_begins(name: str) -> None:
+    help_text = " ".join(load_command(name).help.split())
+    assert help_text.startswith(LINES[name])
 
 
 # cosserat examples
@@ -186,6 +201,9 @@ def families(error: type[CosseratError]) -> list[type[CosseratError]]:
 
 
 def test_every_family_of_errors_leads_to_a_page() -> None:
+    # Errors are defined where they are raised.
+    for module in pkgutil.walk_packages(cosserat_casadi.__path__, "cosserat_casadi."):
+        importlib.import_module(module.name)
     kinds = families(CosseratError)
     assert len(kinds) > 10
     for kind in kinds:

@@ -161,3 +161,16 @@ def test_body_on_two_hinges_of_one_axis_turns_freely() -> None:
     tables = {"schema": 1, "rods": list(legs), "bodies": [{"name": "plate"}], "joints": hinges}
     with pytest.raises(SceneError, match="turns freely about the line through its joints"):
         build(scene_from_dict(tables))
+
+
+def test_models_of_one_scene_share_the_kernels_of_their_joints() -> None:
+    """Modes and nodes do not change how a joint is closed; a place does."""
+    coarse, fine = held("revolute"), held("revolute", accuracy={"modes": 5, "nodes": 9})
+    elsewhere = [joint("a", quaternion=TURNED), joint("b", kind="revolute", axis=AXIS.tolist())]
+    constraints = [
+        model.discrete.constraint("joints[1]") for model in (coarse, fine, held("revolute", joints=elsewhere))
+    ]
+    first, second, other = (constraint._kernels for constraint in constraints)
+    assert first is second
+    assert first is not other
+    assert first.law != other.law

@@ -94,7 +94,7 @@ def test_an_interrupt_that_is_lost_stops_the_command(
     lost: list[bool] = []
     # What this process has received is no signal to the commands of other tests.
     monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
-    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_rods", lose)
     monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", lose)
     words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])

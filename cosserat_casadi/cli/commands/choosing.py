@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from cosserat_casadi.accuracy.choose import SAMPLES, Choice, choose
 from cosserat_casadi.accuracy.common_modes import Values
 from cosserat_casadi.accuracy.ranges import Given
-from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -29,6 +29,6 @@ def solve_for_ranges(scene: Scene, ranges: Given | None = None) -> tuple[Solutio
         the equilibrium, and the choice; None in exact contact, where modes suit the scene's own inputs.
     """
     if scene.touches_exactly:
-        return solve_with_progress(scene), None
+        return solve_rods_with_progress(scene), None
     choice = choose_with_progress(scene, ranges)
     return solve(choice.model), choice

@@ -14,11 +14,11 @@ from rich.markup import escape
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
-from cosserat_casadi.cli.commands.tubes import export_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
+from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -26,7 +26,9 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
+from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -34,7 +36,9 @@ from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.solve import solve_tubes
 
 
 def export(
@@ -133,9 +137,9 @@ def export(
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
-        _refuse_for_tubes(unknown)
+        check_tubes(unknown)
         assert output is not None
-        export_tube_scene(exported_scene, output, name)
+        _export_tubes(exported_scene, output, name)
         return
     check_period(exported_scene, period)
     cases = None
@@ -172,9 +176,7 @@ def export(
         verified = choice.verified
         chosen_for = choice.ranges.described if choice.met else ()
         exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, chosen_for)
-    if not solution.converged:
-        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
-        raise typer.Exit(NOT_FOUND)
+    _check_solved(solution)
     console = Console()
     model = solution.model
     if moves or exported_scene.parameters:
@@ -212,6 +214,22 @@ def export(
             raise typer.Exit(NOT_FOUND)
 
 
+def _check_solved(solution: Solution | TubeSolution) -> None:
+    """Write nothing where there is no equilibrium, and say why."""
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+
+
+def _export_tubes(scene: Scene, output: Path, name: str) -> None:
+    """Write concentric tubes with the steps that the scene's own inputs need."""
+    scene_names(name, scene)
+    solution = solve_tubes(scene)
+    _check_solved(solution)
+    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    print_tubes_export(Console(), solution, output)
+
+
 def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
     """What an export writes over, by option: page, FMU, and what an earlier export left in the folder."""
     written = {"--page": page, "--fmu": fmu}
@@ -225,16 +243,5 @@ def _refuse_without_sources(options: Mapping[str, bool]) -> None:
     """Refuse options that only sources in C know: page and FMU hold what they hold."""
     remedy = "name a folder for them with --output, or leave it out"
     problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
-    if problems:
-        raise ExportError(*problems)
-
-
-def _refuse_for_tubes(options: Mapping[str, bool]) -> None:
-    """Refuse options that are for rods."""
-    problems = [
-        Problem(option, "is for rods, and the scene has concentric tubes", "leave it out")
-        for option, given in options.items()
-        if given
-    ]
     if problems:
         raise ExportError(*problems)

@@ -47,6 +47,12 @@ def sweep(
     stability: Annotated[
         bool, typer.Option("--stability", help="Say of every row whether its equilibrium is stable.")
     ] = False,
+    estimate_errors: Annotated[
+        bool,
+        typer.Option(
+            "--error-estimate/--no-error-estimate", help="Estimate the error of every row, or leave the columns out."
+        ),
+    ] = True,
     sobol: Annotated[
         Path | None,
         typer.Option(help="Draw the random columns for sensitivity indices, and write those here: .json."),
@@ -62,7 +68,7 @@ def sweep(
     """Solve a scene for every row of a grid or a table of inputs and parameters.
 
     What a stopped or killed run has done is not done again. Exit codes: 0 every row has its outcome, 2 refused,
-    3 the tolerance is missed on rows that were checked, or no row has an equilibrium, 130 interrupted.
+    3 rows miss the tolerance, or no row has an equilibrium, 130 interrupted.
     """
     problems: list[Problem] = []
     with collect_problems(problems):
@@ -74,7 +80,8 @@ def sweep(
         check_inputs_stay(outputs, scene, settings, over)
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
-    plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, sobol is not None, problems)
+    asked = {"stability": stability, "estimate_errors": estimate_errors}
+    plan = _check_table(scene, tuple(settings or ()), over, output, samples, asked, sobol is not None, problems)
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -106,11 +113,11 @@ def _check_table(
     over: Path,
     output: Path,
     samples: int,
-    stability: bool,
+    asked: dict[str, bool],
     sobol: bool,
     problems: list[Problem],
 ) -> Plan | None:
-    """The sweep that is asked for; None where the scene, the table or the output is refused."""
+    """The sweep that is asked for, with columns that are; None where the scene, the table or the output is refused."""
     scene: Scene | None = None
     table: Table | None = None
     with collect_problems(problems):
@@ -122,7 +129,7 @@ def _check_table(
         problems.extend(output_problems(output, None))
         return None
     with collect_problems(problems):
-        return plan_sweep(scene, table, output, samples, stability=stability)
+        return plan_sweep(scene, table, output, samples, **asked)
     return None
 
 

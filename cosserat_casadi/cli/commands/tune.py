@@ -13,7 +13,7 @@ from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
-from cosserat_casadi.cli.reports.format import discretisation_table
+from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
-from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
@@ -45,7 +45,7 @@ def view(
     choice = None
     if viewed_scene.accuracy.fixed:
         # What the scene fixes need not be verified beforehand: every answer tells its error.
-        solution = solve_with_progress(viewed_scene)
+        solution = solve_rods_with_progress(viewed_scene)
         print_locking(Console(stderr=True), locking_note(solution))
     else:
         solution, choice = solve_for_ranges(viewed_scene)

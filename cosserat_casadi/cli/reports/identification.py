@@ -10,16 +10,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import (
-    discretisation_sentences,
-    print_plain,
-    print_written,
-    table_of,
-    title_line,
-)
+from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
+from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 MOST_CASES = 10
 """Unknowns of single cases that are printed for so many cases; the file has them all."""
@@ -37,6 +33,10 @@ def print_identification(console: Console, found: Identification, written: Seque
     if found.rows:
         print_plain(console, _residuals(found))
         print_plain(console, escape("; ".join(discretisation_sentences(found.model))))
+    if found.error_estimate is not None:
+        tolerance = found.model.scene.accuracy.tolerance
+        error = error_words(found.error_estimate, found.within_tolerance, tolerance)
+        print_plain(console, f"estimated error of the model at most {error} ({escape(str(found.error_case))})")
     print_written(console, written)
 
 

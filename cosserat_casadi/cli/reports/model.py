@@ -11,23 +11,39 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
-from cosserat_casadi.cli.reports.format import discretisation_table, print_plain, table_of, title_line
+from cosserat_casadi.cli.reports.discretisation import discretisation_table
+from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.price import price, price_of_load, price_of_obstacle
+from cosserat_casadi.model.operations import Count
+from cosserat_casadi.model.price import Price
 from cosserat_casadi.scene.varying import VaryingValue
 
 
-def print_check(console: Console, model: Model, varying: Sequence[VaryingValue]) -> None:
-    """Print what a valid scene holds, what in it varies along the rods, and what its model costs."""
+def print_check(
+    console: Console,
+    model: Model,
+    varying: Sequence[VaryingValue],
+    cost: Price,
+    of_effects: Mapping[str, Count],
+) -> None:
+    """Print what a valid scene holds, what in it varies along the rods, and what its model costs.
+
+    Args:
+        console: where to print.
+        model: the model of the scene.
+        varying: values that vary along a rod.
+        cost: operations of the model's functions.
+        of_effects: operations that each load, actuator and obstacle with a width adds to the residual, by name.
+    """
     scene = model.scene
     print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
-    if scene.causes or any(obstacle.is_smooth for obstacle in scene.obstacles):
-        console.print(_load_table(model))
+    if of_effects:
+        console.print(_load_table(model, of_effects))
     _print_varying(console, varying)
     _print_parameters(console, model)
     if scene.supports:
@@ -35,7 +51,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
-    _print_price(console, model)
+    _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
         print_plain(console, "Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
     if scene.accuracy.modes is None:
@@ -161,31 +177,27 @@ def _with_unit(number: float, unit: str) -> str:
     return f"{number:.6g} {unit}"
 
 
-def _print_price(console: Console, model: Model) -> None:
-    # Expanding the functions into scalar operations takes seconds for a large scene.
-    with console.status("Counting operations"):
-        cost = price(model)
+def _print_price(console: Console, model: Model, cost: Price) -> None:
     igm = "IGM"
     if len(model.igm) > 1:
         igm = f"IGM of all {len(model.igm)} rods"
     print_plain(
         console,
-        f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm:,}, residual {cost.residual:,}, "
-        f"residual and Jacobian {cost.jacobian:,}.",
+        f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm}, residual {cost.residual}, "
+        f"residual and Jacobian {cost.jacobian}.",
     )
 
 
-def _load_table(model: Model) -> Table:
+def _load_table(model: Model, of_effects: Mapping[str, Count]) -> Table:
     table = table_of("load or actuator", "kind", "free inputs")
     table.add_column("adds to the residual", justify="right")
     for cause in model.scene.causes:
         prefix = f"{cause.name}."
         fields = [name.removeprefix(prefix) for name in model.inputs.names if name.startswith(prefix)]
         free_inputs = ", ".join(fields) or "none"
-        cost = price_of_load(model.scene, cause.name)
-        table.add_row(escape(cause.name), cause.kind, free_inputs, f"{cost:,} operations")
+        table.add_row(escape(cause.name), cause.kind, free_inputs, f"{of_effects[cause.name]} operations")
     for obstacle in model.scene.obstacles:
         if obstacle.is_smooth:
-            cost = price_of_obstacle(model.scene, obstacle.name)
-            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost:,} operations")
+            cost = of_effects[obstacle.name]
+            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost} operations")
     return table

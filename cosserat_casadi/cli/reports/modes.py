@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import discretisation_sentences, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
+from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.motion.modes import Mode, Modes
 
 

@@ -10,16 +10,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import (
-    digits,
-    discretisation_sentences,
-    print_plain,
-    print_written,
-    table_of,
-    title_line,
-)
+from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
+from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 
 def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:

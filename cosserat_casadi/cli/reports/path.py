@@ -11,7 +11,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 

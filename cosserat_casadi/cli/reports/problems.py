@@ -7,7 +7,7 @@ from rich.markup import escape
 
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.errors import ExportError, SceneError
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 
 
 def print_refusal(console: Console, error: SceneError | ExportError) -> None:

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweep.sobol import SobolIndices
 
 
