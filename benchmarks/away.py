@@ -176,7 +176,8 @@ def cases_of(scene: Scene, points: int) -> list[Case]:
         return []
     rng = np.random.default_rng(len(model.pack()))
     with tempfile.TemporaryDirectory() as folder:
-        in_c = None if scene.touches_exactly else _in_c(model, Path(folder))
+        in_c = None if scene.touches_exactly else load(export(model, Path(folder) / "robot", "robot"))
+        assert in_c is None or isinstance(in_c, Compiled)
         subject = Subject(model, _finer(model), in_c, model.parameters.pack())
         found = [_case(subject, rng, inside=k % 6 != 5) for k in range(points)]
     return [case for case in found if case is not None]
