@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
@@ -37,6 +38,7 @@ from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -47,9 +49,10 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
-from cosserat_casadi.tubes.equilibria import stable_tubes
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import solve_tubes
+from cosserat_casadi.rod.discretisation import Discretisation
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -103,9 +106,11 @@ def solve_scene(
     """
     if not scene.tubes:
         return solve_rods(scene, values, stable=stable, progress=progress, report=report)
-    if stable:
-        return stable_tubes(scene, values)
-    return solve_tubes(scene, values)
+    # Imported here, because no scene of rods needs the modules of tubes.
+    from cosserat_casadi.tubes.equilibria import stable_tubes
+    from cosserat_casadi.tubes.solve import solve_tubes
+
+    return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
 
 
 def solve_rods(
@@ -318,6 +323,15 @@ def _with_fixed(solver: SceneSolver) -> Solution:
     solution = solver.relax(solver.solve(discretisation, meant))
     if not solution.converged:
         return solution
+    note = locking_note(solution)
+    judged = _beside_finer(solver, discretisation, solution, meant)
+    return _with_note(judged, f" {note}") if note else judged
+
+
+def _beside_finer(
+    solver: SceneSolver, discretisation: Mapping[str, Discretisation], solution: Solution, meant: Solution | None
+) -> Solution:
+    """A solution on the discretisation that the scene asks for, with its distance to a finer one as its error."""
     turn = largest_turn(solution)
     visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -131,6 +131,17 @@ class StepMemory:
 
     kept: Any
     workspace: Any
+
+    def __reduce__(self) -> tuple[Callable[..., StepMemory], tuple[bytes, int]]:
+        """How pickle and copy make the memory anew: the workspace means nothing between two steps."""
+        return _memory_of, (bytes(self.kept), ctypes.sizeof(self.workspace))
+
+
+def _memory_of(kept: bytes, workspace_size: int) -> StepMemory:
+    """The memory of steps from the bytes that they keep and the size of their workspace."""
+    memory = StepMemory(room(len(kept)), room(workspace_size))
+    ctypes.memmove(memory.kept, kept, len(kept))
+    return memory
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.tubes.functions import TubeFunctions
 
 MANIFEST = "manifest.json"
 
@@ -151,7 +152,7 @@ def manifest(
     }
 
 
-def input_entries(model: Model) -> list[dict[str, Any]]:
+def input_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
     lower, upper = ranges_of_inputs(model.scene, model.inputs)
     return [

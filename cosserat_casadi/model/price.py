@@ -96,8 +96,9 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
     """The scene without the damping of its rods and of contact, and without the parameters that were of it."""
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
     obstacles = tuple(obstacle.model_copy(update={"damping": 0.0}) for obstacle in scene.obstacles)
-    # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER.
-    parameters = tuple(name for name in scene.parameters if name.split(".")[1] != "damping")
+    # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
+    named = zip(scene.parameters, scene.parameter_names(), strict=True)
+    parameters = tuple(entry for entry, name in named if name.split(".")[1] != "damping")
     return scene.model_copy(update={"rods": rods, "obstacles": obstacles, "parameters": parameters})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -14,24 +14,26 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.contact_entry import point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
-from cosserat_casadi.results.tubes_file import equilibria_result, tubes_result
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.solution import TubeSolution
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
 
 
-Solved = Solution | TubeSolution | TubeEquilibria
+Solved: TypeAlias = "Solution | TubeSolution | TubeEquilibria"
 """What a result file may be of: rods, concentric tubes, or all equilibria of these."""
 
 
 def result(solution: Solved) -> dict[str, Any]:
     """A solution as the plain data of the result file; a number that is not finite becomes null."""
-    if isinstance(solution, TubeSolution):
+    if not isinstance(solution, Solution):
+        # Imported here, because no scene of rods needs the modules of tubes.
+        from cosserat_casadi.results.tubes_file import tubes_result
+
         return tubes_result(solution)
-    if isinstance(solution, TubeEquilibria):
-        return equilibria_result(solution)
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)

@@ -57,9 +57,9 @@ def tube_variants(scene: Scene, table: Table) -> Variants:
 
 def _unknown_columns(robot: Robot, table: Table) -> Iterator[Problem]:
     for column in table.columns:
-        if column in robot.input_names:
+        if column in robot.columns:
             continue
-        remedy = closest(column, robot.input_names)
+        remedy = closest(column, robot.columns)
         owner, _, field = column.partition(".")
         if owner in robot.names and field.split(".")[0] in Tube.model_fields:
             remedy = "rotations, translations and loads are swept; give it with --set, and sweep once for each value"

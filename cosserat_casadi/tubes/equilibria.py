@@ -248,7 +248,7 @@ class _Pair:
 
     def read(self, angle: float) -> _Reading:
         """The drives where the tips are at an angle."""
-        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs, 1.0)
+        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs)
         missed = float(residual[1] - residual[0])
         slope = float(jacobian[1, 1] - jacobian[0, 1])
         return _Reading(angle, missed, slope)
@@ -256,7 +256,7 @@ class _Pair:
     def tips(self, angle: float) -> FloatArray:
         """Angles at both tips, turned together until the first drive is met."""
         together = np.array([0.0, angle])
-        residual = np.ravel(self.model.residual(together, self.inputs, 1.0).full())
+        residual = np.ravel(self.model.residual(together, self.inputs).full())
         return np.asarray(together - residual[0])
 
 
@@ -339,7 +339,7 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
             end = solution_near(model, inputs, start)
             if end.converged and all(np.abs(end.x - known).max() > SAME for known in found):
                 found.append(end.x)
-        determinants = (float(np.linalg.det(model.jacobian(x, inputs, 1.0)[0].full())) for x in found)
+        determinants = (float(np.linalg.det(model.jacobian(x, inputs)[0].full())) for x in found)
         if len(found) == before and _degree(determinants) == 1:
             return _Search(found, settled=True)
     return _Search(found, settled=False)
@@ -350,6 +350,6 @@ def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[Float
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
     for between in itertools.product(angles, repeat=model.size - 1):
         tips = np.array([0.0, *between])
-        missed = np.ravel(model.residual(tips, inputs, 1.0).full())
+        missed = np.ravel(model.residual(tips, inputs).full())
         tips -= missed[0]
         yield tips - TURN * np.round((missed - missed[0]) / TURN)

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
@@ -156,7 +156,7 @@ def follow_tubes(
         values = first.inputs
     start = robot.packed(values)
     index = robot.input_index(name)
-    end = robot.packed({**dict(zip(robot.input_names, start, strict=True)), name: to})
+    end = robot.packed({**dict(zip(robot.columns, start, strict=True)), name: to})
     if end[index] == start[index]:
         raise SceneError(Problem(name, f"is {end[index]:g} where the path begins", "give another value to go to"))
     way = _Way(robot, name, start, end, first, settings)
@@ -187,9 +187,9 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
     """
     if values is not None:
         raise SceneError(Problem("first", "stands beside values", "its inputs are where the path begins"))
-    if first.robot.input_names != robot.input_names:
+    if first.robot.columns != robot.columns:
         problem = "is of tubes or loads with other names"
-        raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.input_names)}"))
+        raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.columns)}"))
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
@@ -228,7 +228,8 @@ class _Way:
     @property
     def unit(self) -> str:
         """Unit of the input."""
-        return self.robot.input_units[self.robot.input_index(self.name)]
+        index = self.robot.input_index(self.name)
+        return next(entry.unit for entry, span in self.robot.layout if index < span.stop)
 
     def inputs(self, factor: float) -> FloatArray:
         """All inputs at a factor."""
@@ -247,13 +248,7 @@ class _Way:
             first = solution_near(model, self.start, self.at_start.x)
         if not first.converged:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
-        change = self.end - self.start
-        path = Path(
-            residual=lambda x, t: np.ravel(model.residual(x, self.inputs(t), 1.0).full()),
-            jacobian=lambda x, t: model.jacobian(x, self.inputs(t), 1.0)[0].full(),
-            rate=lambda x, t: np.ravel(model.input_rate(x, self.inputs(t), 1.0, change).full()),
-            start=first.x,
-        )
+        path = input_path(model, first.x, self.start, self.end)
         usual = SLIDING if self.unit == "m" else TURNING
         traced = trace(Curve(path, DETERMINANT, self.limits or usual), progress=progress)
         return self._path(model, traced)

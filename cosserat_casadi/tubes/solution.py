@@ -102,12 +102,12 @@ class TubeSolution:
 
         The work counts where all loads have an energy.
         """
-        return float(self.model.energy(self.x, self.inputs, 1.0))
+        return float(self.model.energy(self.x, self.inputs))
 
     @cached_property
     def shape(self) -> Shape:
         """The robot at the ends of all steps."""
-        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs, 1.0)
+        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs)
         return Shape(
             distance=np.ravel(distance.full()),
             position=position.full().T,
@@ -119,7 +119,7 @@ class TubeSolution:
     @cached_property
     def tips(self) -> dict[str, NumericPose]:
         """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
-        position, quaternion = self.model.tips(self.x, self.inputs, 1.0)
+        position, quaternion = self.model.tips(self.x, self.inputs)
         return {
             name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
             for index, name in enumerate(self.robot.names)
@@ -141,7 +141,7 @@ class TubeSolution:
     @cached_property
     def tip_jacobian(self) -> FloatArray:
         """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
-        jacobian = self.model.tip_jacobian(self.x, self.inputs, 1.0).full()
+        jacobian = self.model.tip_jacobian(self.x, self.inputs).full()
         return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
 
 

@@ -21,7 +21,7 @@ HOUSED = Pendulum(2.0, housing=(0.1, 0.25))
 
 def between_drives(model: TubeModel, between_tips: float) -> float:
     inputs = model.robot.inputs
-    missed = model.residual([0.0, between_tips], inputs, 1.0).full()[:, 0] + inputs[::2]
+    missed = model.residual([0.0, between_tips], inputs).full()[:, 0] + inputs[::2]
     return float(missed[1] - missed[0])
 
 
@@ -51,7 +51,7 @@ def test_stability_of_opposed_tubes(reach: float, falling: int, housing: tuple[f
     model = TubeModel(robot_of(scene), 32)
     # The half turn is kept all along: both curvatures are opposed, and twist would release energy.
     x = model.robot.inputs[::2]
-    assert_allclose(model.residual(x, model.robot.inputs, 1.0).full(), 0.0, rtol=0, atol=1e-14)
+    assert_allclose(model.residual(x, model.robot.inputs).full(), 0.0, rtol=0, atol=1e-14)
     stability = stability_of(model, x, model.robot.inputs)
     assert_allclose(stability.determinant, tubes.opposed_determinant(), rtol=0, atol=1e-8)
     if housing == (0.0, 0.0):

@@ -13,9 +13,11 @@ from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
-from cosserat_casadi.cli.reports.model import print_check, print_ranges
+from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, locking_note
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
@@ -59,6 +61,10 @@ def check(
         ranges = input_ranges(checked_scene)
     print_check(Console(), model, varying, cost, of_effects)
     print_ranges(Console(), ranges)
+    held = degrees_of_freedom(model) is not None and not checked_scene.touches_exactly
+    if held and checked_scene.accuracy.fixed:
+        # Constraints can lock modes that the scene fixes: an equilibrium tells.
+        print_locking(Console(), locking_note(solve(model, estimate_error=False)))
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:

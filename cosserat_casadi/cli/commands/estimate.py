@@ -95,6 +95,10 @@ def _print(console: Console, found: Estimate, title: str | None) -> None:
     for k, label in enumerate(found.labels):
         numbers = (values[:, k].min(), values[:, k].max(), sorted(deviations[:, k])[len(deviations) // 2])
         table.add_row(escape(label), found.units[k], *(f"{number:.4g}" for number in numbers))
+    if found.shared is not None:
+        shared = found.shared
+        for label, unit, value, sigma in zip(shared.labels, shared.units, shared.values, shared.sigma, strict=True):
+            table.add_row(escape(label), unit, f"{value:.4g}", f"{value:.4g}", f"{sigma:.4g}")
     console.print(table)
     if found.checked:
         print_plain(console, _checked_sentence(found), soft_wrap=True)

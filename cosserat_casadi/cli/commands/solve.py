@@ -19,14 +19,12 @@ from cosserat_casadi.cli.options import (
     given_files,
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
-from cosserat_casadi.cli.reports.tubes import print_equilibria, print_tubes
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_whole
 from cosserat_casadi.results.solution_file import Solved, result_text, write_result
 from cosserat_casadi.scene import read_scene, with_exact_contact
-from cosserat_casadi.tubes.equilibria import TubeEquilibria, all_equilibria
 
 
 def solve(
@@ -71,11 +69,12 @@ def solve(
     if problems:
         raise SceneError(*problems)
     if every:
+        # Imported here, because no scene of rods needs the modules of tubes.
+        from cosserat_casadi.tubes.equilibria import all_equilibria
+
         equilibria = all_equilibria(read)
-        if not equilibria.solutions:
-            # There is nothing to draw.
-            plot = None
-        _give(equilibria, output, plot, as_json=as_json)
+        # Without an equilibrium there is nothing to draw.
+        _give(equilibria, output, plot if equilibria.solutions else None, as_json=as_json)
         if not equilibria.complete:
             raise typer.Exit(NOT_FOUND)
         return
@@ -98,14 +97,13 @@ def _give(solution: Solved, output: Path | None, plot: Path | None, *, as_json: 
         write_result(solution, output)
     if plot is not None:
         draw_solution(solution, plot)
+    written = given_files(output, plot)
     if as_json:
         # JSON is UTF-8, whatever the terminal knows.
         write_whole(binary_output(), result_text(solution).encode())
-        return
-    written = given_files(output, plot)
-    if isinstance(solution, Solution):
+    elif isinstance(solution, Solution):
         print_solution(Console(), solution, written)
-    elif isinstance(solution, TubeEquilibria):
-        print_equilibria(Console(), solution, written)
     else:
+        from cosserat_casadi.cli.reports.tubes import print_tubes
+
         print_tubes(Console(), solution, written)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cosserat_casadi.accuracy.refine import solve_rods, solve_scene
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.results.solution_file import Solved
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.solution import TubeSolution
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 
 def solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution | TubeSolution:
@@ -28,12 +30,11 @@ def solve_rods_with_progress(scene: Scene) -> Solution:
 def draw_solution(solution: Solved, file: Path) -> None:
     """Draw a solution into a file."""
     # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.scene_plot import save_plot
-    from cosserat_casadi.plots.tubes_plot import save_tubes_plot
-
     if isinstance(solution, Solution):
+        from cosserat_casadi.plots.scene_plot import save_plot
+
         save_plot(solution, file)
-    elif isinstance(solution, TubeEquilibria):
-        save_tubes_plot(solution.solutions, file)
     else:
-        save_tubes_plot([solution], file)
+        from cosserat_casadi.plots.tubes_plot import save_tubes_plot
+
+        save_tubes_plot(solution, file)

@@ -19,8 +19,17 @@ from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import FEWEST_STEPS, model_of
 
 
-def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path]) -> None:
-    """Print the outcome, the tubes, the figures of merit, and the files that were written."""
+def print_tubes(console: Console, solution: TubeSolution | TubeEquilibria, written: Sequence[Path]) -> None:
+    """Print an equilibrium, or all at the same inputs, and the files that were written."""
+    if isinstance(solution, TubeSolution):
+        _print_equilibrium(console, solution)
+    else:
+        _print_equilibria(console, solution)
+    print_written(console, written)
+
+
+def _print_equilibrium(console: Console, solution: TubeSolution) -> None:
+    """Print the outcome, the tubes, and the figures of merit."""
     _print_message(console, solution.robot.scene.title, solution.message, good=solution.converged)
     table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
     for index, (name, tip) in enumerate(solution.tips.items()):
@@ -37,7 +46,6 @@ def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path
         f"energy {solution.energy:.6g} J",
     ]
     print_plain(console, "; ".join(parts))
-    print_written(console, written)
 
 
 def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
@@ -51,8 +59,8 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
-def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
-    """Print all equilibria at the same inputs, and the files that were written."""
+def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
+    """Print how the search ended, and a line for each equilibrium."""
     _print_message(console, equilibria.robot.scene.title, equilibria.message, good=equilibria.complete)
     table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", "tip position, m")
     for number, solution in enumerate(equilibria.solutions, 1):
@@ -70,7 +78,6 @@ def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequ
     if count == 1:
         noun = "equilibrium"
     print_plain(console, f"{count} {noun}, {len(equilibria.stable)} of them stable")
-    print_written(console, written)
 
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
@@ -94,7 +101,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
     unknowns = model_of(robot, FEWEST_STEPS).unknowns
-    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.input_names)}")
+    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 
 def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import Info
+from cosserat_casadi.codegen.compiled_results import CompiledAnswer, Info, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
@@ -55,47 +55,27 @@ class ContactInC(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True)
-class CompiledContactSolution:
+@dataclass(frozen=True, kw_only=True)
+class CompiledContactSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
-        outcome: how it ended.
         arrangement: number of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
-        iterations: Newton steps.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual.
-        load_factor: share of the way of the inputs that was done.
         tries: arrangements that were solved.
         parts: parts of the way of the inputs.
         derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
         state: what the next call begins with.
     """
 
-    outcome: Outcome
     arrangement: int
     tips: Mapping[str, FloatArray]
     contacts: tuple[Contact, ...]
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     tries: int
     parts: int
     derivatives: Mapping[str, FloatArray] | None
     state: bytes = field(repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs, in contacts that hold."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def message(self) -> str:
-        """A sentence that says how it ended."""
-        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -134,7 +114,7 @@ class CompiledContact(LoadedLibrary):
         state = self._room()
         self._function("start")(state)
         info = ContactInfo(load_factor=1.0)
-        return self._answer(Outcome.CONVERGED, state, info, solved=True)
+        return self._answer(state, info, solved=True)
 
     def solve(
         self, inputs: ArgumentValues = None, start: CompiledContactSolution | None = None
@@ -155,7 +135,7 @@ class CompiledContact(LoadedLibrary):
         info = ContactInfo()
         status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
-        return self._answer(outcome, state, info, solved=outcome in SOLVED)
+        return self._answer(state, info, solved=outcome in SOLVED)
 
     def track(
         self,
@@ -187,7 +167,7 @@ class CompiledContact(LoadedLibrary):
         outcome = CONTACT_OUTCOMES[status]
         # After any other end the state is that of the turn before, for its inputs.
         solved = outcome is Outcome.CONVERGED
-        return self._answer(outcome, state, info, columns if solved else None, solved=solved)
+        return self._answer(state, info, columns if solved else None, solved=solved)
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -197,7 +177,6 @@ class CompiledContact(LoadedLibrary):
 
     def _answer(
         self,
-        outcome: Outcome,
         state: Any,
         info: ContactInfo,
         derivatives: FloatArray | None = None,
@@ -205,14 +184,10 @@ class CompiledContact(LoadedLibrary):
         solved: bool,
     ) -> CompiledContactSolution:
         return CompiledContactSolution(
-            outcome=outcome,
+            **answer_words(info, CONTACT_OUTCOMES),
             arrangement=self._arrangement_of(state),
             tips=self._tips(state) if solved else {},
             contacts=self._contacts(state) if solved else (),
-            iterations=info.iterations,
-            jacobians=info.jacobians,
-            residual_norm=info.residual_norm,
-            load_factor=info.load_factor,
             tries=info.tries,
             parts=info.parts,
             derivatives=None if derivatives is None else by_tip(self.rods, derivatives),

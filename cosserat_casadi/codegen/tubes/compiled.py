@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import AnswerInfo
+from cosserat_casadi.codegen.compiled_results import AnswerInfo, CompiledAnswer, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import TUBES
@@ -36,46 +36,26 @@ class TubeOptions(ctypes.Structure):
     _fields_ = (("max_iterations", ctypes.c_int), ("max_continuation_steps", ctypes.c_int))
 
 
-@dataclass(frozen=True)
-class CompiledTubesSolution:
+@dataclass(frozen=True, kw_only=True)
+class CompiledTubesSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
-        outcome: how it ended.
         inputs: that it is of, shape (m,).
         x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
             the frame at the tip of the robot less 1 0 0 0 behind them.
         tips: position and quaternion of the tip of each tube, shape (7,); none without a solution.
         determinant: 1 of tubes that do not twist, 0 where the robot snaps, negative where it cannot stay.
-        iterations: Newton steps.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
-        load_factor: share of the way that x has come; 1 where it converged.
         derivatives: of the tip of each tube with the inputs, shape (7, m), where they were asked for.
         memory: what the next turn begins with.
     """
 
-    outcome: Outcome
     inputs: FloatArray
     x: FloatArray
     tips: Mapping[str, FloatArray]
     determinant: float
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     derivatives: Mapping[str, FloatArray] | None = None
     memory: bytes = field(default=b"", repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def message(self) -> str:
-        """A sentence that says how it ended."""
-        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -123,10 +103,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        end = TUBE_OUTCOMES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("solve", pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
@@ -141,11 +119,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        status = self._function("follow")(*arguments)
-        end = TUBE_OUTCOMES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("follow", pointer(start.inputs), pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def track(
         self,
@@ -175,14 +150,11 @@ class CompiledTubes(LoadedLibrary):
         memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
         columns = np.zeros((len(self.tubes), given.size, POSE_SIZE))
         wanted = pointer(columns) if derivatives else None
-        info = TubeInfo()
-        status = self._function("track")(
-            pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
-        )
-        end = TUBE_OUTCOMES[status]
-        found = by_tip(self.tubes, columns) if derivatives and end is Outcome.CONVERGED else None
-        solved = end is Outcome.CONVERGED
-        return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
+        info = self._ended("track", pointer(given), pointer(x), memory, options, None, wanted)
+        # After any other end x is that of the turn before, for its inputs.
+        solved = TUBE_OUTCOMES[info.status] is Outcome.CONVERGED
+        found = by_tip(self.tubes, columns) if derivatives and solved else None
+        return self._answer(given, x, info, solved=(Outcome.CONVERGED,), derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -202,23 +174,25 @@ class CompiledTubes(LoadedLibrary):
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
+    def _ended(self, word: str, *arguments: Any) -> TubeInfo:
+        """How a call of a function of the solver ended."""
+        info = TubeInfo()
+        self._function(word)(*arguments, self._workspace(), ctypes.byref(info))
+        return info
+
     def _answer(
-        self, outcome: Outcome, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
+        self, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: Sequence[Outcome] = SOLVED, **more: Any
     ) -> CompiledTubesSolution:
         tips: dict[str, FloatArray] = {}
-        if solved:
+        if TUBE_OUTCOMES[info.status] in solved:
             poses = np.zeros((len(self.tubes), POSE_SIZE))
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            outcome=outcome,
+            **answer_words(info, TUBE_OUTCOMES),
             inputs=inputs,
             x=x,
             tips=tips,
             determinant=info.determinant,
-            iterations=info.iterations,
-            jacobians=info.jacobians,
-            residual_norm=info.residual_norm,
-            load_factor=info.load_factor,
             **more,
         )

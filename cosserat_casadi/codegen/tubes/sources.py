@@ -15,15 +15,16 @@ from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import (
+    PLAIN_BUILD,
     SHARED,
     comment,
     solver_constants,
     version_words,
     words_of_inputs,
 )
-from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES
+from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
-from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
@@ -34,7 +35,6 @@ from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.tubes.functions import TubeFunctions
-from cosserat_casadi.tubes.loads import COMPONENTS
 from cosserat_casadi.tubes.robot import Robot
 
 NEAR = 0.3
@@ -68,15 +68,6 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
         raise ExportError(*problems)
 
 
-def tube_names(name: str, robot: Robot) -> Names:
-    """What the library of tubes and what is in it are called.
-
-    Raises:
-        ExportError: the name is none for a library, or two inputs would have one name in C.
-    """
-    return library_names(name, (), tuple(entry["name"] for entry in input_entries(robot)))
-
-
 def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) -> dict[str, str]:
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
 
@@ -86,9 +77,9 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
         error_estimate: of the tips at the scene's own inputs, for manifest and README; None where it is not known.
 
     Raises:
-        ExportError: as :func:`tube_names`.
+        ExportError: the name is none for a library, or two inputs would have one name in C.
     """
-    names = tube_names(name, model.robot)
+    names = scene_names(name, model.scene)
     kernels = TubeKernels(model, f"{name}_k").all()
     generated = kernel_sources(kernels, names)
     words = _words(model, names, generated, error_estimate)
@@ -97,7 +88,7 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
         f"{name}.c": render("tubes_library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("tubes_demo.c.in", words),
-        "CMakeLists.txt": render("solver_cmake.in", words),
+        "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("tubes_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
@@ -128,13 +119,14 @@ def _words(
         "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
-        **words_of_inputs(input_entries(robot), names),
+        **words_of_inputs(input_entries(model), names),
         **version_words(),
         "version": version("cosserat-casadi"),
         "casadi_version": ca.CasadiMeta.version(),
         "title": comment(robot.scene.title or names.name),
-        "included": "tubes_turn.c",
+        **PLAIN_BUILD,
         "inner": "any_",
+        "inner_equations": "",
         "first": 1.0,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
@@ -176,23 +168,6 @@ def _number_macros(names: Names, robot: Robot) -> str:
     return "\n".join(f"#define {names.macro}_TUBE_{tube.upper()} {index}" for index, tube in enumerate(robot.names))
 
 
-def input_entries(robot: Robot) -> list[dict[str, Any]]:
-    """Inputs in the order of their vector, as in the manifest."""
-    entries = []
-    for index, name in enumerate(robot.input_names[: 2 * robot.size]):
-        entries.append(_entry(name, robot.input_units[index], "none", index, robot.inputs[index : index + 1]))
-    for index, load in enumerate(robot.loads):
-        first = robot.load_start(index)
-        axes = "body" if load.follower else "world"
-        entries.append(_entry(load.name, load.unit, axes, first, robot.inputs[first : first + COMPONENTS]))
-    return entries
-
-
-def _entry(name: str, unit: str, axes: str, first: int, value: np.ndarray[Any, Any]) -> dict[str, Any]:
-    shape = [len(value), 1]
-    return {"name": name, "unit": unit, "axes": axes, "first": first, "shape": shape, "value": value.tolist()}
-
-
 def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) -> dict[str, Any]:
     """What the folder holds, as data."""
     robot = model.robot
@@ -201,7 +176,7 @@ def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) 
         "name": names.name,
         "title": robot.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
-        "inputs": input_entries(robot),
+        "inputs": input_entries(model),
         TUBES: list(robot.names),
         "unknowns": model.unknowns,
         "steps": model.steps,
