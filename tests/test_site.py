@@ -165,9 +165,10 @@ def test_gallery_shows_pictures_scenes_and_pages_that_move(site: Path, visit: Vi
     card = visit.window.locator(".gallery li", has_text="Plastic strip")
     assert card.locator("img").count() == 1
     card.locator("a").click()
-    words = visit.window.locator("article").inner_text()
-    assert "Equilibrium found" in words
-    assert 'name = "strip"' in words
+    article = visit.window.locator("article")
+    # The heading of the page is there before all of it is.
+    article.get_by_text("Equilibrium found").first.wait_for()
+    article.get_by_text('name = "strip"').first.wait_for()
     visit.window.locator("iframe.live").scroll_into_view_if_needed()
     assert visit.window.frame_locator("iframe.live").locator("#strip").inner_text() == "moves"
 

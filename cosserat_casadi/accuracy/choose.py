@@ -34,7 +34,8 @@ class Choice:
     """A discretisation for ranges of inputs and parameters, or for load cases.
 
     Attributes:
-        scene: the scene with this discretisation fixed, and the ranges that it was chosen for.
+        scene: the scene with this discretisation fixed; where the tolerance is met, with the ranges that it was chosen
+            for.
         model: of that scene.
         ranges: what it was chosen for, entry by entry.
         solves: points of the ranges, or load cases, that were solved on it, or on fewer modes if these already left an
@@ -42,8 +43,10 @@ class Choice:
         error_estimate: the largest of their estimates; None where none has an equilibrium.
         worst: inputs and parameters of the point with that estimate.
         without_equilibrium: inputs and parameters of the points at which no equilibrium was found.
-        met: whether the error is within the tolerance wherever there is an equilibrium, and every load case that was
-            asked for has one.
+        locked: names of the inputs that move nothing on this discretisation, and would on more modes: of one that the
+            scene fixes.
+        met: whether the error is within the tolerance wherever there is an equilibrium, every load case that was asked
+            for has one, and no input is locked.
     """
 
     scene: scenes.Scene
@@ -53,12 +56,25 @@ class Choice:
     error_estimate: float | None
     worst: dict[str, FloatArray]
     without_equilibrium: tuple[dict[str, FloatArray], ...]
+    locked: tuple[str, ...]
     met: bool
 
     @property
     def verified(self) -> Verified:
         """What a folder says of it."""
-        return Verified(self.ranges.described, self.solves, self.error_estimate, len(self.without_equilibrium))
+        return Verified(
+            self.ranges.described,
+            self.solves,
+            self.error_estimate,
+            len(self.without_equilibrium),
+            self.within_tolerance,
+            self.locked,
+        )
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """As ``met``; None where modes are fixed that are not locked, and nobody asks for a tolerance."""
+        return self.met if self.locked or self.scene.accuracy.binds else None
 
 
 def choose(
@@ -219,7 +235,9 @@ class _Search:
         failed = [unpack(self.points[number]) for number in self.modes.without_equilibrium]
         largest = error if np.isfinite(error) else None
         within = largest is not None and largest <= self.scene.accuracy.tolerance
-        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described)
+        locked = self.modes.locked(answers)
+        met = within and not locked and not (every and failed)
+        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described if met else ())
         return Choice(
             scene=fixed,
             model=build(fixed, chosen),
@@ -228,5 +246,6 @@ class _Search:
             error_estimate=largest,
             worst=unpack(self.points[worst]),
             without_equilibrium=tuple(failed),
-            met=within and not (every and failed),
+            locked=locked,
+            met=met,
         )

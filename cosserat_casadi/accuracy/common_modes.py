@@ -9,7 +9,7 @@ Newton steps.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -18,13 +18,14 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.enough_modes import enough_for, with_more_modes
 from cosserat_casadi.accuracy.fixing import Chosen, on_elements_of, union
 from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.equilibrium.answer_error import watched_error
+from cosserat_casadi.equilibrium.locking import has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import Start, solve
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
-from cosserat_casadi.model.unknowns import BlockKind
 
 WORST = 3
 """Cases with the largest errors whose lack is made up at once."""
@@ -122,30 +123,29 @@ class CommonModes:
 
         That of a case whose error is well within its tolerance on fewer modes is a bound: it is not solved again.
         """
-        if number in self._failed or number in self._hopeless:
-            return -np.inf
-        if number in self._well_within:
-            return self._well_within[number]
         if number not in answers.solutions:
-            solution = self._solved(answers, number)
-            answers.solutions[number] = solution
-            if not solution.converged:
-                self._failed.add(number)
-        error = _estimate(answers.solutions[number])
-        if 0.0 <= error <= WELL_WITHIN * self._tolerance(number):
-            self._well_within[number] = error
-        return error
+            if number in self._failed or number in self._hopeless:
+                return -np.inf
+            if number in self._well_within:
+                return self._well_within[number]
+        return _estimate(self._answer(answers, number))
 
     def worst(self, answers: Answers) -> tuple[int, float]:
         """Number and error of the case with the largest error, which is solved on this discretisation."""
         while True:
             errors = [self.error(answers, number) for number in range(len(self.cases))]
             number = int(np.argmax(errors))
-            if number not in self._well_within or number in answers.solutions:
+            if number in answers.solutions or np.isneginf(errors[number]):
                 return number, errors[number]
             # A bound from fewer modes: what it is here may be less than that of others.
-            answers.solutions[number] = self._solved(answers, number)
-            self._well_within[number] = _estimate(answers.solutions[number])
+            self._answer(answers, number)
+
+    def locked(self, answers: Answers) -> tuple[str, ...]:
+        """Names of the inputs that move nothing in the first case on this discretisation, and would on more modes."""
+        first = self._answer(answers, 0)
+        if not first.converged or first.model.scene.touches_exactly:
+            return ()
+        return locked_inputs(first)
 
     def refined(self, more: Callable[[Answers], Iterator[list[int]]]) -> Answers:
         """Answers on a discretisation on which no case is beyond its tolerance; on the last that was tried without.
@@ -163,7 +163,7 @@ class CommonModes:
             if beyond:
                 hardest = list(dict.fromkeys([*beyond[: 2 * WORST], *hardest]))[: 4 * WORST]
                 chosen = self._unlocked(union(self._enough(answers, number) for number in beyond[:WORST]))
-            elif self._lost(chosen):
+            elif self._lost(chosen) or self.locked(answers):
                 chosen = with_more_modes(chosen)
             else:
                 break
@@ -207,6 +207,20 @@ class CommonModes:
             return with_more_modes(answers.chosen)
         return enough_for(solution, AIM * self._tolerance(number))
 
+    def _answer(self, answers: Answers, number: int) -> Solution:
+        """The answer of a case, which is solved where it was not."""
+        if number not in answers.solutions:
+            solution = self._solved(answers, number)
+            answers.solutions[number] = solution
+            if solution.converged:
+                self._failed.discard(number)
+            else:
+                self._failed.add(number)
+            error = _estimate(solution)
+            if 0.0 <= error <= WELL_WITHIN * self._tolerance(number):
+                self._well_within[number] = error
+        return answers.solutions[number]
+
     def _solved(self, answers: Answers, number: int) -> Solution:
         case = self.cases[number]
         model = answers.model_of(case)
@@ -226,17 +240,21 @@ class CommonModes:
             return last if case.scene.touches_exactly else prolong(last, model)
         if number == 0 or case.scene is not self.cases[0].scene or case.parameters is not None:
             return None
-        if 0 not in answers.solutions:
-            # On more modes the first case, which is well within its tolerance, may not have been solved yet.
-            answers.solutions[0] = self._solved(answers, 0)
-        first = answers.solutions[0]
+        # On more modes the first case, which is well within its tolerance, may not have been solved yet.
+        first = self._answer(answers, 0)
         return first if first.converged else None
 
     def _solved_on(self, model: Model, case: LoadCase, start: Start = None) -> Solution:
         self._solves += 1
         if self.progress is not None:
             self.progress(self._solves, max(self._solves, 2 * len(self.cases)))
-        return solve(model, case.inputs, parameters=case.parameters, start=start)
+        accuracy = case.scene.accuracy
+        # Of most scenes the tips alone count, which are estimated with less effort than shapes and wrenches.
+        tips_alone = not accuracy.shape and not case.scene.touches_exactly
+        solution = solve(model, case.inputs, parameters=case.parameters, start=start, estimate_error=not tips_alone)
+        if not tips_alone or not solution.converged:
+            return solution
+        return replace(solution, error_estimate=watched_error(solution))
 
     def _first(self) -> Chosen:
         """What the first case needs."""
@@ -249,18 +267,14 @@ class CommonModes:
 
     def _unlocked(self, chosen: Chosen) -> Chosen:
         """A discretisation with at least one degree of freedom more than constraints."""
-        while freedom(Answers(chosen).model_of(self.cases[0])) <= 0:
+        while not has_freedom(Answers(chosen).model_of(self.cases[0])):
             chosen = with_more_modes(chosen)
         return chosen
 
     def _regained(self, answers: Answers) -> list[int]:
         """Cases that have an equilibrium on these modes and had none on fewer."""
         failed = [number for number in sorted(self._failed) if number not in answers.solutions]
-        for number in failed:
-            answers.solutions[number] = self._solved(answers, number)
-        regained = [number for number in failed if answers.solutions[number].converged]
-        self._failed.difference_update(regained)
-        return regained
+        return [number for number in failed if self._answer(answers, number).converged]
 
     def _lost(self, chosen: Chosen) -> bool:
         """Whether a case without an equilibrium has one on more modes; what has none there either is given up."""
@@ -278,17 +292,6 @@ class CommonModes:
 def no_more(answers: Answers) -> Iterator[list[int]]:
     """Add no cases to those that a search begins with."""
     yield from ()
-
-
-def freedom(model: Model) -> int:
-    """Degrees of freedom less constraints: a model that has none is locked, whatever acts; 1 without constraints."""
-    unknowns = model.discrete.unknowns
-    constraints = unknowns.count(BlockKind.MULTIPLIER, BlockKind.TENSION)
-    if not constraints:
-        return 1
-    # The quaternion of a frame has a number more than its rotation has degrees of freedom.
-    frames = sum(min(block.size, 6) for block, _ in unknowns.of_kind(BlockKind.POSE))
-    return unknowns.count(BlockKind.STRAIN) + frames - constraints
 
 
 def _estimate(solution: Solution) -> float:

@@ -38,6 +38,7 @@ from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -48,6 +49,7 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.rod.discretisation import Discretisation
 
 if TYPE_CHECKING:
     from cosserat_casadi.tubes.solution import TubeSolution
@@ -321,6 +323,15 @@ def _with_fixed(solver: SceneSolver) -> Solution:
     solution = solver.relax(solver.solve(discretisation, meant))
     if not solution.converged:
         return solution
+    note = locking_note(solution)
+    judged = _beside_finer(solver, discretisation, solution, meant)
+    return _with_note(judged, f" {note}") if note else judged
+
+
+def _beside_finer(
+    solver: SceneSolver, discretisation: Mapping[str, Discretisation], solution: Solution, meant: Solution | None
+) -> Solution:
+    """A solution on the discretisation that the scene asks for, with its distance to a finer one as its error."""
     turn = largest_turn(solution)
     visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer = {}

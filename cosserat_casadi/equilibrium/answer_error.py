@@ -138,7 +138,8 @@ def _tolerance_note(solution: Solution) -> str:
 
 def remedy(solution: Solution) -> str:
     """What brings an answer above the tolerance below it."""
-    if solution.model.scene.accuracy.fixed:
+    accuracy = solution.model.scene.accuracy
+    if accuracy.fixed and not accuracy.chosen_for:
         return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
     return "the modes were chosen for other inputs: choose them for the range of these inputs."
 
@@ -153,11 +154,28 @@ def answer_error(solution: Solution) -> AnswerError:
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
     rest = _rest_of_series(solution, correction)
-    watched = SAFETY * (correction.change + rest) + ROUNDING
+    watched = _with_safety(correction.change + rest)
     corrected = _richer_answer(solution, correction)
-    shape = SAFETY * (_shape_change(solution, corrected) + rest) + ROUNDING
-    wrench = SAFETY * _wrench_change(solution, corrected, correction) + ROUNDING
+    shape = _with_safety(_shape_change(solution, corrected) + rest)
+    wrench = _with_safety(_wrench_change(solution, corrected, correction))
     return AnswerError(watched, max(shape, watched), wrench)
+
+
+def watched_error(solution: Solution) -> float:
+    """Estimate the error of what is watched alone, at less cost.
+
+    Args:
+        solution: a converged one, at any inputs and parameters.
+    """
+    believed, correction = believed_correction(solution)
+    if not believed:
+        return UNKNOWN
+    return _with_safety(correction.change + _rest_of_series(solution, correction))
+
+
+def _with_safety(change: float) -> float:
+    """The estimate that a change by a richer model stands for."""
+    return SAFETY * change + ROUNDING
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:

@@ -63,7 +63,7 @@ def check_unknowns(scene: scenes.Scene) -> None:
         raise SceneError(*problems)
 
 
-def unknown_parameters(scene: scenes.Scene) -> tuple[str, ...]:
+def unknown_parameters(scene: scenes.Scene) -> tuple[str | tuple[str, ...], ...]:
     """Parameters that are unknown, in each row or in all."""
     return tuple(unknown.parameter for unknown in scene.unknowns if unknown.parameter is not None)
 
@@ -73,7 +73,7 @@ def with_unknown_parameters(model: Model) -> Model:
     wanted = unknown_parameters(model.scene)
     if not wanted:
         return model.at()
-    if model.parameters.names == wanted:
+    if model.scene.parameters == wanted:
         return model
     return build(model.scene.model_copy(update={"parameters": wanted}), model.discretisation)
 

@@ -44,7 +44,7 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
     given = ca.MX.sym("inputs", given_size(model))
     inputs = given[: model.inputs.size]
     parameters = given[model.inputs.size :]
-    records = {number: model.scene.measurements[number] for number in sections}
+    records = {number: model.discrete.scene.measurements[number] for number in sections}
     at = ca.MX.sym("at", sum(sections.values()))
     measured = ca.MX.sym("measured", sum(len(records[number].entries) * count for number, count in sections.items()))
     results: list[list[ca.MX]] = [[], [], []]

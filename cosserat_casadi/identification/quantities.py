@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Generic, TypeVar, final
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, as_vector, is_symbolic
 from cosserat_casadi.maths.rotation import (
     quaternion_conjugate,
     quaternion_product,
@@ -79,12 +80,12 @@ class Site:
 
     def frames(self) -> list[tuple[Matrix, Matrix]]:
         """Position of the marker, 3×1, and unit quaternion, 4×1, at each section or of the body, world axes."""
-        offset = ca.DM(self.record.offset)
+        offset = as_matrix(as_vector(self.record.offset))
         markers: list[tuple[Matrix, Matrix]] = []
         for pose in ca.horzsplit(self.poses):
             marker = pose[:3]
             quaternion = pose[3:]
-            if any(self.record.offset):
+            if any_symbolic(self.record.offset) or any(self.record.offset):
                 marker = marker + quaternion_to_matrix(quaternion) @ offset
             markers.append((marker, quaternion))
         return markers
@@ -248,7 +249,7 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
         system = site.system
         discrete = system.discrete.rods[rod]
         x, y = site.record.fibre
-        place = ca.DM([x, y, 0.0])
+        place = ca.MX(as_matrix(as_vector((x, y, 0.0))))
         ratio = ratio_of(system.discrete, rod, system.arguments)
         q = system.arguments.x[system.discrete.unknowns.strain(rod)]
         # Strains are polynomials that the nodes resolve: the interpolant through them is exact.
@@ -317,11 +318,11 @@ def _strains(rows: Sequence[Matrix | None], count: int) -> Matrix:
     return ca.vertcat(*full)
 
 
-def _stretch(strain: Matrix, place: ca.DM) -> Matrix:
+def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
     """Length of a fibre per length of the centreline at each section, 1×k."""
     columns = []
     for column in ca.horzsplit(strain):
-        direction = column[3:] + ca.cross(column[:3], ca.MX(place))
+        direction = column[3:] + ca.cross(column[:3], place)
         columns.append(ca.norm_2(direction))
     return ca.horzcat(*columns)
 
@@ -331,7 +332,7 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
 
     Args:
         model: with parameters.
-        record: the measurement.
+        record: the measurement as the scene of the model's equations has it, its unknown numbers expressions of p.
         sections: number k of sections that are asked for at once.
 
     Returns:
@@ -344,7 +345,10 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     p = discrete.parameters.symbol
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
-    site = Site(System(discrete, Arguments(x, inputs)), record, at, measured)
+    place = getattr(record, "at", None)
+    # A place that is unknown is a number of p, whatever the rows say.
+    places = ca.repmat(place, 1, sections) if is_symbolic(place) else at
+    site = Site(System(discrete, Arguments(x, inputs)), record, places, measured)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
     derivatives = [ca.jacobian(stacked, argument) for argument in (x, inputs, p)]
     results = [stacked, *derivatives]

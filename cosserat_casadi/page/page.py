@@ -11,8 +11,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.codegen.texts import fill
+from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
@@ -43,9 +43,8 @@ def export_page(solution: Solution, file: Path) -> Path:
     refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    content = page_text(
-        {**page_facts(solution), "chosenFor": chosen_for(solution)}, [asset("wasm_robot.js")], module
-    ).encode()
+    facts = {**page_facts(solution), **asked_accuracy(solution)}
+    content = page_text(facts, [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
         raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
@@ -53,21 +52,10 @@ def export_page(solution: Solution, file: Path) -> Path:
     return file
 
 
-def chosen_for(solution: Solution) -> list[list[float]] | None:
-    """Ends of each input between which the error of the modes was judged, shape (inputs, 2).
-
-    Those of the ranges that the scene's modes were chosen for; else the scene's own inputs. None where no tolerance has
-    a meaning, or nobody judged.
-    """
-    if solution.within_tolerance is None:
-        return None
-    scene = solution.model.scene
-    if not scene.accuracy.chosen_for:
-        return [[value, value] for value in solution.inputs.tolist()]
-    ranges = input_ranges(scene)
-    ends = zip(ranges.lower.tolist(), ranges.upper.tolist(), strict=True)
-    # Parameters, which come after the inputs, have no sliders.
-    return [[least, most] for least, most in ends][: solution.model.inputs.size]
+def asked_accuracy(solution: Solution) -> dict[str, Any]:
+    """What errors are judged by: the tolerance, None where none has a meaning, and what helps above it."""
+    accuracy = solution.model.scene.accuracy
+    return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
 
 
 def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:

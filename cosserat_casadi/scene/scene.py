@@ -19,7 +19,7 @@ from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import Obstacle
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
+from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
@@ -27,7 +27,7 @@ from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
 from cosserat_casadi.scene.tubes import Tube
 from cosserat_casadi.scene.unknowns import Identification, Unknown
-from cosserat_casadi.scene.values import NotEmpty, without_repetition
+from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 
 
 def _exactly_one(value: Any) -> Any:
@@ -83,10 +83,11 @@ inputs = ["push.force", "cable.tension"]
         None,
         description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
-    parameters: Annotated[tuple[str, ...], AfterValidator(without_repetition)] = Field(
+    parameters: Annotated[tuple[TiedNames, ...], AfterValidator(without_tied_repetition)] = Field(
         (),
         description="numbers of the scene that become arguments of every function, by their keys, such as "
-        "'finger.material.youngs_modulus'",
+        "'finger.material.youngs_modulus'; a list of keys is one parameter, named as its first: their numbers keep "
+        "their ratios",
     )
     ranges: InputRanges = Field(
         default_factory=HashedTable,
@@ -153,16 +154,29 @@ inputs = ["push.force", "cable.tension"]
             records = getattr(self, key)
             entries += [Holder(key, index, record) for index, record in enumerate(records)]
         holders = holders_of(entries, [getattr(holder.record, "name", None) for holder in entries])
-        named = [named_numbers(name, holders) for name in self.parameters]
+        named = [tied_numbers(names_in(entry), holders) for entry in self.parameters]
         return tuple(numbers for numbers in named if numbers is not None)
 
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters, in the order of its list."""
+        return tuple(names_in(entry)[0] for entry in self.parameters)
+
     def with_numbers(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
-        """The scene with other numbers for those that one parameter names.
+        """The scene with other numbers for those that one parameter names, and for those that follow them.
 
         Args:
             numbers: what to change.
             values: one for each of its cells: numbers, which are not judged, or expressions.
         """
+        scene = self._with_cells(numbers, values)
+        for tied in numbers.tied:
+            following = [
+                value if ratio == 1.0 else ratio * value for ratio, value in zip(tied.ratios, values, strict=True)
+            ]
+            scene = scene._with_cells(tied.numbers, following)
+        return scene
+
+    def _with_cells(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
         holder = numbers.holder
         records = list(getattr(self, holder.table))
         records[holder.index] = numbers.written(records[holder.index], values)
@@ -206,7 +220,7 @@ inputs = ["push.force", "cable.tension"]
             owner, _, rest = name.partition(".")
             known = [field for field in owners[owner].inputs if rest == field or rest.startswith(f"{field}.")]
             fields.append(f"{owner}.{max(known, key=len)}")
-        parameters = [unknown.parameter for unknown in self.unknowns if unknown.parameter is not None]
+        parameters: list[str | tuple[str, ...]] = [unknown.parameter for unknown in self.unknowns if unknown.parameter]
         further = [name for name in parameters if name not in self.parameters]
         if self.measured_over_time:
             fields += [motion.input for motion in self.motions]

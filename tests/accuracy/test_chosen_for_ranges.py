@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene
 from cosserat_casadi.accuracy.choose import Choice, choose
-from cosserat_casadi.accuracy.common_modes import freedom
 from cosserat_casadi.accuracy.ranges import Origin, input_ranges
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import STIFFNESS, WEIGHT, push, rod, scene
@@ -123,6 +123,12 @@ def test_the_scene_says_what_was_chosen_for_which_ranges(chosen: Choice) -> None
     assert verified.model.discretisation == chosen.model.discretisation
 
 
+def test_beyond_its_ranges_a_choice_says_what_to_do(chosen: Choice) -> None:
+    answer = solve(chosen.model, {"push.force": [9.0, 9.0, 0.0]})
+    assert answer.within_tolerance is False
+    assert "the modes were chosen for other inputs: choose them for the range of these inputs" in answer.message
+
+
 def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
     """No discretisation with half as many unknowns keeps the tolerance at a corner."""
     half = chosen.model.size // 2
@@ -133,6 +139,24 @@ def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
             modes = (first, second, half - first - second)
             coarse = solve(build(chosen.scene, discretise(chosen.scene, modes, 16, "magnus8")), corner)
             assert not coarse.converged or pose_distance(coarse, fine) > 1e-3
+
+
+def test_ranges_of_parameters_are_taken_as_those_of_inputs() -> None:
+    """A rod that may be three times as soft, and loaded by an input: right at the corners, against finer modes."""
+    bending = "rod.stiffness.bending_y"
+    soft = scene(push(force=[0.1, 0.0, 0.0]), strain="planar", parameters=[bending], accuracy={"tolerance": 1e-6})
+    choice = choose(soft, {bending: (0.5, 1.5), "push.force.x": (-1.0, 1.0), "push.force.z": (-1.0, 0.5)}, samples=4)
+    assert choice.met
+    assert f"{bending}=0.5:1.5" in choice.scene.accuracy.chosen_for
+    fine = build(soft, discretise(soft, 12, 28, "magnus8"))
+    for stiffness in (0.5, 1.5):
+        force = {"push.force": [1.0, 0.0, -1.0]}
+        found = solve(choice.model, force, parameters={bending: stiffness})
+        exact = solve(fine, force, parameters={bending: stiffness}, estimate_error=False)
+        assert pose_distance(found, exact) <= 1e-6
+    # Without a range a parameter keeps its value, and a stiff rod bends less.
+    stiff = choose(soft, {"push.force.x": (-1.0, 1.0), "push.force.z": (-1.0, 0.5)}, samples=4)
+    assert stiff.model.size < choice.model.size
 
 
 def test_points_without_equilibrium_are_told() -> None:
@@ -155,5 +179,5 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
     held = scene(
         push(), supports=[{"rod": "rod", "kind": "clamped", "position": [0.1, 0, 0.7], "quaternion": [1, 0, 0, 0]}]
     )
-    assert freedom(build(held, discretise(held, 2, 6))) == 0
-    assert freedom(build(held, discretise(held, 3, 8))) == 3
+    assert degrees_of_freedom(build(held, discretise(held, 2, 6))) == 0
+    assert degrees_of_freedom(build(held, discretise(held, 3, 8))) == 3

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, scene_from_dict, solve
-from cosserat_casadi.page.page import chosen_for
+from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.page.ranges import Slider, sliders
 from tests.page.pages_made import finger
 from tests.scenes import STIFFNESS, push, rod
@@ -73,13 +72,3 @@ def test_one_bound_is_kept_and_the_scene_s_value_is_on_the_slider() -> None:
     outside["bounds"] = [{"input": "push.force", "lower": -1.0, "upper": 1.0}]
     made = by_name(sliders(build(scene_from_dict(outside))))
     assert (made["push.force x"].least, made["push.force x"].most) == (-1.0, 2.0)
-
-
-def test_a_page_knows_the_ranges_of_its_modes() -> None:
-    """Those that they were chosen for; of modes that were not, the scene's own inputs alone."""
-    accuracy = {"tolerance": 0.1, "modes": 3, "chosen_for": ["push.force.x=-0.5:0.25"]}
-    chosen = scene_from_dict(scene_with(["push.force"], accuracy=accuracy))
-    assert chosen_for(solve(build(chosen))) == [[-0.5, 0.25], [0.0, 0.0], [0.0, 0.0]]
-    del accuracy["chosen_for"]
-    fixed = scene_from_dict(scene_with(["push.force"], accuracy=accuracy))
-    assert chosen_for(solve(build(fixed))) == [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]

@@ -17,7 +17,7 @@ from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_choice, print_export
+from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
@@ -27,6 +27,7 @@ from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes
+from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
@@ -86,7 +87,10 @@ def export(
     ] = True,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources, a page for a browser, or an FMU.
+
+    Exit codes: 0 written; 2 refused; 3 not solved and nothing written, or written with an error above the tolerance
+    somewhere in the ranges, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
     is one file that other simulators step.
@@ -170,7 +174,8 @@ def export(
     verified = None
     if choice is not None:
         verified = choice.verified
-        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
+        chosen_for = choice.ranges.described if choice.met else ()
+        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, chosen_for)
     _check_solved(solution)
     console = Console()
     model = solution.model
@@ -193,8 +198,6 @@ def export(
             estimate_errors=estimate_errors,
         )
         print_export(console, solution, output)
-        if choice is not None:
-            print_choice(console, choice)
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, fmu, name, error_estimate=estimate, verified=verified)
@@ -203,6 +206,12 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
+    if choice is not None:
+        print_choice(console, choice)
+        print_locking(Console(stderr=True), locking_sentence(choice.locked))
+        if choice.within_tolerance is False:
+            print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
+            raise typer.Exit(NOT_FOUND)
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:

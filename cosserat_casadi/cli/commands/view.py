@@ -14,9 +14,10 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_choice
+from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.scene import read_scene
 
 
@@ -45,6 +46,7 @@ def view(
     if viewed_scene.accuracy.fixed:
         # What the scene fixes need not be verified beforehand: every answer tells its error.
         solution = solve_rods_with_progress(viewed_scene)
+        print_locking(Console(stderr=True), locking_note(solution))
     else:
         solution, choice = solve_for_ranges(viewed_scene)
     if not solution.converged:

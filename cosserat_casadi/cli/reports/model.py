@@ -87,6 +87,8 @@ def print_choice(console: Console, choice: Choice) -> None:
     tolerance = choice.scene.accuracy.tolerance
     if choice.met:
         print_plain(console, f"[bold green]All {choice.solves} load cases are within {tolerance:g}.[/]")
+    elif choice.within_tolerance is None:
+        print_plain(console, "The scene fixes modes and asks for no tolerance.")
     else:
         print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
     print_ranges(console, choice.ranges)
@@ -97,6 +99,25 @@ def print_choice(console: Console, choice: Choice) -> None:
     if choice.error_estimate is not None:
         error = f"estimated error {choice.error_estimate:.1e}"
         print_plain(console, f"Worst case: {escape(_point(choice.worst))}: {error}")
+
+
+def print_missed(console: Console, *, fixed: bool) -> None:
+    """Print that what was written does not keep the tolerance, and what to do.
+
+    Args:
+        console: of standard error.
+        fixed: whether the scene fixes modes, nodes or rotation.
+    """
+    remedy = "narrow the ranges, or ask for a larger tolerance"
+    if fixed:
+        remedy = "leave modes, nodes and rotation out of the scene, and they are chosen"
+    print_plain(console, f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
+
+
+def print_locking(console: Console, sentence: str) -> None:
+    """Print that modes are locked, where they are."""
+    if sentence:
+        print_plain(console, f"[bold red]{escape(sentence)}[/]")
 
 
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
