@@ -157,6 +157,16 @@ def test_a_stiffness_vs_the_integral_over_what_rows_feel() -> None:
     assert_allclose(found.parameters, np.full((2, 1), best), rtol=1e-12, atol=0)
 
 
+def test_an_uncertain_offset_of_a_marker_is_found_beside_what_rows_feel() -> None:
+    """The marker that reads off to one side, below, is explained where its offset is an unknown."""
+    offset = {"parameter": "marker 3.offset.z", "prior": {"mean": 0.0, "sigma": 2 * SIGMA}}
+    found = estimate(model_of(FELT, offset), rows(40, off=0.9))
+    assert found.shared is not None
+    assert abs(found.shared.values[0] - 0.9 * SIGMA) < 4 * found.shared.sigma[0]
+    assert found.shared.sigma[0] < 0.3 * SIGMA
+    assert found.consistency.holds
+
+
 def test_numbers_that_all_rows_share_need_a_prior() -> None:
     model = model_of(FELT, {"parameter": STIFFNESS})
     with pytest.raises(SceneError, match="nothing is known of it beforehand"):
