@@ -123,34 +123,26 @@ class CommonModes:
 
         That of a case whose error is well within its tolerance on fewer modes is a bound: it is not solved again.
         """
-        if number in self._failed or number in self._hopeless:
-            return -np.inf
-        if number in self._well_within:
-            return self._well_within[number]
         if number not in answers.solutions:
-            solution = self._solved(answers, number)
-            answers.solutions[number] = solution
-            if not solution.converged:
-                self._failed.add(number)
-        error = _estimate(answers.solutions[number])
-        if 0.0 <= error <= WELL_WITHIN * self._tolerance(number):
-            self._well_within[number] = error
-        return error
+            if number in self._failed or number in self._hopeless:
+                return -np.inf
+            if number in self._well_within:
+                return self._well_within[number]
+        return _estimate(self._answer(answers, number))
 
     def worst(self, answers: Answers) -> tuple[int, float]:
         """Number and error of the case with the largest error, which is solved on this discretisation."""
         while True:
             errors = [self.error(answers, number) for number in range(len(self.cases))]
             number = int(np.argmax(errors))
-            if number not in self._well_within or number in answers.solutions:
+            if number in answers.solutions or np.isneginf(errors[number]):
                 return number, errors[number]
             # A bound from fewer modes: what it is here may be less than that of others.
-            answers.solutions[number] = self._solved(answers, number)
-            self._well_within[number] = _estimate(answers.solutions[number])
+            self._answer(answers, number)
 
     def locked(self, answers: Answers) -> tuple[str, ...]:
         """Names of the inputs that move nothing in the first case on this discretisation, and would on more modes."""
-        first = self._first_answer(answers)
+        first = self._answer(answers, 0)
         if not first.converged or first.model.scene.touches_exactly:
             return ()
         return locked_inputs(first)
@@ -215,6 +207,20 @@ class CommonModes:
             return with_more_modes(answers.chosen)
         return enough_for(solution, AIM * self._tolerance(number))
 
+    def _answer(self, answers: Answers, number: int) -> Solution:
+        """The answer of a case, which is solved where it was not."""
+        if number not in answers.solutions:
+            solution = self._solved(answers, number)
+            answers.solutions[number] = solution
+            if solution.converged:
+                self._failed.discard(number)
+            else:
+                self._failed.add(number)
+            error = _estimate(solution)
+            if 0.0 <= error <= WELL_WITHIN * self._tolerance(number):
+                self._well_within[number] = error
+        return answers.solutions[number]
+
     def _solved(self, answers: Answers, number: int) -> Solution:
         case = self.cases[number]
         model = answers.model_of(case)
@@ -234,14 +240,9 @@ class CommonModes:
             return last if case.scene.touches_exactly else prolong(last, model)
         if number == 0 or case.scene is not self.cases[0].scene or case.parameters is not None:
             return None
-        first = self._first_answer(answers)
+        # On more modes the first case, which is well within its tolerance, may not have been solved yet.
+        first = self._answer(answers, 0)
         return first if first.converged else None
-
-    def _first_answer(self, answers: Answers) -> Solution:
-        """The answer of the first case: where it is well within its tolerance on fewer modes it is not solved yet."""
-        if 0 not in answers.solutions:
-            answers.solutions[0] = self._solved(answers, 0)
-        return answers.solutions[0]
 
     def _solved_on(self, model: Model, case: LoadCase, start: Start = None) -> Solution:
         self._solves += 1
@@ -273,11 +274,7 @@ class CommonModes:
     def _regained(self, answers: Answers) -> list[int]:
         """Cases that have an equilibrium on these modes and had none on fewer."""
         failed = [number for number in sorted(self._failed) if number not in answers.solutions]
-        for number in failed:
-            answers.solutions[number] = self._solved(answers, number)
-        regained = [number for number in failed if answers.solutions[number].converged]
-        self._failed.difference_update(regained)
-        return regained
+        return [number for number in failed if self._answer(answers, number).converged]
 
     def _lost(self, chosen: Chosen) -> bool:
         """Whether a case without an equilibrium has one on more modes; what has none there either is given up."""

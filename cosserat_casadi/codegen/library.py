@@ -64,12 +64,13 @@ FOURS = ("fours.h",)
 VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
+COMMENT_WIDTH = 120
+"""Characters of a line in a comment."""
+
 PLAIN_BUILD = dict.fromkeys(
     ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
 )
 """Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
-COMMENT_WIDTH = 120
-"""Characters of a line in a comment."""
 
 ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",

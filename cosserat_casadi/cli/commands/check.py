@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom, locking_note
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import build
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
@@ -54,21 +54,28 @@ def check(
     with progress_bar() as bar:
         show_count = count_reporter(bar, "Building the model")
         model = build(checked_scene)
-        of_effects = prices_of_effects(model, show_count)
+        of_effects = prices_of_effects(checked_scene, show_count)
         show_count("Counting the operations of residual and Jacobian", 0, 0)
         cost = price(model)
         show_count("Choosing the ranges of inputs", 0, 0)
         ranges = input_ranges(checked_scene)
+        show_count("Looking for constraints that lock", 0, 0)
+        locking = _locking_note(checked_scene, model)
     print_check(Console(), model, varying, cost, of_effects)
     print_ranges(Console(), ranges)
-    held = degrees_of_freedom(model) is not None and not checked_scene.touches_exactly
-    if held and checked_scene.accuracy.fixed:
-        # Constraints can lock modes that the scene fixes: an equilibrium tells.
-        print_locking(Console(), locking_note(solve(model, estimate_error=False)))
+    print_locking(Console(), locking)
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
+
+
+def _locking_note(scene: Scene, model: Model) -> str:
+    """A sentence where constraints lock modes that the scene fixes, which an equilibrium tells."""
+    held = degrees_of_freedom(model) is not None and not scene.touches_exactly
+    if not held or not scene.accuracy.fixed:
+        return ""
+    return locking_note(solve(model, estimate_error=False))
 
 
 def _print_times(scene: Scene) -> None:
