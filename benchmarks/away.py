@@ -166,12 +166,6 @@ class Subject:
         return Subject(model, _finer(model), self.in_c, parameters)
 
 
-def _in_c(model: Model, folder: Path) -> Compiled:
-    library = load(export(model, folder / "robot", "robot"))
-    assert isinstance(library, Compiled)
-    return library
-
-
 def cases_of(scene: Scene, points: int) -> list[Case]:
     """Answers of a scene at random inputs, of which one in six lies outside of the range."""
     first = solve_rods(scene)
@@ -182,7 +176,8 @@ def cases_of(scene: Scene, points: int) -> list[Case]:
         return []
     rng = np.random.default_rng(len(model.pack()))
     with tempfile.TemporaryDirectory() as folder:
-        in_c = None if scene.touches_exactly else _in_c(model, Path(folder))
+        in_c = None if scene.touches_exactly else load(export(model, Path(folder) / "robot", "robot"))
+        assert in_c is None or isinstance(in_c, Compiled)
         subject = Subject(model, _finer(model), in_c, model.parameters.pack())
         found = [_case(subject, rng, inside=k % 6 != 5) for k in range(points)]
     return [case for case in found if case is not None]

@@ -46,12 +46,13 @@ def pushes(count: int) -> dict[str, FloatArray]:
     return {f"push.force.{axis}": rng.uniform(-0.25, 0.25, count) for axis in "xyz"}
 
 
-def rate(scene: Scene, count: int, cores: int, suffix: str, repeats: int) -> Rate:
+def rate(scene: Scene, count: int, cores: int, suffix: str, repeats: int, *, errors: bool) -> Rate:
     """Best of several sweeps from the table to the file."""
     best = Rate(0.0, 0.0)
     for _ in range(repeats):
         with tempfile.TemporaryDirectory() as folder:
-            plan = plan_sweep(scene, table_of(pushes(count)), Path(folder) / f"rows{suffix}")
+            output = Path(folder) / f"rows{suffix}"
+            plan = plan_sweep(scene, table_of(pushes(count)), output, estimate_errors=errors)
             clock, processor = time.perf_counter(), time.process_time()
             found = run_sweep(plan, cores=cores)
             clock, processor = time.perf_counter() - clock, time.process_time() - processor
@@ -66,19 +67,22 @@ def main() -> None:
     parser.add_argument("--rows", type=int, default=100_000)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--lanes", action="store_true", help="several rows side by side, as sweeps of many rows do")
+    parser.add_argument("--errors", action="store_true", help="with the estimated error of every row")
     options = parser.parse_args()
     scene = read_scene(SCENE, DISCRETISATION)
     swept = variants_of(scene, table_of(pushes(1))).entries[0].scene
-    library = row_library(build(swept), lanes=options.lanes)
+    library = row_library(build(swept), estimate_errors=options.errors, lanes=options.lanes)
     run.row_library = lambda model, **chosen: library
     run.check = lambda *given: []
-    rate(scene, 1000, 1, ".csv", 1)
+    rate(scene, 1000, 1, ".csv", 1, errors=options.errors)
     table = Table(title=f"{options.rows:,} rows of a rod of {build(swept).size} unknowns, best of {options.repeats}")
     for heading in ("file", "cores", "rows a second", "beside one core", "rows a second of processor time"):
         table.add_column(heading, justify="left" if heading == "file" else "right")
     for suffix in (".csv", ".parquet"):
-        one = rate(scene, options.rows, 1, suffix, options.repeats)
-        for cores, found in ((1, one), (2, rate(scene, options.rows, 2, suffix, options.repeats))):
+        one, two = (
+            rate(scene, options.rows, cores, suffix, options.repeats, errors=options.errors) for cores in (1, 2)
+        )
+        for cores, found in ((1, one), (2, two)):
             ratio = f"{found.clock / one.clock:.2f}"
             table.add_row(suffix, str(cores), f"{found.clock:,.0f}", ratio, f"{found.processor:,.0f}")
     Console().print(table)

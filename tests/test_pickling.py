@@ -143,7 +143,7 @@ def test_tubes(way: Way) -> None:
     solution = solve_tubes(Pendulum(1.2).scene(0.7, tolerance=1e-4))
     copied = way(solution)
     values = (solution.x, solution.inputs, 1.0)
-    assert np.array_equal(copied.model.residual(*values).full(), solution.model.residual(*values).full())
+    assert np.array_equal(copied.model.path_residual(*values).full(), solution.model.path_residual(*values).full())
 
 
 @pytest.fixture(scope="module")

@@ -64,21 +64,20 @@ def price_of_motion(model: Model) -> MotionPrice:
     )
 
 
-def prices_of_effects(model: Model, progress: PriceProgress | None = None) -> dict[str, Count]:
+def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None) -> dict[str, Count]:
     """Operations that each load, actuator and obstacle with a width adds to the residual, by name.
 
     The price is the residual with the effect less the residual without it; of an obstacle with a width, also without
     the elements that it asks for.
 
     Args:
-        model: the model of the scene with all effects.
+        scene: with all effects.
         progress: told which effect is left out, how many were, and of how many.
     """
-    scene = model.scene.baked()
+    scene = scene.baked()
     without = {cause.name: without_load for cause in scene.causes}
     without |= {obstacle.name: without_obstacle for obstacle in scene.obstacles if obstacle.is_smooth}
-    loaded = build(scene) if model.parameters.size else model
-    residuals = [loaded.residual]
+    residuals = [build(scene).residual]
     for done, (name, bare) in enumerate(without.items()):
         if progress is not None:
             progress(f"Counting the operations of {name}", done, len(without))

@@ -10,11 +10,12 @@ import numpy as np
 
 from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
-from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
@@ -122,7 +123,7 @@ def check(
     results: FloatArray,
     progress: Progress,
 ) -> list[dict[str, Any]]:
-    """Some rows solved again in Python, beside a finer discretisation that tells their error.
+    """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
 
     Args:
         variants: scenes and inputs of the table.
@@ -141,11 +142,15 @@ def check(
     first = len(JUDGED)
     positions = results[converged][:, first : first + 3]
     rows = converged[representative_rows(positions, CHECKED)].tolist()
+    models: dict[str, Model] = {}
     checked = []
     for done, row in enumerate(rows):
         progress("Checking rows", done, len(rows))
         scene = choice.scene(variants.scene_of_row(row))
-        solution = solve_rods(scene, variants.inputs_of_row(row))
+        text = scene_text(scene)
+        if text not in models:
+            models[text] = build(scene)
+        solution = solve(models[text], variants.inputs_of_row(row))
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate

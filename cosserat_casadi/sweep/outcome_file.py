@@ -34,6 +34,9 @@ WORDS = {"true": 1.0, "false": 0.0}
 BLOCK = 4096
 """Rows that are written at once."""
 
+ROW_GROUP = 65_536
+"""The same of Parquet, whose readers skip or share out such groups of rows."""
+
 
 class ParquetUnavailableError(CosseratError):
     """Parquet files need pyarrow."""
@@ -168,14 +171,27 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
 
 
 def _write_parquet(sweep: Sweep, path: Path) -> None:
+    arrow_module()
+    import pyarrow.parquet
+
+    # A block at once: a copy of all columns would take as much memory again as the results.
+    first = _arrow_table(sweep, slice(0, ROW_GROUP))
+    with pyarrow.parquet.ParquetWriter(path, first.schema) as writer:
+        writer.write_table(first)
+        for start in range(ROW_GROUP, len(sweep.values), ROW_GROUP):
+            writer.write_table(_arrow_table(sweep, slice(start, start + ROW_GROUP)))
+
+
+def _arrow_table(sweep: Sweep, rows: slice) -> Any:
+    """Some rows as a table of pyarrow."""
     arrow = arrow_module()
     columns: dict[str, Any] = {}
     for name in sweep.swept:
-        columns[name] = arrow.array(sweep[name])
-    numbers_of_outcomes = arrow.array(sweep.outcomes, arrow.int8())
+        columns[name] = arrow.array(sweep[name][rows])
+    numbers_of_outcomes = arrow.array(sweep.outcomes[rows], arrow.int8())
     columns["outcome"] = arrow.DictionaryArray.from_arrays(numbers_of_outcomes, list(LABELS))
     for name in sweep.found:
-        numbers = sweep[name]
+        numbers = sweep[name][rows]
         # Taken before the cast: whole numbers have no NaN.
         missing = ~np.isfinite(numbers)
         if name == "iterations":
@@ -183,9 +199,7 @@ def _write_parquet(sweep: Sweep, path: Path) -> None:
         if name in TRUTHS:
             numbers = numbers == 1.0
         columns[name] = arrow.array(numbers, mask=missing)
-    import pyarrow.parquet
-
-    pyarrow.parquet.write_table(arrow.table(columns), path)
+    return arrow.table(columns)
 
 
 def _read_parquet(path: Path) -> tuple[list[str], list[Any]]:

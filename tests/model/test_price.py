@@ -74,10 +74,10 @@ def expanded(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def test_no_large_model_is_expanded_to_be_priced(lumen: Path, expanded: list[int]) -> None:
-    model = build(read_scene(lumen))
+    scene = read_scene(lumen)
     shown: list[str] = []
-    of_effects = prices_of_effects(model, lambda stage, done, total: shown.append(f"{stage}: {done} of {total}"))
-    cost = price(model)
+    of_effects = prices_of_effects(scene, lambda stage, done, total: shown.append(f"{stage}: {done} of {total}"))
+    cost = price(build(scene))
     assert max(expanded) < COUNTED_EXACTLY
     assert shown == ["Counting the operations of weight: 0 of 2", "Counting the operations of vessel: 1 of 2"]
     assert not cost.jacobian.exact
@@ -102,7 +102,7 @@ def test_bounds_are_not_below_the_count(tmp_path: Path) -> None:
         exact = operations(function)
         assert exact <= most_operations(function) <= 3 * exact
         assert count(function) == Count(exact, exact=True)
-    assert prices_of_effects(model)["push"].exact
+    assert prices_of_effects(model.scene)["push"].exact
 
 
 def test_bound_of_each_kind_of_instruction() -> None:

@@ -54,7 +54,7 @@ def check(
     with progress_bar() as bar:
         show_count = count_reporter(bar, "Building the model")
         model = build(checked_scene)
-        of_effects = prices_of_effects(model, show_count)
+        of_effects = prices_of_effects(checked_scene, show_count)
         show_count("Counting the operations of residual and Jacobian", 0, 0)
         cost = price(model)
         show_count("Choosing the ranges of inputs", 0, 0)

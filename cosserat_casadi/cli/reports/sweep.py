@@ -16,7 +16,7 @@ from cosserat_casadi.cli.reports.format import listed, print_plain, print_writte
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweep.outcome_file import STABLE, record_file
 from cosserat_casadi.sweep.outcome_table import ERROR, Sweep
-from cosserat_casadi.sweep.run import Plan
+from cosserat_casadi.sweep.shards import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
 """Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
@@ -55,13 +55,19 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     print_written(console, written, soft_wrap=True)
 
 
-def print_stopped_sweep(console: Console, plan: Plan) -> None:
-    """Print what a stopped sweep left."""
-    part = plan.part
+def print_stopped_sweep(console: Console, part: Path | None) -> None:
+    """Print what a stopped sweep left in the file of what is done."""
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
     print_plain(console, f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
+
+
+def print_shard(console: Console, shard: Shard, rows: int, output: Path) -> None:
+    """Print that a shard is done, and how all become one file."""
+    file = escape(str(shard.file(output)))
+    sentence = f"Shard {shard}: {counted(rows, 'row')} kept in {file}. When all are done, --merge writes the results."
+    print_plain(console, sentence)
 
 
 def _outcome_table(sweep: Sweep) -> Table:
