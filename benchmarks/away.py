@@ -1,13 +1,15 @@
 """What estimates of errors are worth where inputs go: random inputs of many scenes, modes chosen for the scene's own.
 
-The true error is the distance to the equilibrium on many more modes and intervals, on the same branch. `--write` puts
-the table into docs/accuracy.md; `--log FILE` keeps one line a scene, and goes on from there.
+The true error is the distance to the equilibrium on many more modes and intervals, on the same branch. Each answer is
+judged in Python and, where it has an estimate, in compiled C. `--write` puts the table into docs/accuracy.md; `--log
+FILE` keeps one line a scene, and goes on from there; `--folder` names scenes beside the examples.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
@@ -21,7 +23,20 @@ from doc_tables import put, table
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import Model, Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene  # noqa: E402
+from cosserat_casadi import (  # noqa: E402
+    Compiled,
+    Model,
+    Scene,
+    Solution,
+    build,
+    discretise,
+    export,
+    load,
+    read_scene,
+    scene_from_dict,
+    solve,
+)
+from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_error_estimate  # noqa: E402
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong  # noqa: E402
 from cosserat_casadi.errors import CosseratError  # noqa: E402
@@ -37,8 +52,12 @@ EXAMPLES = ROOT / "examples"
 TEMPLATES = ROOT / "cosserat_casadi" / "cli" / "templates"
 SINGLE_RODS = range(4)
 """Seeds of random rods without tendons."""
-ROBOTS = range(6)
+ROBOTS = range(10)
 """Seeds of random assemblies with tendons."""
+WITH_PARAMETERS = range(4)
+"""Of these the bending stiffnesses of all rods about x are parameters."""
+SOFTEST, STIFFEST = 0.8, 1.25
+"""Factors on parameters."""
 TOLERANCE = 1e-4
 """Of random scenes."""
 MORE_MODES, MORE_NODES = 8, 16
@@ -49,6 +68,8 @@ LEAST, MOST = 0.7, 3.0
 """Ratios of estimate and true error that are wanted."""
 SEEN = 0.1
 """Share of the tolerance above which a ratio of estimate and true error counts."""
+SAME = 1e-6
+"""Relative distance of unknowns within which two equilibria are one."""
 KNOWN = 0.2
 """Largest error of a reference, relative to the true error, that still decides."""
 
@@ -63,6 +84,7 @@ class Case:
         true: error of the answer.
         estimate: of that error.
         told: whether the estimate is above the tolerance.
+        in_c: the estimate in C of the equilibrium that C finds; None where it finds another one, or has no estimate.
         cost: time of the estimate over that of the solve; NaN where they are not apart.
         inputs: stacked.
         decided: whether the reference is exact enough; asked only where the answer is silent or the estimate far off.
@@ -75,12 +97,19 @@ class Case:
     told: bool
     cost: float
     inputs: list[float]
+    in_c: float | None = None
     decided: bool = True
 
     @property
     def is_silent(self) -> bool:
         """Whether the error is beyond the tolerance, and not told."""
         return self.decided and self.true > self.tolerance and not self.told
+
+    @property
+    def is_silent_in_c(self) -> bool:
+        """Whether C does not tell an error beyond the tolerance."""
+        told = self.in_c is None or not self.in_c <= self.tolerance
+        return self.decided and self.true > self.tolerance and not told
 
     @property
     def ratio(self) -> float | None:
@@ -90,9 +119,14 @@ class Case:
         return self.estimate / self.true
 
 
-def scenes() -> Iterator[tuple[str, Scene]]:
-    """Names and scenes: examples, templates, random rods and robots; scenes that do not rest under loads left out."""
-    for path in (*sorted(EXAMPLES.glob("*.toml")), *sorted(TEMPLATES.glob("*.toml"))):
+def scenes(folder: Path | None = None) -> Iterator[tuple[str, Scene]]:
+    """Names and scenes: examples, templates, random rods and robots; scenes that do not rest under loads left out.
+
+    Args:
+        folder: of scenes beside these.
+    """
+    beside = [] if folder is None else sorted(folder.glob("*.toml"))
+    for path in (*sorted(EXAMPLES.glob("*.toml")), *sorted(TEMPLATES.glob("*.toml")), *beside):
         scene = read_scene(path)
         if isinstance(scene, Scene) and scene.simulation is None:
             yield path.stem, scene
@@ -100,20 +134,52 @@ def scenes() -> Iterator[tuple[str, Scene]]:
     for seed in SINGLE_RODS:
         yield f"random rod {seed}", scene_from_dict({**random_scene(seed), **accuracy})
     for seed in ROBOTS:
-        yield f"random robot {seed}", scene_from_dict({**assembled_scene(seed, tendons=True), **accuracy})
+        tables = {**assembled_scene(seed, tendons=True), **accuracy}
+        if seed in WITH_PARAMETERS:
+            tables["parameters"] = [f"{rod['name']}.stiffness.bending_x" for rod in tables["rods"]]
+        yield f"random robot {seed}", scene_from_dict(tables)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A model whose answers are judged.
+
+    Attributes:
+        model: on the modes of the scene's own inputs.
+        finer: that gives the reference.
+        in_c: the model in C; None where C estimates nothing.
+        parameters: that are bound in the models; none where the scene has none.
+    """
+
+    model: Model
+    finer: Model
+    in_c: Compiled | None
+    parameters: FloatArray
+
+    def at_random_parameters(self, rng: np.random.Generator) -> Subject:
+        """The same at parameters next to those of the scene; itself where it has none."""
+        own = self.model.parameters.pack()
+        if not own.size:
+            return self
+        parameters = own * rng.uniform(SOFTEST, STIFFEST, own.size)
+        model = self.model.at(parameters)
+        return Subject(model, _finer(model), self.in_c, parameters)
 
 
 def cases_of(scene: Scene, points: int) -> list[Case]:
     """Answers of a scene at random inputs, of which one in six lies outside of the range."""
-    first = solve_scene(scene)
+    first = solve_rods(scene)
     if not first.converged:
         return []
     model = build(scene, first.model.discretisation)
     if not model.inputs.size:
         return []
-    finer = _finer(model)
     rng = np.random.default_rng(len(model.pack()))
-    found = [_case(model, finer, rng, inside=k % 6 != 5) for k in range(points)]
+    with tempfile.TemporaryDirectory() as folder:
+        in_c = None if scene.touches_exactly else load(export(model, Path(folder) / "robot", "robot"))
+        assert in_c is None or isinstance(in_c, Compiled)
+        subject = Subject(model, _finer(model), in_c, model.parameters.pack())
+        found = [_case(subject, rng, inside=k % 6 != 5) for k in range(points)]
     return [case for case in found if case is not None]
 
 
@@ -124,8 +190,10 @@ def _finer(model: Model) -> Model:
     return build(scene, discretise(scene, modes + MORE_MODES, nodes + MORE_NODES, "magnus8"))
 
 
-def _case(model: Model, finer: Model, rng: np.random.Generator, *, inside: bool) -> Case | None:
+def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case | None:
     """An answer at random inputs; None where there is none."""
+    here = subject.at_random_parameters(rng)
+    model, finer = here.model, here.finer
     inputs = _random_inputs(model, rng, inside=inside)
     began = time.process_time()
     answer = solve(model, inputs, estimate_error=model.scene.touches_exactly)
@@ -147,14 +215,23 @@ def _case(model: Model, finer: Model, rng: np.random.Generator, *, inside: bool)
     tolerance = model.scene.accuracy.tolerance
     told = not estimate <= tolerance
     cost = np.nan if model.scene.touches_exactly else (estimated - solved) / (solved - began)
-    case = Case(inside, tolerance, true, float(estimate), told, cost, inputs.tolist())
+    in_c = None if here.in_c is None else _estimate_in_c(here, here.in_c, answer)
+    case = Case(inside, tolerance, true, float(estimate), told, cost, inputs.tolist(), in_c)
     wanted = case.ratio is None or LEAST <= case.ratio <= MOST
-    if wanted and not case.is_silent:
+    if wanted and not (case.is_silent or case.is_silent_in_c):
         return case
     own = with_error_estimate(reference)
     own_error = own.shape_error_estimate if shape else own.error_estimate
     decided = own_error is not None and own_error <= KNOWN * true
     return replace(case, decided=decided)
+
+
+def _estimate_in_c(here: Subject, compiled: Compiled, answer: Solution) -> float | None:
+    """What the C says of the error where it finds the same equilibrium from the unloaded rods."""
+    parameters = here.parameters if here.parameters.size else None
+    solved = compiled.solve(answer.inputs, parameters=parameters)
+    same = np.linalg.norm(solved.x - answer.x) <= SAME * (1 + np.linalg.norm(answer.x))
+    return solved.error_estimate if solved.converged and same else None
 
 
 def _distance(answer: Solution, reference: Solution, *, shape: bool) -> float:
@@ -194,7 +271,10 @@ def row_of(words: str, found: list[Case], scene_count: int) -> tuple[str, ...]:
     costs = np.array([case.cost for case in found])
     beyond = sum(case.true > case.tolerance for case in found)
     silent = sum(case.is_silent for case in found)
+    asked_c = [case for case in found if case.in_c is not None]
+    silent_in_c = sum(case.is_silent_in_c for case in asked_c)
     unknown = sum(case.estimate >= UNKNOWN for case in found)
+    unknown_in_c = sum(case.in_c >= UNKNOWN for case in asked_c if case.in_c is not None)
     undecided = sum(not case.decided for case in found)
     few, half, many = np.percentile(ratios, [1, 50, 99])
     outside = f"{100 * np.mean(ratios < LEAST):.1f} %, {100 * np.mean(ratios > MOST):.1f} %"
@@ -204,7 +284,9 @@ def row_of(words: str, found: list[Case], scene_count: int) -> tuple[str, ...]:
         f"{len(found)}",
         f"{beyond}",
         f"{silent}",
+        f"{silent_in_c} of {len(asked_c)}",
         f"{unknown}",
+        f"{unknown_in_c}",
         f"{undecided}",
         f"{few:.2f}, {half:.2f}, {many:.2f}",
         outside,
@@ -218,7 +300,9 @@ HEADINGS = (
     "answers",
     "beyond the tolerance",
     "of these not told",
+    "not told in C",
     "error not known",
+    "not known in C",
     "reference not exact enough",
     "estimate / true error: 1, 50, 99 %",
     f"below {LEAST}, above {MOST:g}",
@@ -241,8 +325,9 @@ def _tell(name: str, found: list[Case]) -> None:
     """One line for each answer that is silent or whose estimate is far off."""
     for case in found:
         far_off = case.ratio is not None and not LEAST <= case.ratio <= MOST
-        if case.is_silent or far_off:
-            kind = "NOT TOLD" if case.is_silent else "far off"
+        silent = case.is_silent or case.is_silent_in_c
+        if silent or far_off:
+            kind = "NOT TOLD" if silent else "far off"
             numbers = " ".join(f"{value:.4g}" for value in case.inputs)
             print(
                 f"{name}: {kind}, error {case.true:.2e}, estimate {case.estimate:.2e}, "
@@ -255,11 +340,12 @@ def main(
     points: Annotated[int, typer.Option(help="Random inputs of each scene.")] = 60,
     write: Annotated[bool, typer.Option("--write", help="Put the table into docs/accuracy.md.")] = False,
     log: Annotated[Path | None, typer.Option(help="One line a scene; a second run goes on from it.")] = None,
+    folder: Annotated[Path | None, typer.Option(help="Scenes that are judged beside the examples.")] = None,
 ) -> None:
     """Print how estimates compare with true errors at random inputs."""
     found = known(log)
     wanted = set(filter(None, chosen.split(",")))
-    for name, scene in scenes():
+    for name, scene in scenes(folder):
         if name in found or (wanted and name not in wanted):
             continue
         try:

@@ -18,8 +18,8 @@ from row_cost import drawn_inputs, robot, wire
 
 from cosserat_casadi import Model, export
 from cosserat_casadi.codegen import compiler
-from cosserat_casadi.codegen.compiled import load
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.plain import pointer
 

@@ -20,7 +20,7 @@ from rich.progress import Progress
 from rows import append, read
 from scipy.optimize import nnls
 
-from cosserat_casadi import build, solve_scene
+from cosserat_casadi import build
 from cosserat_casadi.accuracy.cost import (
     PLANAR,
     Operations,
@@ -30,6 +30,7 @@ from cosserat_casadi.accuracy.cost import (
     terms_of,
     time_in_columns,
 )
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.compiler import find_compiler
@@ -141,7 +142,7 @@ def statements_of(model: Model) -> int:
 def sample(seed: int) -> Compiled | None:
     """The scene's pick at one of the tolerances, or the same with another integrator."""
     tolerance = CHOICES[seed % len(CHOICES)]
-    solution = solve_scene(scene_at(seed, tolerance))
+    solution = solve_rods(scene_at(seed, tolerance))
     if not solution.converged:
         return None
     picked = solution.model.discretisation[ROD]

@@ -25,9 +25,10 @@ from random_rods import ROD, scene_at, tables
 from rich.progress import Progress
 from rows import append, read
 
-from cosserat_casadi import Solution, build, discretise, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, solve
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
 from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiler import find_compiler
@@ -123,7 +124,7 @@ def run_scene(seed: int, cold: bool) -> list[Row]:
     rows, solutions = [], []
     for tolerance in TOLERANCES:
         begin = time.perf_counter()
-        solution = solve_scene(scene_at(seed, tolerance))
+        solution = solve_rods(scene_at(seed, tolerance))
         seconds = time.perf_counter() - begin
         estimate = np.nan if solution.error_estimate is None else solution.error_estimate
         rows.append(Row(seed, tolerance, solution.outcome.label, seconds, estimate))
@@ -218,7 +219,7 @@ def run_search(rows: list[dict[str, str]]) -> list[Cheapest]:
     if not judged_rows:
         return [Cheapest(int(row["seed"]), float(row["tolerance"]), np.nan, np.nan, "", "") for row in rows]
     seed = int(rows[0]["seed"])
-    finer = far_finer(solve_scene(scene_at(seed, float(judged_rows[-1]["tolerance"]))))
+    finer = far_finer(solve_rods(scene_at(seed, float(judged_rows[-1]["tolerance"]))))
     truth, _ = true_tip(finer)
     return [search(finer, truth, row) for row in judged_rows]
 

@@ -18,7 +18,8 @@ import typer
 from doc_tables import put, table
 from rows import append, read
 
-from cosserat_casadi import CosseratError, Solution, export, read_scene, solve_scene
+from cosserat_casadi import CosseratError, Solution, export, read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiler import FLAGS
 
 ROOT = Path(__file__).parents[1]
@@ -97,7 +98,7 @@ def folders(example: str) -> list[Folder]:
     if scene.touches_exactly:
         print(f"{example}: benchmarks/contact_in_c.py measures rods in exact contact")
         return []
-    solution = solve_scene(scene)
+    solution = solve_rods(scene)
     if not solution.converged:
         print(f"{example}: {solution.message}")
         return []

@@ -23,7 +23,7 @@ from doc_tables import put, table
 from motion_rivals import INTERVAL, LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
 from rich.progress import Progress
 
-from cosserat_casadi import Model, Scene, export, load, read_scene, simulate_scene
+from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate_scene
 from cosserat_casadi.motion.poses import tip_poses
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion
@@ -86,6 +86,7 @@ def in_c(model: Model, step: float) -> Run:
     """The motion in steps of one size by the exported functions, called one by one from Python."""
     with TemporaryDirectory() as folder:
         exported = load(export(model, folder, "released", dynamics=True, estimate_errors=False))
+    assert isinstance(exported, Compiled)
     per_time = round(INTERVAL / step)
     inputs = exported.defaults
 

@@ -155,6 +155,8 @@ def times() -> str:
         with tempfile.TemporaryDirectory() as folder:
             bare = load(export(model.at(), Path(folder) / "bare"))
             named = load(export(model, Path(folder) / "named"))
+        assert isinstance(bare, Compiled)
+        assert isinstance(named, Compiled)
         ratios = []
         for with_constants, with_parameters in zip(tasks_of(bare), tasks_of(named), strict=True):
             bare_time, named_time = best_times(with_constants, with_parameters)

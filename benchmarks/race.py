@@ -26,7 +26,8 @@ from race_figure import race_figure
 from rich.progress import Progress
 from shooting_reference import CASES, PROGRAMS, Case, race, steps_for
 
-from cosserat_casadi import Model, build, export, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Model, build, export, scene_from_dict, solve
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.plots.figure import write_figure
 
 README = Path(__file__).parents[1] / "README.md"
@@ -61,7 +62,7 @@ class Exported:
 
 def model_of(case: Case, error: float) -> Model:
     """The cheapest model within the error, as the dial finds it."""
-    solution = solve_scene(scene_from_dict(case.scene(error)))
+    solution = solve_rods(scene_from_dict(case.scene(error)))
     if not solution.converged:
         raise RuntimeError(solution.message)
     return solution.model
@@ -166,7 +167,7 @@ def in_python(case: Case) -> Iterator[Peer]:
     """Our own solver in Python: everything from the scene on, and once more with what is built."""
     for tolerance in ERRORS:
         scene = scene_from_dict(case.scene(tolerance))
-        solution, took = shortest(partial(solve_scene, scene), 1)
+        solution, took = shortest(partial(solve_rods, scene), 1)
         x, y, z = solution.tip().position[0]
         error = case.tip_error((x, y, z))
         yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, choosing and building included", error, took)

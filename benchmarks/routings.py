@@ -21,7 +21,8 @@ from rich.progress import track
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import scene_from_dict, solve_scene  # noqa: E402
+from cosserat_casadi import scene_from_dict  # noqa: E402
+from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
 from tests.fuzz.test_waves import GRANTED  # noqa: E402
 from tests.reference.routed_scenes import RTOL, miss, routed_scene  # noqa: E402
 
@@ -66,7 +67,7 @@ def judged(seed: int) -> Judged:
     """A drawn scene, solved and integrated."""
     scene = scene_from_dict(routed_scene(seed))
     began = time.process_time()
-    solution = solve_scene(scene)
+    solution = solve_rods(scene)
     seconds = time.process_time() - began
     if not solution.converged:
         return Judged(seed, solution.outcome.label, converged=False, seconds=seconds)

@@ -18,7 +18,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from cosserat_casadi import export, read_scene, solve_scene
+from cosserat_casadi import export, read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 
 SCENE = Path(__file__).parents[1] / "examples" / "six_rod_platform.toml"
 LENGTHS = ", ".join(f'"leg_{i}.length"' for i in range(1, 7))
@@ -101,7 +102,7 @@ int main(void) {
 
 
 def main() -> None:
-    solution = solve_scene(read_scene(SCENE, (INPUTS,)))
+    solution = solve_rods(read_scene(SCENE, (INPUTS,)))
     with tempfile.TemporaryDirectory() as path:
         folder = export(solution.model, Path(path) / "platform", "platform")
         values = ", ".join(map(repr, solution.model.pack().tolist()))

@@ -17,7 +17,8 @@ from time import process_time
 import numpy as np
 from doc_tables import put, table
 
-from cosserat_casadi import Solution, read_scene, solve_scene
+from cosserat_casadi import Solution, read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -64,12 +65,12 @@ def rows_of(scene: str) -> list[Row]:
     """The widths of one example."""
     file = ROOT / "examples" / f"{scene}.toml"
     obstacle, widths = SCENES[scene]
-    exact = solve_scene(read_scene(file))
+    exact = solve_rods(read_scene(file))
     length = exact.model.scene.rods[0].length
     rows = []
     for width in widths:
         before = process_time()
-        smooth = solve_scene(read_scene(file, [f"{obstacle}.width={width}", TOLERANCE]))
+        smooth = solve_rods(read_scene(file, [f"{obstacle}.width={width}", TOLERANCE]))
         seconds = process_time() - before
         if not smooth.converged:
             raise SystemExit(f"{scene} with the width {width} m: {smooth.message}")

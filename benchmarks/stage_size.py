@@ -8,7 +8,8 @@ from pathlib import Path
 
 from doc_tables import table
 
-from cosserat_casadi import Model, read_scene, solve_scene
+from cosserat_casadi import Model, read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.stage import stage_functions
@@ -37,7 +38,7 @@ def main() -> None:
     """Print both for each tolerance."""
     rows = []
     for tolerance in TOLERANCES:
-        model = solve_scene(read_scene(SCENE, [f"accuracy.tolerance={tolerance}"])).model
+        model = solve_rods(read_scene(SCENE, [f"accuracy.tolerance={tolerance}"])).model
         for words, curvature in (("exact", True), ("none", False)):
             size, seconds = size_and_seconds(model, curvature)
             rows.append((f"{tolerance:.0e}", str(model.size), words, f"{size / 1e6:.2f} MB", f"{seconds:.1f} s"))

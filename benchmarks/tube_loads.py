@@ -31,7 +31,7 @@ def seconds(model: TubeFunctions, name: str, x: FloatArray) -> float:
     for _ in range(3):
         start = time.process_time()
         for _ in range(CALLS):
-            function(x, model.robot.inputs, 1.0)
+            function(x, model.robot.inputs)
         means.append((time.process_time() - start) / CALLS)
     return float(np.min(means))
 

@@ -11,9 +11,10 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from cosserat_casadi import export_tubes, parse_scene, read_scene, solve_tubes
+from cosserat_casadi import export, parse_scene, read_scene
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.scene import Scene
+from cosserat_casadi.tubes.solve import solve_tubes
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
@@ -44,7 +45,7 @@ def scenes() -> dict[str, Scene]:
 
 def row(what: str, scene: Scene, folder: Path) -> str:
     """A row of the table."""
-    export_tubes(scene, solve_tubes(scene), folder, "robot")
+    export(solve_tubes(scene).model, folder, "robot")
     sources = ["robot_demo.c", "robot.c", "robot_kernels.c"]
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     command = [find_compiler(), "-O2", "-std=c99", *sources, "-lm", "-o", "demo"]

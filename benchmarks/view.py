@@ -17,7 +17,8 @@ from typing import Annotated, Any
 import typer
 from doc_tables import put, table
 
-from cosserat_casadi import read_scene, solve_scene
+from cosserat_casadi import read_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.view.questions import Question
 from cosserat_casadi.view.server import RobotServer
 from cosserat_casadi.view.session import opened
@@ -61,7 +62,7 @@ async ([moves, period]) => {
 @contextmanager
 def served(scene: str) -> Iterator[RobotServer]:
     """A server of a solved example."""
-    server = RobotServer(opened(solve_scene(read_scene(f"examples/{scene}.toml"))))
+    server = RobotServer(opened(solve_rods(read_scene(f"examples/{scene}.toml"))))
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:

@@ -15,12 +15,9 @@ if TYPE_CHECKING:
     from cosserat_casadi.accuracy.choose import Choice as Choice
     from cosserat_casadi.accuracy.choose import choose as choose
     from cosserat_casadi.accuracy.refine import solve_scene as solve_scene
-    from cosserat_casadi.accuracy.tune import Tuning as Tuning
-    from cosserat_casadi.accuracy.tune import tune as tune
     from cosserat_casadi.codegen.acados import acados_expressions as acados_expressions
     from cosserat_casadi.codegen.acados import write_acados as write_acados
     from cosserat_casadi.codegen.compiled import Compiled as Compiled
-    from cosserat_casadi.codegen.compiled import load as load
     from cosserat_casadi.codegen.compiled_motion import CompiledStep as CompiledStep
     from cosserat_casadi.codegen.compiled_motion import LinearMotion as LinearMotion
     from cosserat_casadi.codegen.compiled_motion import StepMemory as StepMemory
@@ -29,18 +26,15 @@ if TYPE_CHECKING:
     from cosserat_casadi.codegen.compiled_motion import StepState as StepState
     from cosserat_casadi.codegen.contact.compiled import CompiledContact as CompiledContact
     from cosserat_casadi.codegen.contact.compiled import CompiledContactSolution as CompiledContactSolution
-    from cosserat_casadi.codegen.contact.compiled import load_in_contact as load_in_contact
     from cosserat_casadi.codegen.export import export as export
     from cosserat_casadi.codegen.fmu import write_fmu as write_fmu
+    from cosserat_casadi.codegen.load import load as load
     from cosserat_casadi.codegen.motion_stage import CompiledMotionStage as CompiledMotionStage
     from cosserat_casadi.codegen.motion_stage import compiled_motion_stage as compiled_motion_stage
     from cosserat_casadi.codegen.motion_status import MotionStatus as MotionStatus
     from cosserat_casadi.codegen.stage import compiled_stage as compiled_stage
     from cosserat_casadi.codegen.tubes.compiled import CompiledTubes as CompiledTubes
     from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution as CompiledTubesSolution
-    from cosserat_casadi.codegen.tubes.compiled import load_tubes as load_tubes
-    from cosserat_casadi.codegen.tubes.sources import export_tubes as export_tubes
-    from cosserat_casadi.codegen.tubes.status import TubeStatus as TubeStatus
     from cosserat_casadi.control.inverse import inverse as inverse
     from cosserat_casadi.control.inverse_accuracy import inverse_scene as inverse_scene
     from cosserat_casadi.control.inverse_result import Inverse as Inverse
@@ -68,12 +62,12 @@ if TYPE_CHECKING:
     from cosserat_casadi.motion.trajectory import Motion as Motion
     from cosserat_casadi.motion.trajectory import MotionOutcome as MotionOutcome
     from cosserat_casadi.numerics.outcome import Outcome as Outcome
+    from cosserat_casadi.numerics.trace import PathOutcome as PathOutcome
     from cosserat_casadi.page.page import export_page as export_page
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath as EquilibriumPath
     from cosserat_casadi.paths.equilibrium_path import PathEvent as PathEvent
     from cosserat_casadi.paths.follow import follow_path as follow_path
     from cosserat_casadi.paths.refine import follow_scene_path as follow_scene_path
-    from cosserat_casadi.paths.trace import PathOutcome as PathOutcome
     from cosserat_casadi.results.identification_file import identification_result as identification_result
     from cosserat_casadi.results.inverse_file import inverse_result as inverse_result
     from cosserat_casadi.results.modes_file import modes_result as modes_result
@@ -82,9 +76,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.results.path_file import path_result as path_result
     from cosserat_casadi.results.solution_file import result as result
     from cosserat_casadi.results.solution_file import write_result as write_result
-    from cosserat_casadi.results.tubes_file import equilibria_result as equilibria_result
-    from cosserat_casadi.results.tubes_file import tube_path_result as tube_path_result
-    from cosserat_casadi.results.tubes_file import tubes_result as tubes_result
     from cosserat_casadi.rod.discretisation import Discretisation as Discretisation
     from cosserat_casadi.scene import Scene as Scene
     from cosserat_casadi.scene import parse_scene as parse_scene
@@ -102,19 +93,15 @@ if TYPE_CHECKING:
     from cosserat_casadi.tubes.model import TubeModel as TubeModel
     from cosserat_casadi.tubes.path import TubeEvent as TubeEvent
     from cosserat_casadi.tubes.path import TubePath as TubePath
-    from cosserat_casadi.tubes.path import follow_tubes as follow_tubes
-    from cosserat_casadi.tubes.solution import TubeOutcome as TubeOutcome
     from cosserat_casadi.tubes.solution import TubeSolution as TubeSolution
-    from cosserat_casadi.tubes.solve import solve_tubes as solve_tubes
 
     __version__: str
 
 _NAMES = {
     "accuracy.choose": ("Choice", "choose"),
     "accuracy.refine": ("solve_scene",),
-    "accuracy.tune": ("Tuning", "tune"),
     "codegen.acados": ("acados_expressions", "write_acados"),
-    "codegen.compiled": ("Compiled", "load"),
+    "codegen.compiled": ("Compiled",),
     "codegen.compiled_motion": (
         "CompiledStep",
         "LinearMotion",
@@ -123,15 +110,14 @@ _NAMES = {
         "StepSensitivity",
         "StepState",
     ),
-    "codegen.contact.compiled": ("CompiledContact", "CompiledContactSolution", "load_in_contact"),
+    "codegen.contact.compiled": ("CompiledContact", "CompiledContactSolution"),
     "codegen.export": ("export",),
     "codegen.fmu": ("write_fmu",),
+    "codegen.load": ("load",),
     "codegen.motion_stage": ("CompiledMotionStage", "compiled_motion_stage"),
     "codegen.motion_status": ("MotionStatus",),
     "codegen.stage": ("compiled_stage",),
-    "codegen.tubes.compiled": ("CompiledTubes", "CompiledTubesSolution", "load_tubes"),
-    "codegen.tubes.sources": ("export_tubes",),
-    "codegen.tubes.status": ("TubeStatus",),
+    "codegen.tubes.compiled": ("CompiledTubes", "CompiledTubesSolution"),
     "control.inverse": ("inverse",),
     "control.inverse_accuracy": ("inverse_scene",),
     "control.inverse_result": ("Inverse",),
@@ -148,18 +134,17 @@ _NAMES = {
     "motion.simulate": ("simulate",),
     "motion.trajectory": ("Motion", "MotionOutcome"),
     "numerics.outcome": ("Outcome",),
+    "numerics.trace": ("PathOutcome",),
     "page.page": ("export_page",),
     "paths.equilibrium_path": ("EquilibriumPath", "PathEvent"),
     "paths.follow": ("follow_path",),
     "paths.refine": ("follow_scene_path",),
-    "paths.trace": ("PathOutcome",),
     "results.identification_file": ("identification_result",),
     "results.inverse_file": ("inverse_result",),
     "results.modes_file": ("modes_result",),
     "results.motion_file": ("motion_result", "write_motion"),
     "results.path_file": ("path_result",),
     "results.solution_file": ("result", "write_result"),
-    "results.tubes_file": ("equilibria_result", "tube_path_result", "tubes_result"),
     "rod.discretisation": ("Discretisation",),
     "scene": ("Scene", "parse_scene", "read_scene", "scene_from_dict", "with_exact_contact"),
     "sweep.outcome_file": ("read_sweep",),
@@ -169,9 +154,8 @@ _NAMES = {
     "sweep.table": ("sobol_table",),
     "tubes.equilibria": ("TubeEquilibria", "all_equilibria"),
     "tubes.model": ("TubeModel",),
-    "tubes.path": ("TubeEvent", "TubePath", "follow_tubes"),
-    "tubes.solution": ("TubeOutcome", "TubeSolution"),
-    "tubes.solve": ("solve_tubes",),
+    "tubes.path": ("TubeEvent", "TubePath"),
+    "tubes.solution": ("TubeSolution",),
 }
 """Public names by the module that defines them."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,18 @@ class CosseratError(Exception):
     """
 
     page = "command-line"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """How pickle and copy make the error anew, such as on its way from another process."""
+        # Python would call the class with ``args``, which holds the sentence and not what the sentence is made of.
+        return _with_sentence, (type(self), *self.args), self.__dict__
+
+
+def _with_sentence(error_class: type[CosseratError], *sentence: str) -> CosseratError:
+    """An error that says this sentence; its attributes follow."""
+    error = error_class.__new__(error_class)
+    error.args = sentence
+    return error
 
 
 class WriteError(CosseratError, OSError):

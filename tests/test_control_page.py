@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from cosserat_casadi import parse_scene, read_scene
@@ -19,6 +21,14 @@ def test_tables_of_the_page_are_read() -> None:
     scene = parse_scene(finger.replace("schema = 1\n", f"schema = 1\n{inputs}\n", 1) + tables)
     assert [target.kind for target in scene.targets] == ["pose", "curve"]
     assert scene.bounds[0].upper == 8.0
+
+
+def test_the_page_leads_to_the_compiled_stage() -> None:
+    """An iteration of an optimiser takes it a twentieth of the time that the lifted form takes."""
+    _, section = PAGE.read_text(encoding="utf-8").split("## A rod in a problem of your own")
+    ways = [way for way in re.findall(r"^\*(\w+)\*", section, flags=re.M) if way in ("Compiled", "Lifted", "Embedded")]
+    assert ways == ["Compiled", "Lifted", "Embedded"]
+    assert "compiled_stage" in section.split("```python")[1]
 
 
 @pytest.mark.parametrize("code", blocks(PAGE, "python"))

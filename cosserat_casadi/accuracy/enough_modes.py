@@ -20,10 +20,10 @@ from cosserat_casadi.equilibrium.answer_error import (
     balance_lacks,
     believed_correction,
     largest_change,
-    regular_inverse,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SHARE = 0.6
@@ -32,8 +32,11 @@ MODES_SHARE = 0.6
 GRID_SHARE = 0.25
 """Share of the tolerance that the grid may leave."""
 
-FAR = 10.0
-"""Error over the tolerance beyond which a strain may gain two modes in one step, else one."""
+MOST_ADDED = ((100.0, 4), (10.0, 2))
+"""Errors over the tolerance, and the modes that a strain may gain in one step beyond each; one below them.
+
+The nearer an answer is, the better is known which modes it lacks, and the more a mode to spare would weigh.
+"""
 
 MOST_GROWTH = 1.5
 """Factor by which intervals grow at most in one step, beyond one more: what they are foreseen from is rough."""
@@ -109,7 +112,7 @@ class _Lack:
         """Discretisations with one more mode of a strain, where the answer's correction has such a mode."""
         trials = []
         present = self.solution.model.discretisation
-        most_added = 2 if self.error > FAR * self.bound else 1
+        most_added = next((most for excess, most in MOST_ADDED if self.error > excess * self.bound), 1)
         for names in alike_rods(self.solution.model):
             for component, count in enumerate(chosen[names[0]].modes):
                 if count == present[names[0]].modes[component] + most_added:

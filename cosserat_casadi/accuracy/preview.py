@@ -20,19 +20,29 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.pose_change import rotation_vectors
+from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
-from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.numerics.neutral import regular, regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
 Mask = npt.NDArray[np.bool_]
 Modes = Mapping[str, tuple[int, ...]]
 """Modes of every admitted strain and element, for each rod."""
+
+LEAST_COMPLIANCE = 0.1
+"""Share of the motion with all modes that inputs must cause with fewer: closed loops of few modes lock."""
+
+AMPLE_FREEDOM = 24
+"""Coordinates for each body that constraints leave free and with which nothing locks: four for each of its motions."""
+
+PROBE = 1e-5
+"""Size of changes of residual and unknowns that derivatives by inputs are read off."""
 
 CORRECTIONS = 2
 """Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
@@ -104,13 +114,7 @@ class Preview:
     @cached_property
     def _regular_jacobian(self) -> FloatArray:
         """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
-        left, singular, right = np.linalg.svd(self.jacobian)
-        largest = float(singular.max(initial=0.0))
-        neutral = singular <= SINGULAR * largest
-        neutral_left = left[:, neutral]
-        neutral_right = right[neutral]
-        added = largest * neutral_left @ neutral_right
-        return np.asarray(self.jacobian + added)
+        return regular(self.jacobian)
 
     @cached_property
     def tips(self) -> WatchedNumbers:
@@ -157,8 +161,10 @@ class Preview:
         return x
 
     def mode_shift(self, modes: Modes) -> FloatArray:
-        """Change of what is watched by having fewer modes, shape (2k + c, 3)."""
+        """Change of what is watched by having fewer modes, shape (2k + c, 3); infinite where these cannot move."""
         key = tuple(modes.items())
+        if key not in self._shifts and self._locks(self.kept(modes)):
+            self._shifts[key] = np.full_like(self.no_shift, np.inf)
         if key not in self._shifts:
             # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
             with np.errstate(all="ignore"):
@@ -202,7 +208,7 @@ class Preview:
         """
         model = self.model
         richer = Richer(model.discrete, discrete_scene(model.scene, model.inputs, dict(grids)))
-        inverse = _inverse(self._regular_jacobian)
+        inverse = regular_inverse(self.jacobian)
 
         def system(known: FloatArray, missing: FloatArray) -> System:
             unknowns = richer.joined(ca.DM(known), ca.DM(missing))
@@ -226,6 +232,63 @@ class Preview:
             tips=_tips_of(current).change_from(tips),
             shapes=_shapes_of(current).change_from(self._shapes),
         )
+
+    def _locks(self, kept: Mask) -> bool:
+        """Whether constraints leave so little freedom to these unknowns that some input hardly moves anything."""
+        if self._has_ample_freedom(kept) or not self._pushes.size:
+            return False
+        inverse = self._inverse_of_kept(kept)
+        for push, whole in zip(self._pushes, self._motions, strict=True):
+            step = np.zeros(self.model.size)
+            step[kept] = -inverse @ push[kept]
+            if self._motion(step) < LEAST_COMPLIANCE * whole:
+                return True
+        return False
+
+    def _has_ample_freedom(self, kept: Mask) -> bool:
+        """Whether so many coordinates are free that nothing can lock; so where nothing is constrained."""
+        discrete = self.model.discrete
+        multipliers = [entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
+        constraints = sum(entries.stop - entries.start for entries in multipliers)
+        # Each constraint has a multiplier among the unknowns, and takes one coordinate's freedom.
+        free = int(kept.sum()) - 2 * constraints
+        return not multipliers or free >= AMPLE_FREEDOM * max(len(discrete.bodies), 1)
+
+    @cached_property
+    def _pushes(self) -> FloatArray:
+        """Derivatives of the residual by the inputs that have an effect, each of unit size, shape (k, n)."""
+        pushes = [self._push(i) for i in range(len(self._inputs))]
+        return np.array([push for push in pushes if push.any()]).reshape(-1, self.model.size)
+
+    def _push(self, number: int) -> FloatArray:
+        """Derivative of the residual by one input, of unit size; zero where the input moves nothing."""
+        x = self.reference.x
+        before = _column(self.model.path_residual(x, self._inputs, 1.0))
+        step = PROBE
+        # Units of inputs differ by many orders of magnitude: the second step is of the right size.
+        for _ in range(2):
+            inputs = self._inputs.copy()
+            inputs[number] += step
+            change = _column(self.model.path_residual(x, inputs, 1.0)) - before
+            size = float(np.linalg.norm(change))
+            if not size:
+                return change
+            step *= PROBE / size
+        return change / size
+
+    @cached_property
+    def _motions(self) -> list[float]:
+        """Motions that the pushes cause with all unknowns."""
+        inverse = _inverse(self._regular_jacobian)
+        return [self._motion(-inverse @ push) for push in self._pushes]
+
+    def _motion(self, step: FloatArray) -> float:
+        """Change of what is watched by a step of the unknowns, to first order."""
+        size = float(np.linalg.norm(step))
+        if not size:
+            return 0.0
+        moved = self._tips(self.reference.x + PROBE / size * step).change_from(self.tips)
+        return change_size(moved) * size / PROBE
 
     @property
     def _inputs(self) -> FloatArray:

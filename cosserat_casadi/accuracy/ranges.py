@@ -2,14 +2,20 @@
 
 Where nobody gives the range of an input, it reaches as far around the scene's value as turns a rod by about a radian
 from end to end, by the linear response of the unloaded scene. So a force F at the tip of a clamped rod is taken up to
-2 EI/ℓ². Tensions and pressures begin at zero. Lengths change by a tenth at most, and gravity keeps its size; bases stay
-where they are, and so do parameters.
+2 EI/ℓ². It reaches as far in every direction, by the softest one: a flat strip that is pushed edgewise as hard as would
+bend it by a radian is twisted out of all proportion. In closed loops 2 EI/ℓ² of the softest rod is taken: a loop is so
+much stiffer than its rods that what turns these by a radian may have no equilibrium beside it. Contact is left out:
+what lies on an obstacle bends less than is taken here.
+
+Tensions and pressures begin at zero. Lengths change by a tenth at most, gravity keeps its size, and bases move by a
+tenth of the longest rod. A base turns into every direction where nothing else holds the rods, else by a fifth of a
+radian about each axis. Parameters keep their values.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -25,22 +31,23 @@ from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.model.input_ranges import limits_of, narrowed
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
 TURN = 1.0
 """Turn of a rod from end to end that the scale of an input makes, rad."""
 
 STRETCH = 0.1
-"""Share of a length by which it changes at most."""
+"""Share of a length by which it changes at most; share of the longest rod by which a base moves."""
+
+TILT = 0.1
+"""Change of each entry of a unit quaternion, which is half an angle in rad, where a base may only tilt."""
 
 GRAVITY = 9.81
 """Acceleration where the scene's own is zero, m/s²."""
 
 RESPONSE_MODES = 4
 """Modes of every strain on which the response of the unloaded scene is computed."""
-
-NO_TURN = 1e-9
-"""Turn, relative to the largest that an entry of the same input makes, below which an entry turns nothing."""
 
 Given = Mapping[str, npt.ArrayLike]
 """Pairs of lower and upper end by column, such as ``push.force.x``, or by the name of an input or a parameter."""
@@ -63,6 +70,9 @@ class Origin(Enum):
     TURN = "turns a rod by about a radian"
     LENGTH = "a tenth of the length"
     GRAVITY = "gravity in any direction"
+    BASE = "a tenth of the longest rod"
+    TILT = "tilts by a fifth of a radian"
+    DIRECTION = "any direction"
     VALUE = "the scene's value"
 
 
@@ -91,15 +101,25 @@ class CaseRanges:
         """Indices of the entries that do not keep one value."""
         return np.flatnonzero(self.lower < self.upper)
 
+    def where_still(self, others: CaseRanges) -> CaseRanges:
+        """These ranges, with those of others where an entry keeps its value."""
+        still = self.lower == self.upper
+        lower = np.where(still, others.lower, self.lower)
+        upper = np.where(still, others.upper, self.upper)
+        pairs = zip(still.tolist(), self.origins, others.origins, strict=True)
+        origins = tuple(other if is_still else own for is_still, own, other in pairs)
+        return replace(self, lower=lower, upper=upper, origins=origins)
+
     @property
     def described(self) -> tuple[str, ...]:
-        """``column=low:high`` of every entry that moves."""
+        """``column=low:high`` of every entry that does not keep the scene's value."""
         return tuple(line for line, _ in self.with_origins())
 
     def with_origins(self) -> Iterator[tuple[str, Origin]]:
-        """``column=low:high`` of every entry that moves, with where its range comes from."""
+        """``column=low:high`` of every entry that does not keep the scene's value, with where its range comes from."""
+        changed = (self.lower < self.upper) | (self.lower != self.layout.default)
         for column, k in self.layout.columns.items():
-            if self.lower[k] < self.upper[k]:
+            if changed[k]:
                 yield f"{column}={self.lower[k]:.6g}:{self.upper[k]:.6g}", self.origins[k]
 
 
@@ -134,6 +154,11 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
         upper[k] = high
         origins[k] = origin
     return CaseRanges(layout, lower, upper, tuple(origins))
+
+
+def ranges_of_cases(layout: CaseLayout, rows: FloatArray) -> CaseRanges:
+    """What load cases, shape (count, size of a case), range over."""
+    return CaseRanges(layout, rows.min(axis=0), rows.max(axis=0), (Origin.ASKED,) * rows.shape[1])
 
 
 def _column_and_ends(text: str) -> tuple[str, tuple[float, float]]:
@@ -172,7 +197,9 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
             counted = "1 pair" if size == 1 else f"1 pair or {size}"
             problems.append(Problem(where, f"{name} must have {counted} of ends, got shape {pairs.shape}"))
             continue
-        problems.extend(_faults_of_ends(where, name, pairs))
+        # Modes may have been chosen for a single value of an entry; the reader of scenes has judged all else.
+        if origin is not Origin.CHOSEN_FOR:
+            problems.extend(_faults_of_ends(where, name, pairs))
         for k, (low, high) in enumerate(np.broadcast_to(pairs, (size, 2)).tolist()):
             entries[span.start + k] = (low, high, origin)
     if problems:
@@ -207,11 +234,11 @@ def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> 
     lower, upper = narrowed(layout.inputs, limits_of(scene))
     found: Entries = {}
     for entry, span in layout.inputs:
-        turns = _turns(model, span)
+        turn = max(_turns(model, span))
         for k in range(span.start, span.stop):
             if k not in entries:
                 continue
-            low, high, origin = _scale(model, entry, turns, k - span.start)
+            low, high, origin = _scale(model, entry, turn, k - span.start)
             low = max(low, float(lower[k]))
             high = min(high, float(upper[k]))
             if low < high:
@@ -219,22 +246,24 @@ def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> 
     return found
 
 
-def _scale(model: Model, entry: Input, turns: FloatArray, component: int) -> tuple[float, float, Origin]:
+def _scale(model: Model, entry: Input, turn: float, component: int) -> tuple[float, float, Origin]:
     """Ends of the range of an entry where nobody gives one, and what says so.
 
     Args:
         model: the scene on modes for its response.
         entry: the input.
-        turns: of a rod by each entry of the input, rad per unit.
+        turn: of a rod by the entry of the input that turns one most, rad per unit.
         component: which entry it is.
     """
     value = float(entry.default.ravel(order="F")[component])
-    if entry.field.startswith("base."):
-        return value, value, Origin.VALUE
-    largest = float(turns.max())
-    # An entry that turns nothing by itself, such as a thrust along a straight rod, takes the scale of its neighbours.
-    turn = turns[component] if turns[component] > NO_TURN * largest else largest
-    reach = TURN / float(turn) if turn > 0.0 else _bending_size(model, entry)
+    if entry.field == "base.position":
+        move = STRETCH * max(rod.length for rod in model.discrete.rods.values())
+        return value - move, value + move, Origin.BASE
+    if entry.field == "base.quaternion":
+        if model.discrete.unknowns.count(BlockKind.MULTIPLIER):
+            return value - TILT, value + TILT, Origin.TILT
+        return -1.0, 1.0, Origin.DIRECTION
+    reach = TURN / turn if turn > 0.0 else _bending_size(model, entry)
     if entry.field == "length":
         stretch = STRETCH * value
         if turn == 0.0 or stretch <= reach:
@@ -248,11 +277,10 @@ def _scale(model: Model, entry: Input, turns: FloatArray, component: int) -> tup
     return value - reach, value + reach, Origin.TURN
 
 
-def _turns(model: Model, span: slice) -> FloatArray:
-    """Turn of the rod that each entry of an input turns most, rad per unit of the entry, shape (entries,)."""
+def _turns(model: Model, span: slice) -> Iterator[float]:
+    """Turn of the rod that each entry of an input turns most, rad per unit of the entry."""
     inputs = model.pack()
     at_values = _response(model, inputs)
-    turns = []
     for k in range(span.start, span.stop):
         moved = inputs.copy()
         # The response is affine in the inputs.
@@ -261,8 +289,7 @@ def _turns(model: Model, span: slice) -> FloatArray:
         change = (_response(model, moved) - at_values) / step
         rods = model.discrete.rods.items()
         of_rods = [_turn(rod, change[model.discrete.unknowns.strain(name)]) for name, rod in rods]
-        turns.append(max(of_rods))
-    return np.array(turns)
+        yield max(of_rods)
 
 
 def _response(model: Model, inputs: FloatArray) -> FloatArray:

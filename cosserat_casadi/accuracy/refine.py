@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
@@ -37,6 +38,7 @@ from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -47,6 +49,10 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.rod.discretisation import Discretisation
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -77,24 +83,48 @@ def solve_scene(
     stable: bool = False,
     progress: Progress | None = None,
     report: Report | None = None,
-) -> Solution:
+) -> Solution | TubeSolution:
     """Equilibrium of a scene to its tolerance, on the cheapest discretisation found that meets it.
 
     The discretisation suits these inputs: a strain that they do not excite has one mode. Where
     the scene fixes modes or nodes they are used as they are, and only the error is estimated.
 
-    A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one.
+    A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one. Concentric tubes
+    are straight at first, become curved where they are, and are loaded then; see :func:`all_equilibria` for the others.
 
     Args:
         scene: a validated scene.
         values: inputs by name; those not named keep the scene's values.
-        stable: whether a free rod is relaxed too; under loads that have a potential.
-        progress: told the share of the load path that is done.
-        report: told the discretisation being solved.
+        stable: whether a free rod is relaxed too, under loads that have a potential; of tubes whether the stable
+            equilibrium of least energy is wanted where the one found is not stable.
+        progress: told the share of the load path of rods that is done.
+        report: told the discretisation of rods being solved.
 
     Raises:
         SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
             would have to hold a free rod.
+    """
+    if not scene.tubes:
+        return solve_rods(scene, values, stable=stable, progress=progress, report=report)
+    # Imported here, because no scene of rods needs the modules of tubes.
+    from cosserat_casadi.tubes.equilibria import stable_tubes
+    from cosserat_casadi.tubes.solve import solve_tubes
+
+    return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
+
+
+def solve_rods(
+    scene: scenes.Scene,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    stable: bool = False,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> Solution:
+    """As :func:`solve_scene`, of rods alone.
+
+    Raises:
+        SceneError: likewise, and where the scene has tubes.
     """
     refuse_tubes(scene)
     refuse_held_by_contact(scene)
@@ -293,6 +323,15 @@ def _with_fixed(solver: SceneSolver) -> Solution:
     solution = solver.relax(solver.solve(discretisation, meant))
     if not solution.converged:
         return solution
+    note = locking_note(solution)
+    judged = _beside_finer(solver, discretisation, solution, meant)
+    return _with_note(judged, f" {note}") if note else judged
+
+
+def _beside_finer(
+    solver: SceneSolver, discretisation: Mapping[str, Discretisation], solution: Solution, meant: Solution | None
+) -> Solution:
+    """A solution on the discretisation that the scene asks for, with its distance to a finer one as its error."""
     turn = largest_turn(solution)
     visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer = {}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from cosserat_casadi.equilibrium.locking import locking_sentence
+
 
 @dataclass(frozen=True)
 class Verified:
@@ -15,12 +17,16 @@ class Verified:
         solves: points of the ranges that were solved.
         error_estimate: the largest of their estimates; None where none has an equilibrium.
         without_equilibrium: how many of them have no equilibrium.
+        within: whether the error is within the tolerance at all the others; None where no tolerance is asked for.
+        locked: names of the inputs that move nothing on this discretisation, and would on more modes.
     """
 
     ranges: tuple[str, ...]
     solves: int
     error_estimate: float | None
     without_equilibrium: int
+    within: bool | None
+    locked: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -29,6 +35,10 @@ class Verified:
         text = f"The discretisation was verified by {self.solves} solves over {where}:"
         if self.error_estimate is not None:
             text += f" largest estimated error {self.error_estimate:.1e}."
+        if self.within is False:
+            text += " The tolerance is not kept there."
+        if self.locked:
+            text += f" {locking_sentence(self.locked)}"
         if self.without_equilibrium:
             text += f" No equilibrium was found at {self.without_equilibrium} of these points."
         return f"{text} Inputs beyond these ranges need it chosen anew."
@@ -41,4 +51,6 @@ class Verified:
             "solves": self.solves,
             "error_estimate": None if error is None else float(f"{error:.2g}"),
             "without_equilibrium": self.without_equilibrium,
+            "within_tolerance": self.within,
+            "locked": list(self.locked),
         }

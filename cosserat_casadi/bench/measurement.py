@@ -10,7 +10,7 @@ from typing import Any
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.cost import foreseen_operations
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.reference import Errors, Reference, with_tolerance
@@ -190,7 +190,7 @@ class Trial:
 
 def _solved(candidate: Candidate, scene: scenes.Scene) -> Solution:
     if candidate.tolerance is not None:
-        return solve_scene(with_tolerance(scene, candidate.tolerance))
+        return solve_rods(with_tolerance(scene, candidate.tolerance))
     return solve(build(scene, candidate.discretisation(scene)), estimate_error=False)
 
 

@@ -8,7 +8,7 @@ from math import asin
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
@@ -149,7 +149,7 @@ def _wrench_distance(truth: RodState, approximation: RodState) -> float:
 def _finest(scene: scenes.Scene) -> Solution:
     """A solution far finer than any that is measured."""
     plain = with_tolerance(scene, FINEST)
-    near = solve_scene(plain)
+    near = solve_rods(plain)
     if not near.converged:
         raise NoReferenceError(f"no reference was found: {near.message}")
     chosen = near.model.discretisation.values()

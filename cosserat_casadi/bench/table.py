@@ -187,20 +187,20 @@ def print_motion_times(
     table.add_column("function")
     for heading in ("operations", "µs", "over statics"):
         table.add_column(heading, justify="right")
-    table.add_row("residual at rest", f"{statics.residual:,}", _digits(times.residual), "")
+    table.add_row("residual at rest", str(statics.residual), _digits(times.residual), "")
     share = times.inverse_dynamics / times.residual
-    table.add_row("inverse dynamics", f"{price.inverse_dynamics:,}", _digits(times.inverse_dynamics), f"{share:.1f} ×")
+    table.add_row("inverse dynamics", str(price.inverse_dynamics), _digits(times.inverse_dynamics), f"{share:.1f} ×")
     if undamped is not None:
         operations = price.inverse_dynamics - undamped.price.inverse_dynamics
         spent = times.inverse_dynamics - undamped.times.inverse_dynamics
-        table.add_row(OF_DAMPING, f"{operations:+,}", f"{spent:+.2f}", "")
-    table.add_row("residual and Jacobian at rest", f"{statics.jacobian:,}", _digits(times.jacobian), "")
+        table.add_row(OF_DAMPING, str(operations), f"{spent:+.2f}", "")
+    table.add_row("residual and Jacobian at rest", str(statics.jacobian), _digits(times.jacobian), "")
     share = times.dynamics_jacobian / times.jacobian
     table.add_row(
-        "inverse dynamics with K, C and M", f"{price.jacobian:,}", _digits(times.dynamics_jacobian), f"{share:.1f} ×"
+        "inverse dynamics with K, C and M", str(price.jacobian), _digits(times.dynamics_jacobian), f"{share:.1f} ×"
     )
     if undamped is not None:
         operations = price.jacobian - undamped.price.jacobian
         spent = times.dynamics_jacobian - undamped.times.dynamics_jacobian
-        table.add_row(OF_DAMPING, f"{operations:+,}", f"{spent:+.2f}", "")
+        table.add_row(OF_DAMPING, str(operations), f"{spent:+.2f}", "")
     console.print(table)

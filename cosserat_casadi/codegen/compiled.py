@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -24,32 +22,17 @@ from cosserat_casadi.codegen.compiled_results import (
     StabilityInfo,
     solution_of,
 )
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.lanes import lanes_files
-from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
-from cosserat_casadi.codegen.manifest import (
-    EXPORT_FIRST,
-    MANIFEST,
-    check_folder,
-    input_count,
-    is_in_contact,
-    is_sound,
-    read_manifest,
-)
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.codegen.status import OUTCOMES
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, Owner
 from cosserat_casadi.numerics.outcome import Outcome
-
-SCENE = "scene.toml"
-"""File of an exported folder: the scene that it was made from."""
 
 OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
 """Functions of which a scene may have none: one without bodies."""
@@ -73,8 +56,29 @@ class Compiled(LoadedLibrary, CompiledMotion):
         manifest: what the folder says of itself.
     """
 
-    _names: Names = field(repr=False)
-    _scene: str = field(default="", repr=False)
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of rods is there."""
+        rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
+        owners = [*(entry["name"] for entry in described.get("actuators", [])), *described.get("bodies", [])]
+        functions = all(isinstance(entry, dict) for entry in described["functions"])
+        listed_parameters(described.get("parameters", []))
+        return rods and functions and all(isinstance(name, str) for name in owners)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Unknowns and parameters by their macros."""
+        sizes = {"UNKNOWNS": sum(entry["count"] for entry in described["unknowns"])}
+        if described.get("parameters"):
+            sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
+        return sizes
+
+    @cached_property
+    def _names(self) -> Names:
+        described = self.manifest
+        rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
+        actuators = tuple(entry["name"] for entry in described.get("actuators", []))
+        return Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
 
     @cached_property
     def differentiable(self) -> bool:
@@ -122,7 +126,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
     @cached_property
     def parameters(self) -> ListedParameters:
         """Names, units and default values of the parameters; often none."""
-        return listed_parameters(self.manifest.get("parameters", []), self._scene)
+        return listed_parameters(self.manifest.get("parameters", []), self.scene)
 
     def solve(
         self,
@@ -360,72 +364,3 @@ class Compiled(LoadedLibrary, CompiledMotion):
 def _argument(name: str, values: FloatArray) -> Any:
     """An argument as C takes it: one that is a number by value."""
     return ctypes.c_double(values[0]) if name in SCALAR_ARGUMENTS else pointer(values)
-
-
-def load(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> Compiled:
-    """Compile an exported folder, once, and load it.
-
-    The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:
-    the same sources are compiled once, wherever they lie, and an object that some process has loaded is never written
-    over. The environment variable ``COSSERAT_CASADI_CACHE`` names another folder, or with ``off`` none.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export`.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
-
-    Raises:
-        ExportError: the folder is not one of an export, another version has written it, its files do not belong
-            together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if is_in_contact(described):
-        problem = "is the folder of a scene in exact contact, whose unknowns change with the contacts"
-        raise ExportError(Problem(str(folder), problem, "load it with load_in_contact"))
-    if not is_sound(described, _has_rods):
-        raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", EXPORT_FIRST))
-    check_folder(folder, described, _sizes(described))
-    rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
-    actuators = tuple(entry["name"] for entry in described.get("actuators", []))
-    names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
-    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels")]
-    asked_for = (f"{names.name}_derivatives.c", stability_files(names.name)[0], lanes_files(names.name)[0])
-    sources += [folder / file for file in asked_for if file in described["files"]]
-    headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
-    beside = {*VERBATIM, f"{names.name}_kernels_in_fours.h", stability_files(names.name)[1], lanes_files(names.name)[1]}
-    headers += [folder / file for file in described["files"] if file in beside]
-    library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
-    return Compiled(library, described, names, _scene_text(folder))
-
-
-def _sizes(described: Mapping[str, Any]) -> dict[str, int]:
-    """Sizes of the library by what a manifest says, by their macros."""
-    sizes = {
-        "UNKNOWNS": sum(entry["count"] for entry in described["unknowns"]),
-        "INPUTS": input_count(described),
-    }
-    if described.get("parameters"):
-        sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
-    return sizes
-
-
-def _scene_text(folder: Path) -> str:
-    """Text of the scene of an exported folder; empty where somebody has taken it away."""
-    try:
-        return (folder / SCENE).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return ""
-
-
-def _has_rods(described: Any) -> bool:
-    """Whether what is read of a manifest of rods is there."""
-    rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
-    owners = [*(entry["name"] for entry in described.get("actuators", [])), *described.get("bodies", [])]
-    rods = rods and all(isinstance(name, str) for name in owners)
-    files = all(isinstance(file, str) for file in described["files"])
-    functions = all(isinstance(entry, dict) for entry in described["functions"])
-    listed_parameters(described.get("parameters", []))
-    return rods and files and functions

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -132,6 +132,17 @@ class StepMemory:
     kept: Any
     workspace: Any
 
+    def __reduce__(self) -> tuple[Callable[..., StepMemory], tuple[bytes, int]]:
+        """How pickle and copy make the memory anew: the workspace means nothing between two steps."""
+        return _memory_of, (bytes(self.kept), ctypes.sizeof(self.workspace))
+
+
+def _memory_of(kept: bytes, workspace_size: int) -> StepMemory:
+    """The memory of steps from the bytes that they keep and the size of their workspace."""
+    memory = StepMemory(room(len(kept)), room(workspace_size))
+    ctypes.memmove(memory.kept, kept, len(kept))
+    return memory
+
 
 @dataclass(frozen=True)
 class _Given:
@@ -184,6 +195,34 @@ class _Info(ctypes.Structure):
         ("residual", ctypes.c_double),
         ("error_left", ctypes.c_double),
     )
+
+
+@dataclass(frozen=True)
+class _StepCall:
+    """A step by a function in C, ready to be called, as often as wanted: each call goes on from where one ended.
+
+    Attributes:
+        function: in C.
+        arguments: its arguments.
+        packed: the state, which the function moves.
+        info: how the last call ended.
+        kept: what the arguments point to and do not keep.
+    """
+
+    function: Any
+    arguments: tuple[Any, ...]
+    packed: FloatArray
+    info: _Info
+    kept: tuple[Any, ...]
+
+    def take(self) -> int:
+        """Take a step; the number of its status is returned."""
+        return int(self.function(*self.arguments))
+
+    @property
+    def done(self) -> bool:
+        """Whether the last step was taken."""
+        return STATUSES[self.info.status] is MotionStatus.DONE
 
 
 class CompiledMotion(ABC):
@@ -267,6 +306,58 @@ class CompiledMotion(ABC):
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
         taken, _ = self._take("step", state, dt, given, memory, options, [])
         return taken
+
+    def steps(
+        self,
+        state: StepState,
+        dt: float,
+        count: int,
+        inputs: ArgumentValues,
+        inputs_rate: npt.ArrayLike | None = None,
+        inputs_acceleration: npt.ArrayLike | None = None,
+        *,
+        parameters: ArgumentValues = None,
+        memory: StepMemory | None = None,
+        options: StepOptions | None = None,
+    ) -> tuple[CompiledStep, FloatArray, FloatArray]:
+        """Steps of one length, one after the other, while the inputs move with one acceleration.
+
+        It does what as many calls of :meth:`step` do, which take their arguments apart each time.
+
+        Args:
+            state: at the start.
+            dt: length of each step, s.
+            count: number of steps, at least 1.
+            inputs: at the start of the first, as in :meth:`step`.
+            inputs_rate: there, as in :meth:`step`.
+            inputs_acceleration: in all steps, as in :meth:`step`.
+            parameters: as there.
+            memory: as there.
+            options: as there.
+
+        Returns:
+            the last step, of which one that was not done ends all; the stacked inputs and their rates at its end.
+
+        Raises:
+            ValueError: the count is below 1.
+        """
+        if count < 1:
+            raise ValueError(f"count must be at least 1, got {count}")
+        nothing = np.zeros(self.inputs.size)
+        acceleration = nothing if inputs_acceleration is None else inputs_acceleration
+        rate = vector(nothing if inputs_rate is None else inputs_rate, self.inputs.size, "inputs_rate").copy()
+        moved = self.inputs.stacked(inputs).copy()
+        given = _Given(moved, rate, acceleration, parameters)
+        call = self._prepared("step", state, dt, given, memory, options, [])
+        gained = dt * vector(acceleration, self.inputs.size, "inputs_acceleration")
+        for _ in range(count):
+            call.take()
+            if not call.done:
+                break
+            # C reads both arrays in place.
+            moved += dt * (rate + gained / 2.0)
+            rate += gained
+        return self._end(call), moved, rate
 
     def step_sensitivity(
         self,
@@ -354,17 +445,34 @@ class CompiledMotion(ABC):
         results: Sequence[FloatArray],
     ) -> tuple[CompiledStep, MotionStatus]:
         """A step by one of the two functions in C, and what it returned."""
+        call = self._prepared(word, state, dt, given, memory, options, results)
+        status = call.take()
+        return self._end(call), STATUSES[status]
+
+    def _prepared(
+        self,
+        word: str,
+        state: StepState,
+        dt: float,
+        given: _Given,
+        memory: StepMemory | None,
+        options: StepOptions | None,
+        results: Sequence[FloatArray],
+    ) -> _StepCall:
+        """A call of one of the two functions in C; inputs and rates that are arrays are read where they are."""
         chosen = options or StepOptions()
+        inputs = self.inputs.stacked(given.inputs)
+        rates = self._changing(given.inputs_rate)
         # It must outlive the call: the struct alone does not keep it.
         acceleration = self._changing(given.inputs_acceleration, "inputs_acceleration")
         budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts, acceleration)
         packed = self._packed(state)
         info = _Info()
         room = memory or self.step_memory()
-        status = self._motion_function(word)(
-            pointer(self.inputs.stacked(given.inputs)),
+        arguments = (
+            pointer(inputs),
             *self.parameters.passed(given.parameters),
-            self._changing(given.inputs_rate),
+            rates,
             ctypes.c_double(dt),
             pointer(packed),
             room.kept,
@@ -373,8 +481,12 @@ class CompiledMotion(ABC):
             room.workspace,
             ctypes.byref(info),
         )
-        end = CompiledStep(
-            state=self._unpacked(packed),
+        return _StepCall(self._motion_function(word), arguments, packed, info, (acceleration,))
+
+    def _end(self, call: _StepCall) -> CompiledStep:
+        info = call.info
+        return CompiledStep(
+            state=self._unpacked(call.packed),
             status=STATUSES[info.status],
             iterations=info.iterations,
             jacobians=info.jacobians,
@@ -382,7 +494,6 @@ class CompiledMotion(ABC):
             residual=info.residual,
             error_left=info.error_left,
         )
-        return end, STATUSES[status]
 
     def _changing(self, rates: npt.ArrayLike | None, name: str = "inputs_rate") -> Any:
         """Rates or accelerations of the inputs as an argument in C, which is null for zero."""

@@ -27,6 +27,22 @@ class Info(ctypes.Structure):
     )
 
 
+def answer_words(info: Info, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """What :class:`CompiledAnswer` takes from the struct.
+
+    Args:
+        info: the struct.
+        outcomes: of the solver, in the order of their numbers.
+    """
+    return {
+        "outcome": outcomes[info.status],
+        "iterations": info.iterations,
+        "jacobians": info.jacobians,
+        "residual_norm": info.residual_norm,
+        "load_factor": info.load_factor,
+    }
+
+
 class AnswerInfo(Info):
     """The same of a solve whose answer may know its error."""
 
@@ -72,35 +88,49 @@ class CompiledStability:
         return self.verdict in ("stable", "neutral")
 
 
-@dataclass(frozen=True)
-class CompiledSolution:
-    """What the solver in C found.
+@dataclass(frozen=True, kw_only=True)
+class CompiledAnswer:
+    """How a call of a solver in C ended.
 
     Attributes:
-        x: unknowns; the last equilibrium on the way where it did not converge.
         outcome: how it ended.
         iterations: Newton steps tried.
         jacobians: Jacobians factorised.
         residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
-        load_factor: share of the load that x carries.
+        load_factor: share of the load that x carries, or of the way of the inputs that was gone; 1 where it converged.
+    """
+
+    outcome: Outcome
+    iterations: int
+    jacobians: int
+    residual_norm: float
+    load_factor: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is an equilibrium for the inputs at the full load."""
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def message(self) -> str:
+        """A sentence that says how it ended."""
+        return self.outcome.value
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompiledSolution(CompiledAnswer):
+    """What the solver in C found.
+
+    Attributes:
+        x: unknowns; the last equilibrium on the way where it did not converge.
         error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
             lengths of cables over the length; 1 where it is not known, None where it was not estimated.
         tolerance: wanted error of the scene; None where no tolerance has a meaning.
     """
 
     x: FloatArray
-    outcome: Outcome
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     error_estimate: float | None = None
     tolerance: float | None = None
-
-    @property
-    def converged(self) -> bool:
-        """Whether x is an equilibrium at the full load."""
-        return self.outcome is Outcome.CONVERGED
 
     @property
     def within_tolerance(self) -> bool | None:
@@ -132,12 +162,8 @@ class Sensitivity:
 def solution_of(x: FloatArray, info: AnswerInfo, tolerance: float | None = None) -> CompiledSolution:
     """A solution from its unknowns and the struct beside them."""
     return CompiledSolution(
-        x,
-        OUTCOMES[info.status],
-        info.iterations,
-        info.jacobians,
-        info.residual_norm,
-        info.load_factor,
+        **answer_words(info, OUTCOMES),
+        x=x,
         error_estimate=None if info.error_estimate < 0 else info.error_estimate,
         tolerance=tolerance,
     )

@@ -54,6 +54,7 @@ def error_words(render: Render, basics: Words, model: Model, names: Names) -> Wo
         "error_sweeps": answer_error.MOST_SWEEPS,
         "error_safety": answer_error.SAFETY,
         "error_settled": answer_error.SETTLED,
+        "error_contracting": answer_error.CONTRACTING,
         "error_enough": answer_error.enough_for(tolerance),
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import casadi as ca
 import numpy as np
@@ -68,7 +68,7 @@ class MeasuredCases:
     measured: FloatArray
     weights: FloatArray
 
-    def part(self, rows: slice) -> MeasuredCases:
+    def part(self, rows: slice | npt.NDArray[np.int64]) -> MeasuredCases:
         """Some of the cases."""
         return MeasuredCases(self.inputs[rows], self.at[rows], self.measured[rows], self.weights[rows])
 
@@ -83,6 +83,8 @@ class Estimates:
         cost: half the sum of squares, in squared standard deviations, the prior's among them, shape (cases,).
         unknowns: shape (cases, k).
         information: of data and prior, the inverse of the covariance, shape (cases, k, k).
+        gradient: of the cost, zero but for unknowns at their bounds, shape (cases, k).
+        residuals: differences in standard deviations, 0 where nothing was measured, shape (cases, rows).
         x: the equilibria, shape (cases, size).
     """
 
@@ -91,7 +93,48 @@ class Estimates:
     cost: FloatArray
     unknowns: FloatArray
     information: FloatArray
+    gradient: FloatArray
+    residuals: FloatArray
     x: FloatArray
+
+    @classmethod
+    def of_columns(cls, results: FloatArray, k: int, size: int) -> Estimates:
+        """The results of the function in C, a row for each case, of k numbers in a model of so many unknowns."""
+        rows = results.shape[1] - len(JUDGED) - 2 * k - k * k - size
+        ends = np.cumsum([len(JUDGED), k, k * k, k, rows])
+        judged, unknowns, information, gradient, residuals, x = np.split(results, ends, axis=1)
+        return cls(
+            outcome=judged[:, 0].astype(np.int64),
+            iterations=judged[:, 1].astype(np.int64),
+            cost=judged[:, 2],
+            unknowns=unknowns,
+            information=information.reshape(-1, k, k),
+            gradient=gradient,
+            residuals=residuals,
+            x=x,
+        )
+
+    def first(self, count: int) -> Estimates:
+        """The first numbers that were found, the others held."""
+        return replace(
+            self,
+            unknowns=self.unknowns[:, :count],
+            information=self.information[:, :count, :count],
+            gradient=self.gradient[:, :count],
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Estimates]) -> Estimates:
+        """Chunks of cases as one."""
+        arrays = ([getattr(part, field.name) for part in parts] for field in fields(cls))
+        return cls(*map(np.concatenate, arrays))
+
+    @classmethod
+    def chosen(cls, runs: Sequence[Estimates], run: npt.NDArray[np.int64]) -> Estimates:
+        """Each case from the run that is chosen for it, shape (cases,)."""
+        cases = np.arange(len(run))
+        arrays = ([getattr(one, field.name) for one in runs] for field in fields(cls))
+        return cls(*(np.array(of_runs)[run, cases] for of_runs in arrays))
 
 
 @dataclass(frozen=True)
@@ -101,11 +144,13 @@ class EstimatorLibrary:
     Attributes:
         files: content by file name, as pairs.
         unknowns: numbers that are found in each case.
+        rows: differences between model and measurement in each case.
         size: unknowns of the model.
     """
 
     files: tuple[tuple[str, str], ...]
     unknowns: int
+    rows: int
     size: int
 
     def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
@@ -117,22 +162,40 @@ class EstimatorLibrary:
         """
         k = self.unknowns
         count = len(cases.inputs)
-        results = np.empty((count, len(JUDGED) + k + k * k + self.size))
+        results = np.empty((count, len(JUDGED) + 2 * k + k * k + self.rows + self.size))
         tables = [cases.inputs, cases.at, cases.measured, cases.weights]
         vectors = [known.lower, known.upper, known.mean, known.weight, known.size]
         given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *vectors)]
         function = loaded(NAME, self.files)[f"{NAME}_estimate"]
         if function(count, *map(pointer, given), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
-        first = len(JUDGED)
-        return Estimates(
-            outcome=results[:, 0].astype(np.int64),
-            iterations=results[:, 1].astype(np.int64),
-            cost=results[:, 2],
-            unknowns=results[:, first : first + k],
-            information=results[:, first + k : first + k + k * k].reshape(count, k, k),
-            x=results[:, first + k + k * k :],
-        )
+        return Estimates.of_columns(results, k, self.size)
+
+    def costs(
+        self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
+    ) -> FloatArray:
+        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium.
+
+        Args:
+            cases: as for :meth:`estimate`.
+            inputs: the estimates with all other inputs and parameters, shape (cases, inputs + parameters).
+            x: their equilibria, shape (cases, size).
+            known: as there; outside its bounds a cost is infinite.
+            steps: of the unknowns, shape (cases, draws, k).
+
+        Raises:
+            ExportError: there is no C compiler, or it fails.
+            MemoryError: there is none for the workspace.
+        """
+        count, draws, _ = steps.shape
+        results = np.empty((count, draws))
+        tables = [inputs, x, cases.at, cases.measured, cases.weights]
+        vectors = [known.lower, known.upper, known.mean, known.weight, known.size]
+        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *vectors, steps)]
+        function = loaded(NAME, self.files)[f"{NAME}_costs"]
+        if function(count, draws, *map(pointer, given), pointer(results)):
+            raise MemoryError("there is no memory for the solver's workspace")
+        return results
 
 
 def _residual_by_unknown(model: Model, indices: Sequence[int]) -> ca.Function:
@@ -196,4 +259,4 @@ def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int
         **of_measurements,
         f"{NAME}_estimate.c": render("estimate.c.in", words),
     }
-    return EstimatorLibrary(to_compile(files), len(indices), model.size)
+    return EstimatorLibrary(to_compile(files), len(indices), measured.size1_out(0), model.size)

@@ -25,6 +25,7 @@ from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
+from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_files
 from cosserat_casadi.codegen.turn_budget import ALWAYS, costs_of, fitting
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
@@ -34,10 +35,11 @@ from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.tubes.functions import TubeFunctions
 
 
 def export(
-    model: Model,
+    model: Model | TubeFunctions,
     directory: str | os.PathLike[str],
     name: str | None = None,
     *,
@@ -54,7 +56,7 @@ def export(
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
     Args:
-        model: what to export, with its discretisation.
+        model: what to export, with its discretisation; of concentric tubes, with its steps.
         directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
         name: what every symbol begins with, a C identifier.
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
@@ -80,16 +82,23 @@ def export(
         ExportError: the name, the folder, a motion, the stability, the contact or the period is refused; nothing was
             written.
     """
-    check_period(model.scene, period)
     asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
-    check_contact(model.scene, asked)
-    check_load_cases(model.scene, load_cases)
-    if stability:
-        check_stability(model)
+    if isinstance(model, TubeFunctions):
+        options = {f"--{word}": wanted for word, wanted in asked.items()}
+        further = {"--over": load_cases is not None, "--period": period is not None}
+        check_tubes({**options, **further, "--no-error-estimate": not estimate_errors})
+    else:
+        check_period(model.scene, period)
+        check_contact(model.scene, asked)
+        check_load_cases(model.scene, load_cases)
+        if stability:
+            check_stability(model)
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
-    if model.scene.touches_exactly:
+    if isinstance(model, TubeFunctions):
+        files = tube_files(model, chosen, error_estimate)
+    elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
         files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
@@ -62,6 +63,14 @@ BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
 VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
+
+COMMENT_WIDTH = 120
+"""Characters of a line in a comment."""
+
+PLAIN_BUILD = dict.fromkeys(
+    ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
+)
+"""Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",
@@ -151,6 +160,8 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
+    for part in ("cmake_options", "cmake_definitions", "cmake_dependencies"):
+        words[part] = render(f"{part}.in", words)
     words["more_compiled"] = ""
     if rows is not None:
         words["more_sources"] += f" {name}_lanes.c"
@@ -240,6 +251,7 @@ def _words(
         **version_words(),
         "casadi_version": ca.CasadiMeta.version(),
         "accuracy_note": accuracy_note,
+        "accuracy_comment": _wrapped(comment(accuracy_note)),
     }
 
 
@@ -439,6 +451,11 @@ def _accuracy_note(model: Model, error_estimate: float | None, verified: Verifie
         f"{tolerance} The discretisation was judged at the scene's own inputs: estimated error {error_estimate:.1e}. "
         "Far larger loads need it judged anew."
     )
+
+
+def _wrapped(text: str) -> str:
+    """A paragraph of the comment at the top of a header."""
+    return textwrap.fill(text, COMMENT_WIDTH, initial_indent="   ", subsequent_indent="   ", break_long_words=False)
 
 
 def comment(text: str) -> str:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,20 +13,48 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class LoadedLibrary:
+class LoadedLibrary(ABC):
     """An exported folder, compiled.
 
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
+        scene: text of the scene that the folder was exported from; empty where that file is missing.
     """
 
     library: Path
     manifest: dict[str, Any]
+    scene: str = field(default="", repr=False)
+
+    @staticmethod
+    @abstractmethod
+    def is_sound(described: Any) -> bool:
+        """Whether a manifest has what a folder of this kind needs beside name, files and inputs.
+
+        Raises:
+            AttributeError, KeyError, OverflowError, TypeError, ValueError: it has not.
+        """
+
+    @staticmethod
+    @abstractmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Sizes beside that of the inputs by their macros in the header, as a sound manifest has them."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickle and copy take along: where the shared object lies, not the object that this process opened."""
+        return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Raises an ExportError where the shared object is not on this machine, or was removed."""
+        if not state["library"].is_file():
+            problem = "is not here: a pickle of a loaded folder names its shared object and does not hold it"
+            raise ExportError(Problem(str(state["library"]), problem, "load the folder again"))
+        self.__dict__.update(state)
 
     @cached_property
     def inputs(self) -> ListedInputs:

@@ -27,11 +27,15 @@ from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.tubes.functions import TubeFunctions
 
 MANIFEST = "manifest.json"
 
 ARRANGEMENTS = "arrangements"
 """Key of the arrangements of contacts, which a folder of a scene in exact contact has alone."""
+
+TUBES = "tubes"
+"""Key of the names of the tubes, which a folder of concentric tubes has alone."""
 
 SCHEMA = 1
 """Version of the manifest that is written, and read back."""
@@ -54,13 +58,8 @@ def read_manifest(folder: Path) -> Any:
         raise ExportError(Problem(str(folder / MANIFEST), "is not JSON", EXPORT_FIRST)) from None
 
 
-def is_in_contact(described: Any) -> bool:
-    """Whether a manifest is of a scene in exact contact."""
-    return isinstance(described, dict) and ARRANGEMENTS in described
-
-
 def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
-    """Whether what is read of a manifest is there: the name of the library, values of inputs, and what a kind has else.
+    """Whether what is read of a manifest is there: name of the library, files, values of inputs, what a kind has else.
 
     Args:
         described: what was read.
@@ -70,7 +69,8 @@ def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
         library_names(described["name"])
         listed_values(described["inputs"])
         values = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
-        return all(value.ndim == 1 for value in values) and is_own(described)
+        files = all(isinstance(file, str) for file in described["files"])
+        return files and all(value.ndim == 1 for value in values) and is_own(described)
     except (ExportError, AttributeError, KeyError, OverflowError, TypeError, ValueError):
         return False
 
@@ -152,7 +152,7 @@ def manifest(
     }
 
 
-def input_entries(model: Model) -> list[dict[str, Any]]:
+def input_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
     lower, upper = ranges_of_inputs(model.scene, model.inputs)
     return [

@@ -12,7 +12,7 @@ evaluate the equations of motion.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -20,9 +20,16 @@ import numpy as np
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
-from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.stage import bare_second, differentiated, exact_second, jacobian_of, poses_of, written
+from cosserat_casadi.codegen.stage import (
+    adjoint_and_second,
+    bare_second,
+    exact_second,
+    jacobian_of,
+    poses_of,
+    written,
+    written_in_c,
+)
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.motion.stage import MotionStage, StageEquations
 
@@ -57,24 +64,22 @@ def compiled_motion_stage(
         curvature: as in :func:`compiled_stage`: whether second derivatives are exact. Those of the equations of motion
             have several hundred times as many instructions as the equations: for models of a few unknowns.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
+        progress: as in :func:`compiled_stage`.
 
     Raises:
         ExportError: the name is no C identifier, there is no compiler, or it fails.
     """
     library_names(name)
     found = find_compiler(compiler)
-    equations = equations_functions(stage, f"{name}_equations", curvature)
-    poses = poses_functions(stage, f"{name}_poses", curvature)
-    texts: dict[str, str] = {}
-    for function in (*equations, *poses):
-        texts |= sources([function], function.name(), "long long int")
+    equations = f"{name}_equations"
+    poses = f"{name}_poses"
+    texts = written_in_c(equations_functions(stage, equations, curvature), equations, progress)
+    texts |= written_in_c(poses_functions(stage, poses, curvature), poses, progress)
     library = os.fspath(compiled_texts(name, texts, found, progress=progress))
-    compiled_equations = StageEquations(ca.external(equations[0].name(), library))
-    return CompiledMotionStage(compiled_equations, ca.external(poses[0].name(), library))
+    return CompiledMotionStage(StageEquations(ca.external(equations, library)), ca.external(poses, library))
 
 
-def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:
+def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
     """The equations, their Jacobian, their adjoint and its Jacobian, named as ``casadi.external`` looks for them.
 
     Args:
@@ -84,14 +89,16 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[
     """
     inverse_dynamics = written(stage.model.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
+    yield plain
     slopes = _equations_jacobian(stage, plain)
+    yield slopes
     adjoint = plain.reverse(1)
+    yield adjoint
     make_second = exact_second if curvature else bare_second
-    second = make_second(plain, slopes, adjoint)
-    return [plain, slopes, adjoint, second]
+    yield make_second(plain, slopes, adjoint)
 
 
-def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:
+def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
     """As :func:`equations_functions`, of the poses of tips and bodies."""
     model = stage.model
     state, _, *given, _ = stage.symbols
@@ -106,6 +113,7 @@ def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.F
     words = [word for word in stage.sizes if word not in of_motion]
     whole = ca.Function(name, arguments, results, words, [*poses])
     plain = written(whole, name)
+    yield plain
     blocks = []
     for slope in [*model.tip_jacobian.values(), *model.body_jacobian.values()]:
         by_x, *by_given = slope(x, *given)
@@ -113,7 +121,8 @@ def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.F
         # No pose reads a velocity.
         blocks += [ca.horzcat(by_position, ca.DM(*by_position.shape)), *by_given]
     slopes = written(jacobian_of(plain, arguments, blocks), f"jac_{name}")
-    return differentiated(plain, slopes, curvature)
+    yield slopes
+    yield from adjoint_and_second(plain, slopes, curvature)
 
 
 def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:

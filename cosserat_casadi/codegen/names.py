@@ -127,7 +127,7 @@ def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = F
         name,
         rods,
         scene.input_names(),
-        parameters=scene.parameters,
+        parameters=scene.parameter_names(),
         actuators=actuators,
         bodies=bodies,
         functions=functions,

@@ -31,6 +31,10 @@ NAME = "sweep"
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""
 
+ERRORS = ("error_estimate", "within_tolerance")
+"""Columns behind poses, efforts and contacts, where they are asked for: the estimated error, 1 where it is not known;
+whether the tolerance is kept, which rows leave open (NaN)."""
+
 STABILITY = ("smallest_eigenvalue", "stable")
 """Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
 
@@ -114,11 +118,14 @@ class RowLibrary:
         return results
 
 
-def row_library(model: Model, *, stability: bool = False, lanes: bool = False) -> RowLibrary:
+def row_library(
+    model: Model, *, estimate_errors: bool = False, stability: bool = False, lanes: bool = False
+) -> RowLibrary:
     """Sources of the solver of a model with a function for rows.
 
     Args:
         model: what is solved.
+        estimate_errors: whether rows have :data:`ERRORS`.
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
         lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
             about twice as long. The results are the same.
@@ -126,16 +133,16 @@ def row_library(model: Model, *, stability: bool = False, lanes: bool = False) -
     Raises:
         ExportError: two things of the scene would have one name in C.
     """
-    names = model_names(NAME, model)
+    names = model_names(NAME, model, estimate_errors=estimate_errors)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
-    columns = row_results(model.scene, stability=stability)
+    columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
     side_by_side = in_lanes(model, names) if lanes else None
     files = {
         **library_sources(model, names, parts, generated, None, rows=side_by_side),
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability, lanes=side_by_side is not None),
+        f"{NAME}_rows.c": _rows_source(model, names, columns, lanes=side_by_side is not None),
     }
     in_rows = to_compile(files)
     return RowLibrary(in_rows, model.inputs.size, model.parameters.size, len(columns), side_by_side is not None)
@@ -147,11 +154,12 @@ def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
     return tuple((name, files[name]) for name in wanted)
 
 
-def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
+def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool = False) -> tuple[str, ...]:
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, efforts, exact contacts.
 
     Args:
         scene: what is solved.
+        estimate_errors: whether :data:`ERRORS` follow.
         stability: whether they end with :data:`STABILITY`.
     """
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
@@ -160,7 +168,8 @@ def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
     # Smooth contact is a load, of which rows do not tell.
     contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
     contacts += [f"{body.name}.{obstacle.name}.{word}" for body, obstacle in body_pairs(scene) for word in BODY_CONTACT]
-    return (*JUDGED, *poses, *states, *contacts, *(STABILITY if stability else ()))
+    errors = ERRORS if estimate_errors else ()
+    return (*JUDGED, *poses, *states, *contacts, *errors, *(STABILITY if stability else ()))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:
@@ -169,7 +178,7 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _rows_source(model: Model, names: Names, results: int, *, stability: bool, lanes: bool) -> str:
+def _rows_source(model: Model, names: Names, columns: tuple[str, ...], *, lanes: bool) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
     passed = ", parameters" if model.parameters.size else ""
@@ -182,13 +191,17 @@ def _rows_source(model: Model, names: Names, results: int, *, stability: bool, l
         function = names.function("actuator", actuator)
         lines.append(f"  {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
         column += 2
-    words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
+    estimate = ERRORS[0]
+    if estimate in columns:
+        lines.append(f"  row[{columns.index(estimate)}] = end->error_estimate;")
+    words = {"name": names.name, "MACRO": names.macro, "results": str(len(columns)), "calls": "\n".join(lines)}
     words |= {"passed": passed, **dict.fromkeys(PARAMETERS_IN_ROWS, "")}
     words["batch_workspace"] = f"{names.name}_batch_workspace" if lanes else f"{names.name}_workspace"
     if passed:
         words |= {key: fill(text, words) for key, text in PARAMETERS_IN_ROWS.items()}
     in_rows = dict.fromkeys(STABILITY_IN_ROWS, "")
-    if stability:
+    if STABILITY[0] in columns:
+        column = columns.index(STABILITY[0])
         in_rows = {
             key: fill(text, {**words, "column": column, "next": column + 1}) for key, text in STABILITY_IN_ROWS.items()
         }

@@ -11,7 +11,7 @@ leaves empty is not computed, and of two blocks that mirror each other one is.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import casadi as ca
 
@@ -23,6 +23,12 @@ from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.interpolation import section_weights
+from cosserat_casadi.model.section_poses import SectionPoses
+from cosserat_casadi.model.system import Arguments, System
+
+PARTS = 4
+"""Functions of a stage: its value, its Jacobian, its adjoint and the Jacobian of that."""
 
 
 def compiled_stage(
@@ -49,7 +55,8 @@ def compiled_stage(
         sections: abscissae X in [0, 1] of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
+        progress: told what is written or compiled, how many functions or files are, and of how many; of compiling
+            not where nothing is left to do.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
@@ -65,10 +72,25 @@ def compiled_stage(
     wanted = dict(sections or {})
     _check_wanted(model, wanted, actuators)
     found = find_compiler(compiler)
-    texts: dict[str, str] = {}
-    for function in stage_functions(model, name, curvature, wanted, actuators):
-        texts |= sources([function], function.name(), "long long int")
+    texts = written_in_c(stage_functions(model, name, curvature, wanted, actuators), name, progress)
     return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
+
+
+def written_in_c(functions: Iterator[ca.Function], name: str, progress: Progress | None) -> dict[str, str]:
+    """Sources and headers of functions by file name, each function in a file of its own.
+
+    Args:
+        functions: :data:`PARTS` functions, which take their time to be made one after the other.
+        name: of the stage, for the progress.
+        progress: told of every function that is written.
+    """
+    texts: dict[str, str] = {}
+    for done in range(PARTS):
+        if progress is not None:
+            progress(f"Writing {name} in C", done, PARTS)
+        function = next(functions)
+        texts |= sources([function], function.name(), "long long int")
+    return texts
 
 
 def check_scalar(model: Model) -> None:
@@ -116,7 +138,7 @@ def stage_functions(
     curvature: bool,
     sections: Mapping[str, Sequence[float]] | None = None,
     actuators: Sequence[str] = (),
-) -> list[ca.Function]:
+) -> Iterator[ca.Function]:
     """The function, its Jacobian, its adjoint and the adjoint's Jacobian, named as ``casadi.external`` looks for them.
 
     Args:
@@ -128,12 +150,14 @@ def stage_functions(
     """
     further = _further_outputs(model, sections or {}, actuators)
     plain = written(_stage(model, name, further), name)
+    yield plain
     slopes = written(_slopes(model, plain, further), f"jac_{name}")
-    return differentiated(plain, slopes, curvature)
+    yield slopes
+    yield from adjoint_and_second(plain, slopes, curvature)
 
 
-def differentiated(plain: ca.Function, slopes: ca.Function, curvature: bool) -> list[ca.Function]:
-    """A function and its Jacobian with its adjoint, and the Jacobian of that.
+def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool) -> Iterator[ca.Function]:
+    """The adjoint of a function, and the Jacobian of that.
 
     Args:
         plain: the function.
@@ -142,10 +166,12 @@ def differentiated(plain: ca.Function, slopes: ca.Function, curvature: bool) -> 
     """
     reverse = plain.reverse(1)
     adjoint = written(reverse, reverse.name())
+    yield adjoint
     if curvature:
-        return [plain, slopes, adjoint, exact_second(plain, slopes, adjoint)]
+        yield exact_second(plain, slopes, adjoint)
+        return
     bare = bare_second(plain, slopes, adjoint)
-    return [plain, slopes, adjoint, written(bare, bare.name())]
+    yield written(bare, bare.name())
 
 
 def written(function: ca.Function, name: str) -> ca.Function:
@@ -168,34 +194,50 @@ def poses_of(model: Model) -> dict[str, ca.Function]:
 
 def _further_outputs(
     model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]
-) -> dict[str, Matrix]:
-    """Poses of sections, efforts and conjugates of actuators by name, in the symbols of the residual."""
-    arguments = model.residual.mx_in()
-    further: dict[str, Matrix] = {}
+) -> dict[str, ca.Function]:
+    """Poses of sections, efforts and conjugates of actuators with their derivatives, by name.
+
+    Each function takes the arguments of the residual, and gives a value and its derivative with each of them.
+    """
+    further: dict[str, ca.Function] = {}
     for rod, abscissae in sections.items():
-        columns = [ca.vertcat(*model.shape[rod](*arguments, X)) for X in abscissae]
-        further[f"sections_{rod}"] = ca.horzcat(*columns)
+        further[f"sections_{rod}"] = _section_poses(model, rod, abscissae)
+    arguments = model.residual.mx_in()
     for actuator in actuators:
         function = model.actuator[actuator]
-        effort, conjugate, _ = function(*arguments)
+        effort, conjugate, by_x = function(*arguments)
         effort_name, conjugate_name, _ = function.name_out()
-        further[f"{effort_name}_{actuator}"] = effort
-        further[f"{conjugate_name}_{actuator}"] = conjugate
+        of_effort = [ca.jacobian(effort, argument) for argument in arguments]
+        of_conjugate = [by_x, *[ca.jacobian(conjugate, argument) for argument in arguments[1:]]]
+        further[f"{effort_name}_{actuator}"] = ca.Function("effort", arguments, [effort, *of_effort])
+        further[f"{conjugate_name}_{actuator}"] = ca.Function("conjugate", arguments, [conjugate, *of_conjugate])
     return further
 
 
-def _stage(model: Model, name: str, further: Mapping[str, Matrix]) -> ca.Function:
+def _section_poses(model: Model, rod: str, abscissae: Sequence[float]) -> ca.Function:
+    """Arguments of the residual ↦ (poses of sections of a rod, 7×k, and their derivatives with each argument)."""
+    discrete = model.discrete
+    x = ca.MX.sym("x", discrete.size)
+    inputs = ca.MX.sym("inputs", discrete.layout.size)
+    system = System(discrete, Arguments(x, inputs))
+    poses = SectionPoses(system, rod, section_weights(discrete, rod, abscissae))
+    others = [inputs, discrete.parameters.symbol] if discrete.parameters.size else [inputs]
+    by_others = [ca.jacobian(ca.vec(poses.stacked), other) for other in others]
+    return ca.Function("poses", [x, *others], [poses.stacked, poses.by_unknowns, *by_others])
+
+
+def _stage(model: Model, name: str, further: Mapping[str, ca.Function]) -> ca.Function:
     arguments = model.residual.mx_in()
     poses = poses_of(model)
     results = [model.residual(*arguments)]
     for pose in poses.values():
         position, quaternion, _ = pose(*arguments)
         results.append(ca.vertcat(position, quaternion))
-    results += further.values()
+    results += [function.call(arguments)[0] for function in further.values()]
     return ca.Function(name, arguments, results, model.residual.name_in(), ["residual", *poses, *further])
 
 
-def _slopes(model: Model, plain: ca.Function, further: Mapping[str, Matrix]) -> ca.Function:
+def _slopes(model: Model, plain: ca.Function, further: Mapping[str, ca.Function]) -> ca.Function:
     """∂ output / ∂ input, output by output, with the model's own Jacobians."""
     arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
@@ -204,8 +246,8 @@ def _slopes(model: Model, plain: ca.Function, further: Mapping[str, Matrix]) -> 
         blocks.append(model.parameter_jacobian(*arguments))
     for pose in poses:
         blocks += pose(*arguments)
-    for output in further.values():
-        blocks += [ca.jacobian(output, argument) for argument in arguments]
+    for function in further.values():
+        blocks += function.call(arguments)[1:]
     return jacobian_of(plain, arguments, blocks)
 
 

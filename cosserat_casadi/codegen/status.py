@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.tubes.status import STATUSES as TUBE_STATUSES
-from cosserat_casadi.codegen.tubes.status import TubeStatus
 from cosserat_casadi.numerics.outcome import Outcome
 
-OUTCOMES = tuple(outcome for outcome in Outcome if outcome is not Outcome.CONTACT_UNSETTLED)
-"""Statuses of the solver in C, in the order of their numbers: it does not look for contact."""
-
-CONTACT_OUTCOMES = tuple(Outcome)
-"""Statuses of the solver of rods in exact contact, in the order of their numbers."""
+Outcomes = tuple[Outcome, ...]
+"""Statuses of a solver in C, in the order of their numbers."""
 
 
-def status_words(names: Names) -> dict[str, str]:
-    """What the templates of the solver say of statuses."""
-    return _status_words(names, OUTCOMES, "SOLVER")
+def _without(*others: Outcome) -> Outcomes:
+    return tuple(outcome for outcome in Outcome if outcome not in others)
 
 
-def contact_status_words(names: Names) -> dict[str, str]:
-    """What the templates of exact contact say of statuses."""
-    return _status_words(names, CONTACT_OUTCOMES, "CONTACT")
+OUTCOMES = _without(Outcome.CONTACT_UNSETTLED, Outcome.OUT_OF_RANGE)
+"""Statuses of the solver of rods, which does not look for contact."""
+
+CONTACT_OUTCOMES = _without(Outcome.OUT_OF_RANGE)
+"""Statuses of the solver of rods in exact contact."""
+
+TUBE_OUTCOMES = _without(Outcome.PATH_VANISHED, Outcome.CONTACT_UNSETTLED)
+"""Statuses of the solver of concentric tubes."""
 
 
-def _status_words(names: Names, statuses: Sequence[Outcome | TubeStatus], prefix: str) -> dict[str, str]:
-    """Statuses of a folder, which sources that are alike in all folders call by a prefix of their own."""
-    symbols = {status: f"{names.macro}_{status.name}" for status in statuses}
+def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOLVER") -> dict[str, str]:
+    """What the templates of a solver say of statuses.
+
+    Args:
+        names: what things are called.
+        outcomes: the statuses.
+        prefix: what sources that are alike in all folders call them by.
+    """
+    symbols = {status: f"{names.macro}_{status.name}" for status in outcomes}
     defined = [f"#define {prefix}_{status.name} {symbol}" for status, symbol in symbols.items()]
     return {
         "status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
@@ -49,11 +54,6 @@ def motion_status_words(names: Names) -> dict[str, str]:
         "motion_text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
         "motion_label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
     }
-
-
-def tube_status_words(names: Names) -> dict[str, str]:
-    """What the templates of concentric tubes say of statuses."""
-    return _status_words(names, TUBE_STATUSES, "SOLVER")
 
 
 def _enumerators(sentences: Mapping[str, str]) -> str:

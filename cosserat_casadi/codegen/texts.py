@@ -9,8 +9,10 @@ from typing import Any
 
 
 def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in."""
-    return fill(resource("templates", template), words)
+    """A template of this package with its words filled in, and the parts that it includes: ``@{include part}``."""
+    text = resource("templates", template)
+    whole = re.sub(r"@\{include (\S+)\}\n", lambda part: resource("templates", part[1]), text)
+    return fill(whole, words)
 
 
 def fill(text: str, words: Mapping[str, Any]) -> str:

@@ -16,6 +16,7 @@ from cosserat_casadi.control.decision_variables import decision_variables
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.control.nearby_inputs import followed
+from cosserat_casadi.equilibrium.answer_error import estimated
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -27,7 +28,14 @@ STARTS = 8
 """Further starts, scattered in the bounds, where the first leaves a gap."""
 
 
-def inverse(model: Model, *, start: Solution | None = None, stable: bool = False, starts: int = STARTS) -> Inverse:
+def inverse(
+    model: Model,
+    *,
+    start: Solution | None = None,
+    stable: bool = False,
+    starts: int = STARTS,
+    estimate_error: bool = True,
+) -> Inverse:
     """Inputs for which a model's equilibrium meets the targets of its scene.
 
     Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds
@@ -40,6 +48,8 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
             once. For loads that have a potential.
         starts: further starts where a gap stays: scattered, by a seed of our own, over the inputs that are bounded on
             both sides; the best end counts. 0 for none.
+        estimate_error: whether the error that modes and nodes leave at the inputs found is estimated; targets count as
+            met where it is within the tolerance too.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
@@ -51,7 +61,10 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
     if start is None:
         start = first_solution(model)
     problem = lifted_problem(model, model.scene.targets, start, stable)
-    return with_verdict(search(problem, start, stable, starts), stable)
+    found = search(problem, start, stable, starts)
+    if estimate_error and found.solution.converged:
+        found = replace(found, solution=estimated(found.solution))
+    return with_verdict(found, stable)
 
 
 def check_targets(targets: tuple[scenes.Target, ...]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
+from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.solution import Solution
 
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
@@ -71,6 +72,8 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
     gaps = target_errors(solution, result.targets)
     result = replace(result, gaps=gaps)
     result = replace(result, met=meets_all(result))
+    if not _missed_by_the_model(result):
+        solution = with_tolerance_note(solution)
     message = solution.message
     if solution.converged:
         # What was asked for comes first: whether the targets are met.
@@ -104,9 +107,14 @@ def _targets_sentence(result: Inverse) -> str:
         misses = "; ".join(_words(gap) for gap in missed)
         sentence = f"The targets are not all met; the closest that was found misses {misses}."
         return sentence + _minimum_sentence(result)
-    if meets_all(result):
-        return "The targets are met."
-    return _model_sentence(result)
+    if _missed_by_the_model(result):
+        return _model_sentence(result)
+    return "The targets are met."
+
+
+def _missed_by_the_model(result: Inverse) -> bool:
+    """Whether these modes and nodes meet every target, but their error is too large for that."""
+    return result.solution.converged and all(_reached(result)) and not meets_all(result)
 
 
 def _minimum_sentence(result: Inverse) -> str:

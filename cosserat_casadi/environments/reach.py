@@ -11,14 +11,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.codegen.plain import vector
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
@@ -113,13 +116,12 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
         described = (scene if isinstance(scene, Scene) else read_scene(Path(scene))).baked()
         self.rod = _rod_name(described, rod)
-        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
+        self.model = build(described, solve_rods(described).model.discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
         self._moves = _moving_entries(self.model)
         self._late = self._moves[self._acting.indices]
         self.library = _compiled(self.model)
-        self._outputs = motion_outputs(self.model)
-        self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
+        self._seen = _seen_function(self.model, self.rod)
         self._length = next(entry.length for entry in described.rods if entry.name == self.rod)
         self.period = period
         self._steps = int(np.ceil(period / step - 1e-9))
@@ -149,7 +151,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         target = (options or {}).get("target")
         chosen = self._random_target() if target is None else _finite(target, 3, "target")
         self._episode = self._begun(self.model.pack(), chosen)
-        return self._observation(), self._info("")
+        tip = self._tip()
+        return self._observation(tip), self._info(tip, "")
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Move the inputs to where an action says, over one control period.
@@ -169,16 +172,18 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         episode.inputs_rate = np.where(self._moves, episode.inputs_rate, asked_rate)
         episode.aimed = aimed
         episode.periods += 1
-        for _ in range(self._steps):
-            path = episode.inputs, episode.inputs_rate, acceleration
-            taken = self.library.step(episode.state, self.dt, *path, memory=episode.memory)
-            if not taken.done:
-                return self._observation(), self._reward(), True, False, self._info(taken.status.value)
-            episode.state = taken.state
-            episode.inputs = episode.inputs + self.dt * (episode.inputs_rate + self.dt / 2.0 * acceleration)
-            episode.inputs_rate = episode.inputs_rate + self.dt * acceleration
+        path = episode.inputs, episode.inputs_rate, acceleration
+        taken, inputs, rates = self.library.steps(episode.state, self.dt, self._steps, *path, memory=episode.memory)
+        episode.state = taken.state
+        episode.inputs = inputs
+        episode.inputs_rate = rates
+        # It is evaluated once: observation, reward and info share it.
+        tip = self._tip()
+        reward = -self._distance(tip) / self._length
+        if not taken.done:
+            return self._observation(tip), reward, True, False, self._info(tip, taken.status.value)
         truncated = episode.periods >= self._periods
-        return self._observation(), self._reward(), False, truncated, self._info("")
+        return self._observation(tip), reward, False, truncated, self._info(tip, "")
 
     def _begun(self, inputs: FloatArray, target: FloatArray) -> _Episode:
         """At rest, in the equilibrium of some inputs."""
@@ -215,22 +220,18 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         """Position and velocity of the tip, m and m/s, shape (6,)."""
         episode = self._episode
         state = episode.state
-        outputs = self._outputs.function(state.x, state.v, episode.inputs, episode.inputs_rate)
-        return np.asarray(outputs.full().ravel()[self._seen])
+        return np.asarray(self._seen(state.x, state.v, episode.inputs, episode.inputs_rate).full().ravel())
 
-    def _observation(self) -> Observation:
+    def _observation(self, tip: FloatArray) -> Observation:
         episode = self._episode
         actions = self._share(episode.aimed)[self._late]
-        return np.concatenate([self._tip(), self._share(episode.inputs), actions, episode.target])
+        return np.concatenate([tip, self._share(episode.inputs), actions, episode.target])
 
-    def _distance(self) -> float:
-        return float(np.linalg.norm(self._tip()[:3] - self._episode.target))
+    def _distance(self, tip: FloatArray) -> float:
+        return float(np.linalg.norm(tip[:3] - self._episode.target))
 
-    def _reward(self) -> float:
-        return -self._distance() / self._length
-
-    def _info(self, status: str) -> dict[str, Any]:
-        return {"status": status, "distance": self._distance()}
+    def _info(self, tip: FloatArray, status: str) -> dict[str, Any]:
+        return {"status": status, "distance": self._distance(tip)}
 
 
 def _rod_name(scene: Scene, rod: str | None) -> str:
@@ -254,10 +255,14 @@ def _finite(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     return numbers
 
 
-def _seen_entries(names: list[str], rod: str) -> list[int]:
-    """Entries of the outputs that are position and velocity of the tip."""
+def _seen_function(model: Model, rod: str) -> ca.Function:
+    """(x, v, inputs, inputs_rate) ↦ position and velocity of the tip, 6×1: each call is one step of an episode."""
+    outputs = motion_outputs(model)
+    names = [output.name for output in outputs.entries]
     wanted = [f"{rod}.tip.{quantity}.{axis}" for quantity in ("position", "velocity") for axis in "xyz"]
-    return [names.index(name) for name in wanted]
+    arguments = outputs.function.mx_in()
+    seen = outputs.function.call(arguments)[0][[names.index(name) for name in wanted]]
+    return kernel(model, ca.Function("seen", arguments, [seen]), "seen")
 
 
 def _acting_inputs(model: Model) -> DecisionVariables:
@@ -289,4 +294,6 @@ def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
 
 def _compiled(model: Model) -> Compiled:
     with tempfile.TemporaryDirectory() as folder:
-        return load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+        library = load(export(model, Path(folder) / "robot", "robot", dynamics=True, estimate_errors=False))
+    assert isinstance(library, Compiled)
+    return library

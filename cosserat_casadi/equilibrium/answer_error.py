@@ -20,7 +20,7 @@ from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES
-from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SAFETY = 1.1
@@ -34,6 +34,12 @@ MOST_STEPS = 6
 
 SETTLED = 0.2
 """Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
+
+CONTRACTING = 0.5
+"""Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""
+
+SHORTEST = 1e-10
+"""Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
 
 FASTEST = 0.02
 """Smallest ratio of the errors with and without two more modes that is believed."""
@@ -78,30 +84,37 @@ class Correction:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
         change: of what is watched.
+        contracts: whether the missing modes moved by at most half of their step before. A wall that they run into is
+            not in their stiffness: then they bounce, and what is watched may settle by chance.
         settled: whether the correction before it gave about the same change.
     """
 
     known: FloatArray
     missing: FloatArray
     change: float
+    contracts: bool = True
     settled: bool = False
 
 
 def with_error_estimate(solution: Solution) -> Solution:
-    """A solution with the estimates of its errors; as it is where it is no equilibrium.
+    """A solution with the estimates of its errors, told where they are above the tolerance.
 
-    The estimate of a solution that has one stays: it was made with more care.
+    A solution that is no equilibrium stays as it is, and so does one that has an estimate: it was made with more care.
     """
     if not solution.converged or solution.error_estimate is not None:
         return solution
+    return with_tolerance_note(estimated(solution))
+
+
+def estimated(solution: Solution) -> Solution:
+    """An equilibrium with the estimates of its errors, its message as it is."""
     error = answer_error(solution)
-    estimated = replace(
+    return replace(
         solution,
         error_estimate=error.watched,
         shape_error_estimate=error.shape,
         wrench_error_estimate=error.wrench,
     )
-    return with_tolerance_note(estimated)
 
 
 def with_tolerance_note(solution: Solution) -> Solution:
@@ -125,7 +138,8 @@ def _tolerance_note(solution: Solution) -> str:
 
 def remedy(solution: Solution) -> str:
     """What brings an answer above the tolerance below it."""
-    if solution.model.scene.accuracy.fixed:
+    accuracy = solution.model.scene.accuracy
+    if accuracy.fixed and not accuracy.chosen_for:
         return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
     return "the modes were chosen for other inputs: choose them for the range of these inputs."
 
@@ -140,11 +154,28 @@ def answer_error(solution: Solution) -> AnswerError:
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
     rest = _rest_of_series(solution, correction)
-    watched = SAFETY * (correction.change + rest) + ROUNDING
+    watched = _with_safety(correction.change + rest)
     corrected = _richer_answer(solution, correction)
-    shape = SAFETY * (_shape_change(solution, corrected) + rest) + ROUNDING
-    wrench = SAFETY * _wrench_change(solution, corrected, correction) + ROUNDING
+    shape = _with_safety(_shape_change(solution, corrected) + rest)
+    wrench = _with_safety(_wrench_change(solution, corrected, correction))
     return AnswerError(watched, max(shape, watched), wrench)
+
+
+def watched_error(solution: Solution) -> float:
+    """Estimate the error of what is watched alone, at less cost.
+
+    Args:
+        solution: a converged one, at any inputs and parameters.
+    """
+    believed, correction = believed_correction(solution)
+    if not believed:
+        return UNKNOWN
+    return _with_safety(correction.change + _rest_of_series(solution, correction))
+
+
+def _with_safety(change: float) -> float:
+    """The estimate that a change by a richer model stands for."""
+    return SAFETY * change + ROUNDING
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
@@ -158,9 +189,9 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                if abs(correction.change - before) <= SETTLED * correction.change:
+                if correction.contracts and abs(correction.change - before) <= SETTLED * correction.change:
                     return True, replace(correction, settled=True)
-                if correction.change <= enough:
+                if correction.contracts and correction.change <= enough:
                     return True, correction
                 before = correction.change
     return False, correction
@@ -172,19 +203,34 @@ def enough_for(tolerance: float) -> float:
 
 
 def _sweeps(solution: Solution) -> Iterator[Correction]:
-    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow."""
+    """Corrections by elastic steps of the missing modes, which the unknowns of the answer follow.
+
+    They end with the first step of the missing modes that does not contract.
+    """
     model = solution.model
     inputs = solution.inputs
     inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
+    before = None
     for _ in range(MOST_SWEEPS):
         step, missing_step, _ = balance_lacks(solution, known, missing)
+        if before is not None and not _contracts(before, missing_step):
+            return
         known = known + step
         missing = missing + missing_step
-        _, _, residual = balance_lacks(solution, known, missing)
+        _, next_step, residual = balance_lacks(solution, known, missing)
         known = known - inverse @ residual
-        yield _corrected(solution, known, missing)
+        # What the missing modes would do next tells of the first step whether they bounce.
+        contracts = before is not None or _contracts(missing_step, next_step)
+        yield _corrected(solution, known, missing, contracts=contracts)
+        before = missing_step
+
+
+def _contracts(before: FloatArray, step: FloatArray) -> bool:
+    """Whether a step of the missing modes is at most half as long as the one before it, or rounding."""
+    longest = max(CONTRACTING * float(np.linalg.norm(before)), SHORTEST)
+    return bool(np.linalg.norm(step) <= longest)
 
 
 def balance_lacks(
@@ -203,13 +249,18 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
     model = solution.model.richer
     unknowns = np.zeros(model.size)
     unknowns[richer.known] = solution.x
+    before = None
     for _ in range(MOST_STEPS):
         residual = column(model.path_residual(unknowns, solution.inputs, 1.0))
         jacobian = model.path_jacobian(unknowns, solution.inputs, 1.0).full()
         if not np.all(np.isfinite(jacobian)):
             return
-        unknowns = unknowns - regular_inverse(jacobian) @ residual
-        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known])
+        step = -regular_inverse(jacobian) @ residual
+        unknowns = unknowns + step
+        missing_step = step[~richer.known]
+        contracts = before is not None and _contracts(before, missing_step)
+        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known], contracts=contracts)
+        before = missing_step
 
 
 def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -> float:
@@ -218,8 +269,8 @@ def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -
     return float(np.max(changes))
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
-    return Correction(known, missing, largest_change(solution, known, missing))
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
+    return Correction(known, missing, largest_change(solution, known, missing), contracts)
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
@@ -289,11 +340,3 @@ def _relative_change(values: FloatArray, difference: FloatArray, least: float = 
     """Size of a difference relative to that of the values, or to the least size that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return float(np.linalg.norm(difference)) / size
-
-
-def regular_inverse(matrix: FloatArray) -> FloatArray:
-    """The inverse, with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
-    left, singular, right = np.linalg.svd(matrix)
-    largest = float(singular.max(initial=0.0))
-    regular = np.where(singular <= SINGULAR * largest, largest, singular)
-    return np.asarray((right.T / regular) @ left.T)

@@ -6,6 +6,7 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
@@ -18,6 +19,30 @@ from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
 FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
+
+
+class PathFunctions(Protocol):
+    """The functions of a model, of rods or of concentric tubes, that a path of equilibria needs."""
+
+    @property
+    def path_residual(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ residual."""
+
+    @property
+    def path_jacobian(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ its derivative with x."""
+
+    @property
+    def path_rate(self) -> ca.Function:
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ its rate at fixed x."""
+
+    @property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a step, shape (size,)."""
+
+    @property
+    def is_assembly(self) -> bool:
+        """Whether the Jacobian is solved with as a sparse matrix."""
 
 
 def continuation_limits(model: Model) -> ContinuationSettings:
@@ -61,12 +86,12 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
         rate,
         start=model.unloaded(),
         tangent=column(model.path_tangent(*given)),
-        step_weights=step_weights(model),
+        step_weights=model.step_weights,
         first_step=first_step(model),
     )
 
 
-def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
+def input_path(model: PathFunctions, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
     """The path from an equilibrium of the scene to other inputs, on the straight line between them.
 
     Args:
@@ -96,7 +121,7 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
         dg_dt = model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate)
         return column(dg_dt)
 
-    return Path(residual, jacobian, rate, start, step_weights=step_weights(model))
+    return Path(residual, jacobian, rate, start, step_weights=model.step_weights)
 
 
 def first_step(model: Model) -> float:
@@ -106,14 +131,9 @@ def first_step(model: Model) -> float:
     return 1.0
 
 
-def step_weights(model: Model) -> FloatArray:
-    """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces otherwise."""
-    return model.discrete.unknowns.step_weights
-
-
-def _solvable(model: Model, jacobian: ca.DM) -> Jacobian:
+def _solvable(model: PathFunctions, jacobian: ca.DM) -> Jacobian:
     """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
-    if model.discrete.is_assembly:
+    if model.is_assembly:
         return jacobian
     return np.asarray(jacobian.full())
 

@@ -19,6 +19,7 @@ from cosserat_casadi.equilibrium.contact.solve import solve_contact
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
+from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solution import Solution
@@ -167,7 +168,7 @@ def solve(
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if estimate_error:
-        solution = with_error_estimate(solution)
+        solution = with_locking_note(with_error_estimate(solution))
     if raise_on_failure and not solution.converged:
         raise SolveError(solution.message)
     return solution

@@ -5,7 +5,7 @@ These numbers are stacked as the solver in C has them: inputs, and the parameter
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import Knowledge
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.identification.unknowns import UnknownLayout
+from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
@@ -49,28 +49,31 @@ def check_unknowns(scene: scenes.Scene) -> None:
         problems.append(Problem("unknowns", "missing", "name what is to be felt"))
     for i, unknown in enumerate(scene.unknowns):
         where = f"unknowns[{i}]"
-        if not unknown.per_row:
-            problem = f"{unknown.name} is the same in all rows; an estimate finds what differs from row to row"
-            remedy = "give an input per_row = true; find what is shared with cosserat identify --write before"
+        if not unknown.per_row and unknown.prior is None:
+            problem = f"{unknown.name} is the same in all rows, and nothing is known of it beforehand"
+            remedy = "give it a prior, or per_row = true; or find it with cosserat identify --write before"
             problems.append(Problem(where, problem, remedy))
         elif unknown.name.endswith("quaternion"):
             remedy = "find it with cosserat identify"
             problems.append(Problem(where, "an orientation is not estimated row by row", remedy))
+    if scene.unknowns and not any(unknown.per_row for unknown in scene.unknowns):
+        remedy = "give an input per_row = true, or find what all rows share with cosserat identify"
+        problems.append(Problem("unknowns", "none differs from row to row", remedy))
     if problems:
         raise SceneError(*problems)
 
 
-def row_parameters(scene: scenes.Scene) -> tuple[str, ...]:
-    """Parameters that each row has for itself."""
+def unknown_parameters(scene: scenes.Scene) -> tuple[str | tuple[str, ...], ...]:
+    """Parameters that are unknown, in each row or in all."""
     return tuple(unknown.parameter for unknown in scene.unknowns if unknown.parameter is not None)
 
 
-def with_row_parameters(model: Model) -> Model:
-    """The model with these parameters alone: what all rows share is a constant of it."""
-    wanted = row_parameters(model.scene)
+def with_unknown_parameters(model: Model) -> Model:
+    """The model with these parameters alone: what is known is a constant of it."""
+    wanted = unknown_parameters(model.scene)
     if not wanted:
         return model.at()
-    if model.parameters.names == wanted:
+    if model.scene.parameters == wanted:
         return model
     return build(model.scene.model_copy(update={"parameters": wanted}), model.discretisation)
 
@@ -105,15 +108,15 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
         raise SceneError(*problems.values())
 
 
-def stacked_indices(layout: UnknownLayout, inputs: int) -> list[int]:
-    """Places of the numbers that are found among the stacked inputs and the parameters behind them.
+def stacked_indices(entries: Sequence[UnknownEntry], inputs: int) -> list[int]:
+    """Places of numbers that are found among the stacked inputs and the parameters behind them.
 
     Args:
-        layout: of the unknowns.
+        entries: the unknowns.
         inputs: size of the stacked inputs.
     """
     found = []
-    for entry in layout.own:
+    for entry in entries:
         first = 0 if entry.of_input else inputs
         found += (first + entry.indices).tolist()
     return found
@@ -126,13 +129,32 @@ def of_parameters(layout: UnknownLayout) -> list[int]:
 
 
 def knowledge_of(layout: UnknownLayout) -> Knowledge:
-    """What a scene says of its unknowns beforehand: bounds, priors, typical sizes."""
+    """What a scene says beforehand of the unknowns of each row: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
     # What is known beforehand says best what is much and what is little.
     deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
     sizes = np.where(limits.weight > 0.0, deviations, typical)
     return Knowledge(limits.lower, limits.upper, limits.mean, limits.weight, sizes)
+
+
+def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
+    """What is known of a row's own unknowns, and of those that all rows share where these are held.
+
+    Args:
+        known: of the row's own.
+        shared: values of the others, shape (q,).
+    """
+    # The cost of their priors is counted once, not for each row.
+    nothing = np.zeros_like(shared)
+    sizes = np.where(shared != 0.0, np.abs(shared), 1.0)
+    return Knowledge(
+        lower=np.concatenate([known.lower, shared]),
+        upper=np.concatenate([known.upper, shared]),
+        mean=np.concatenate([known.mean, nothing]),
+        weight=np.concatenate([known.weight, nothing]),
+        size=np.concatenate([known.size, sizes]),
+    )
 
 
 def expected_values(known: Knowledge, values: FloatArray) -> FloatArray:
@@ -150,7 +172,8 @@ def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatAr
         inputs: of all measured cases, shape (cases, inputs).
     """
     known = knowledge_of(layout)
-    indices = stacked_indices(layout, cases.inputs.size)
+    indices = stacked_indices(layout.own, cases.inputs.size)
+    of_shared = stacked_indices(layout.shared, cases.inputs.size)
     has_prior = known.weight > 0.0
     # Parameters have bounds, whatever is known of them.
     is_parameter = np.isin(np.arange(len(indices)), of_parameters(layout))
@@ -158,6 +181,7 @@ def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatAr
     for k in range(DRAWS):
         row = cases.default.copy()
         row[: cases.inputs.size] = inputs[rng.integers(len(inputs))]
+        row[of_shared] = layout.shared_limits.mean
         signs = rng.choice([-1.0, 1.0], len(indices)) if k else np.zeros(len(indices))
         expected = expected_values(known, row[indices])
         deviations = np.where(has_prior, known.size, np.where(is_parameter, known.upper - known.lower, 0.0))

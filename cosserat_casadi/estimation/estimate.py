@@ -10,20 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import tune
+from cosserat_casadi.accuracy.choose import choose
+from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
     EstimatorLibrary,
     Knowledge,
     MeasuredCases,
-    estimator_library,
 )
 from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
@@ -32,15 +32,20 @@ from cosserat_casadi.estimation.beforehand import (
     expected_values,
     knowledge_of,
     of_parameters,
-    row_parameters,
     stacked_indices,
-    with_row_parameters,
+    unknown_parameters,
+    with_shared,
+    with_unknown_parameters,
 )
+from cosserat_casadi.estimation.consistency import Consistency, consistency
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
-from cosserat_casadi.estimation.stacking import differences, sections_of, stacked
+from cosserat_casadi.estimation.posterior import Sampled, sampled
+from cosserat_casadi.estimation.row_library import row_library
+from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
+from cosserat_casadi.estimation.stacking import sections_of, sensor_names, stacked
 from cosserat_casadi.identification.cases import Data, read_cases
-from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
+from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
@@ -52,9 +57,6 @@ CHUNK = 256
 
 CHECKED = 3
 """Cases that are solved again on a finer discretisation."""
-
-POOR = 2.0
-"""Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
 
 TOLD = 3
 """Cases that a sentence names."""
@@ -73,53 +75,55 @@ def estimate(
     """What explains each measured case of a model's scene best.
 
     Args:
-        model: of a scene with measurements, whose unknowns are ``per_row``: ``build(scene.with_unknowns())``.
+        model: of a scene with measurements, whose unknowns are ``per_row`` or have priors:
+            ``build(scene.with_unknowns())``.
         data: columns by measurement, by its name or its file, that stand for the file.
         cores: threads, at least 1; those of this machine by default.
         progress: told what is being done.
 
     Raises:
-        SceneError: a table is refused, an unknown is not found anew in each row, or the scene refuses a parameter that
-            is between its bounds.
+        SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
+            that is between its bounds.
         ExportError: there is no C compiler, or it fails.
     """
     report = progress or _ignore
     check_unknowns(model.scene)
-    model = with_row_parameters(model)
+    model = with_unknown_parameters(model)
     layout = unknown_layout(model)
     check_ranges(model, layout)
     cases = read_cases(model.scene, model.inputs, data)
-    labels = layout.own_labels
-    indices = stacked_indices(layout, model.inputs.size)
+    indices = stacked_indices((*layout.own, *layout.shared), model.inputs.size)
+    own = len(layout.own_labels)
     sections = sections_of(model, cases)
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
-    table.inputs[:, indices] = expected_values(known, table.inputs[:, indices])
-    report("Compiling", 0, 0)
-    library = estimator_library(model, differences(model, sections, indices, table.at), indices)
+    table.inputs[:, indices[:own]] = expected_values(known, table.inputs[:, indices[:own]])
+    report("Writing and compiling", 0, 0)
+    library = row_library(model, sections, indices, table.at)
     tables = start_tables(table, layout, indices, model.scene)
-    runs = _found(library, tables, known, cores or available_cores(), report)
-    found = runs[0]
-    second = None
-    if len(runs) > 1:
-        found, second = best_of(runs)
-    told = what_is_known(found, known, labels)
+    search = Search(library, tables, known, indices, cores or available_cores(), report)
+    (found, second), shared, added = _rows_and_shared(search, layout)
+    told = what_is_known(found.first(own), known, layout.own_labels)
+    covariance = told.covariance
+    drawn = None
+    if model.scene.estimation.draws:
+        drawn = search.sampled(found, covariance, model.scene.estimation.draws)
+        covariance = np.where(drawn.sound[:, None, None], drawn.covariance, covariance)
     outcomes = []
     for ending, determined in zip(found.outcome.tolist(), told.determined.tolist(), strict=True):
         undetermined = ending == 0 and not determined
         outcomes.append(NOT_DETERMINED if undetermined else ENDINGS[ending])
-    values = np.where(told.determined[:, None], found.unknowns, np.nan)
+    values = np.where(told.determined[:, None], found.unknowns[:, :own], np.nan)
     inputs = table.inputs.copy()
-    inputs[:, indices] = values
-    units = tuple(entry.unit for entry in layout.own for _ in entry.labels)
+    inputs[:, indices] = np.where(told.determined[:, None], found.unknowns, np.nan)
     result = Estimate(
         model=model,
         cases=tuple(case.where for case in cases),
-        labels=labels,
-        units=units,
+        labels=layout.own_labels,
+        units=_units(layout.own),
         outcomes=tuple(outcomes),
         values=values,
-        covariance=told.covariance,
+        covariance=covariance + added,
         cost=found.cost,
         numbers=np.count_nonzero(table.weights, axis=1),
         x=found.x,
@@ -127,8 +131,124 @@ def estimate(
         parameters=inputs[:, model.inputs.size :],
         second=second,
         unseen=told.unseen,
+        shared=shared,
+        consistency=_consistency(found, table, layout, shared, sensor_names(model, sections, table.at)),
     )
-    return replace(result, warnings=tuple(_remarks(result, table.weights, known)))
+    return replace(result, warnings=tuple(_remarks(result, known, drawn)))
+
+
+def _units(entries: Sequence[UnknownEntry]) -> tuple[str, ...]:
+    """Unit of every number that is found."""
+    return tuple(entry.unit for entry in entries for _ in entry.labels)
+
+
+def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, SharedNumbers | None, FloatArray]:
+    """The rows; what they share; and what the uncertainty of that adds to their covariances."""
+    if not layout.shared:
+        return search.rows(np.zeros(0)), None, np.zeros(())
+    names = SharedLabels(layout.shared_labels, _units(layout.shared))
+    limits = (search.known.lower, search.known.upper)
+    return find_shared(search.rows, layout.shared_limits, names, limits)
+
+
+def _consistency(
+    found: Estimates,
+    table: MeasuredCases,
+    layout: UnknownLayout,
+    shared: SharedNumbers | None,
+    sensors: Sequence[str],
+) -> Consistency:
+    """How well the rows that were found go together with the model."""
+    rows = found.outcome == 0
+    priors = int(np.count_nonzero(layout.own_limits.weight))
+    freedom = np.count_nonzero(table.weights, axis=1) + priors - len(layout.own_labels)
+    squares = np.where(rows, 2 * found.cost, np.nan)
+    residuals: dict[str, list[FloatArray]] = {}
+    for column, name in enumerate(sensors):
+        measured = rows & (table.weights[:, column] > 0.0)
+        residuals.setdefault(name, []).append(found.residuals[measured, column])
+    of_shared = 0.0
+    if shared is not None:
+        of_shared = float(np.sum(layout.shared_limits.residual(shared.values) ** 2))
+    by_sensor = {name: np.concatenate(values) for name, values in residuals.items()}
+    return consistency(squares, freedom, of_shared, by_sensor)
+
+
+@dataclass(frozen=True)
+class Search:
+    """The search for all rows, on all cores.
+
+    Attributes:
+        library: the solver in C.
+        tables: the cases, each with the values from which the searches begin.
+        known: what is known beforehand of the numbers of each row.
+        indices: places of these numbers, and of the shared ones behind them, in a row of the inputs.
+        cores: threads.
+        report: told how many rows are found.
+    """
+
+    library: EstimatorLibrary
+    tables: Sequence[MeasuredCases]
+    known: Knowledge
+    indices: Sequence[int]
+    cores: int
+    report: Progress
+
+    @property
+    def own(self) -> int:
+        """How many numbers are found in each row."""
+        return len(self.known.mean)
+
+    def rows(self, shared: FloatArray) -> Searched:
+        """The best of each row where the shared numbers have these values, and what else was found."""
+        known = with_shared(self.known, shared)
+        tables = [self._starting(table, shared) for table in self.tables]
+        runs = _found(self.library, tables, known, self.cores, self.report)
+        if len(runs) > 1:
+            return best_of(runs, self.own)
+        return runs[0], None
+
+    def _starting(self, table: MeasuredCases, shared: FloatArray) -> MeasuredCases:
+        inputs = table.inputs.copy()
+        inputs[:, list(self.indices[self.own :])] = shared
+        return replace(table, inputs=inputs)
+
+    def sampled(self, found: Estimates, covariance: FloatArray, draws: int) -> Sampled:
+        """Mean squared deviations by draws around what was found; NaN where it was not, or is not determined.
+
+        Args:
+            found: the rows.
+            covariance: of the linearised model, shape (cases, k, k).
+            draws: in each round.
+        """
+        rows = np.flatnonzero(np.isfinite(covariance[:, 0, 0]))
+        result = Sampled(np.full_like(covariance, np.nan), np.zeros(len(covariance)))
+        chunks = [rows[first : first + CHUNK] for first in range(0, len(rows), CHUNK)]
+        done = 0
+        with ThreadPoolExecutor(self.cores) as pool:
+            parts = pool.map(lambda chunk: self._sampled_chunk(found, covariance[chunk], chunk, draws), chunks)
+            for chunk, part in zip(chunks, parts, strict=True):
+                result.covariance[chunk] = part.covariance
+                result.effective[chunk] = part.effective
+                done += len(chunk)
+                self.report("Drawing from posteriors", done, len(rows))
+        return result
+
+    def _sampled_chunk(
+        self, found: Estimates, covariance: FloatArray, rows: npt.NDArray[np.int64], draws: int
+    ) -> Sampled:
+        table = self.tables[0].part(rows)
+        unknowns = found.unknowns[rows]
+        inputs = table.inputs.copy()
+        inputs[:, list(self.indices)] = unknowns
+        # The shared numbers are the same in all rows.
+        known = with_shared(self.known, unknowns[0, self.own :])
+
+        def costs(steps: FloatArray) -> FloatArray:
+            held = np.zeros((*steps.shape[:2], len(self.indices) - self.own))
+            return self.library.costs(table, inputs, found.x[rows], known, np.concatenate([steps, held], axis=2))
+
+        return sampled(costs, found.cost[rows], covariance, draws)
 
 
 def estimate_scene(
@@ -144,7 +264,7 @@ def estimate_scene(
     discretisation that tells their error.
 
     Args:
-        scene: with measurements, whose unknowns are ``per_row``.
+        scene: with measurements, whose unknowns are ``per_row`` or have priors.
         data: as in :func:`estimate`.
         cores: as there.
         progress: as there.
@@ -156,7 +276,7 @@ def estimate_scene(
     report = progress or _ignore
     refuse_tubes(scene)
     check_unknowns(scene)
-    completed = scene.with_unknowns().model_copy(update={"parameters": row_parameters(scene)})
+    completed = scene.with_unknowns().model_copy(update={"parameters": unknown_parameters(scene)})
     draft = build(completed)
     # All that is refused is refused before time is spent on a discretisation.
     layout = unknown_layout(draft)
@@ -166,7 +286,7 @@ def estimate_scene(
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
         expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
-        completed = tune(completed, list(expected)).scene
+        completed = choose(completed, cases=list(expected)).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 
@@ -214,19 +334,7 @@ def _found(
             done += len(part.outcome)
             report("Estimating", done, count * len(tables))
     each = len(chunks)
-    return [_joined(found[first : first + each]) for first in range(0, len(found), each)]
-
-
-def _joined(parts: Sequence[Estimates]) -> Estimates:
-    """Chunks of cases as one."""
-    return Estimates(
-        outcome=np.concatenate([part.outcome for part in parts]),
-        iterations=np.concatenate([part.iterations for part in parts]),
-        cost=np.concatenate([part.cost for part in parts]),
-        unknowns=np.vstack([part.unknowns for part in parts]),
-        information=np.vstack([part.information for part in parts]),
-        x=np.vstack([part.x for part in parts]),
-    )
+    return [Estimates.joined(found[first : first + each]) for first in range(0, len(found), each)]
 
 
 def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | None]]:
@@ -243,11 +351,11 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
         scene = model.scene
         if model.parameters.size:
             scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
-        solution = solve_scene(scene, model.inputs.unpack(result.inputs[row]))
+        solution = solve_rods(scene, model.inputs.unpack(result.inputs[row]))
         yield row, solution.error_estimate if solution.converged else None
 
 
-def _remarks(result: Estimate, weights: FloatArray, known: Knowledge) -> Iterator[str]:
+def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Iterator[str]:
     """What a user must know of what was found."""
     for outcome, reason in REASONS.items():
         rows = [case for case, word in zip(result.cases, result.outcomes, strict=True) if word == outcome]
@@ -265,13 +373,16 @@ def _remarks(result: Estimate, weights: FloatArray, known: Knowledge) -> Iterato
             f"{len(doubtful)} of {seen} rows have another explanation nearly as good, told as the second best: "
             f"{_named(doubtful)}. Values and deviations there are those of the best alone."
         )
-    measured = max(1, int(np.count_nonzero(weights[result.found])))
-    rms = float(np.sqrt(2.0 * np.sum(result.cost[result.found]) / measured))
-    if rms > POOR:
-        yield (
-            f"The residuals are {rms:.3g} standard deviations (rms): the model does not explain the data to the "
-            "accuracy that sigma states."
-        )
+    if drawn is not None:
+        poor = np.count_nonzero(result.found & ~drawn.sound)
+        if poor:
+            yield (
+                f"Too few draws hit the posterior in {poor} of {seen} rows: deviations there are those of the "
+                "linearised model. Give [estimation] more draws."
+            )
+    if result.shared is not None and not result.shared.settled:
+        yield "What all rows share was not found to its end: its value and deviation may be off."
+    yield from result.consistency.sentences(result.cases)
 
 
 def _named(rows: Sequence[str]) -> str:

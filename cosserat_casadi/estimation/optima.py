@@ -54,21 +54,22 @@ def spread_starts(lower: FloatArray, upper: FloatArray, count: int) -> FloatArra
     return lower + np.column_stack(columns) * (upper - lower)
 
 
-def best_of(runs: Sequence[Estimates]) -> tuple[Estimates, SecondBest]:
+def best_of(runs: Sequence[Estimates], own: int) -> tuple[Estimates, SecondBest]:
     """The best minimum of each row out of several searches, and what else they found.
 
     Args:
         runs: searches for the same cases, each from other values.
+        own: how many numbers are found in each row; those behind them are held.
     """
-    cases, k = runs[0].unknowns.shape
+    cases = len(runs[0].outcome)
     rows = np.arange(cases)
     found = np.array([run.outcome == 0 for run in runs])
     costs = np.where(found, [run.cost for run in runs], np.inf)
     order = np.argsort(costs, axis=0, kind="stable")
-    ranked = [_chosen(runs, chosen) for chosen in order]
+    ranked = [Estimates.chosen(runs, chosen) for chosen in order]
     best = ranked[0]
     minima: list[tuple[Estimates, npt.NDArray[np.bool_]]] = []
-    second = np.full((cases, k), np.nan)
+    second = np.full((cases, own), np.nan)
     second_cost = np.full(cases, np.nan)
     mass = np.zeros(cases)
     for rank, run in enumerate(ranked):
@@ -76,25 +77,12 @@ def best_of(runs: Sequence[Estimates]) -> tuple[Estimates, SecondBest]:
         for earlier, counted in minima:
             is_new &= ~(counted & (_distance(run, earlier) < SAME))
         is_second = is_new & np.isnan(second_cost) & (rank > 0)
-        second[is_second] = run.unknowns[is_second]
+        second[is_second] = run.unknowns[is_second, :own]
         second_cost[is_second] = run.cost[is_second]
-        mass[is_new] += np.exp(_log_mass(run, is_new) - _log_mass(best, is_new))
+        mass[is_new] += np.exp(_log_mass(run, is_new, own) - _log_mass(best, is_new, own))
         minima.append((run, is_new))
     share = np.divide(1.0, mass, out=np.full(cases, np.nan), where=mass > 0.0)
     return best, SecondBest(second, second_cost, share)
-
-
-def _chosen(runs: Sequence[Estimates], chosen: npt.NDArray[np.int64]) -> Estimates:
-    """Each case from the run that is chosen for it."""
-    rows = np.arange(len(chosen))
-    return Estimates(
-        outcome=np.array([run.outcome for run in runs])[chosen, rows],
-        iterations=np.array([run.iterations for run in runs])[chosen, rows],
-        cost=np.array([run.cost for run in runs])[chosen, rows],
-        unknowns=np.array([run.unknowns for run in runs])[chosen, rows],
-        information=np.array([run.information for run in runs])[chosen, rows],
-        x=np.array([run.x for run in runs])[chosen, rows],
-    )
 
 
 def _distance(one: Estimates, other: Estimates) -> FloatArray:
@@ -104,8 +92,8 @@ def _distance(one: Estimates, other: Estimates) -> FloatArray:
     return np.sqrt(np.maximum(squares, 0.0))
 
 
-def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_]) -> FloatArray:
+def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_], own: int) -> FloatArray:
     """Logarithm of the posterior mass around the minima of some rows, but for a constant: that of Laplace."""
-    _, log_determinant = np.linalg.slogdet(run.information[rows])
+    _, log_determinant = np.linalg.slogdet(run.information[rows, :own, :own])
     mass: FloatArray = -run.cost[rows] - log_determinant / 2.0
     return mass

@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, Knowledge
+from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.estimation.optima import SecondBest
+from cosserat_casadi.estimation.shared import SharedNumbers
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -45,7 +47,8 @@ class Estimate:
         units: of these.
         outcomes: how each case ended: ``found``, or why not, see :data:`REASONS`.
         values: the maxima a posteriori, shape (cases, k); NaN where nothing was found.
-        covariance: shape (cases, k, k); likewise.
+        covariance: shape (cases, k, k); likewise; what is not known of the shared numbers is in it. By draws it holds
+            the mean products of deviations from the values.
         cost: half the sum of squares in squared standard deviations, shape (cases,).
         numbers: how many were measured in each case, shape (cases,).
         x: the equilibria, shape (cases, size).
@@ -53,6 +56,8 @@ class Estimate:
         parameters: stacked parameters of each, shape (cases, parameters); often none.
         second: what else explains the rows; None where one search was made for each.
         unseen: directions that the data do not see, in words, with the number of cases in which that is so.
+        consistency: how well data, priors and model go together.
+        shared: what all rows share; None where nothing of that is unknown.
         checked: cases solved again on a finer discretisation: number of the case, estimated error.
         warnings: sentences on what looks wrong.
     """
@@ -71,6 +76,8 @@ class Estimate:
     parameters: FloatArray
     second: SecondBest | None
     unseen: dict[str, int]
+    consistency: Consistency
+    shared: SharedNumbers | None = None
     checked: tuple[tuple[int, float | None], ...] = ()
     warnings: tuple[str, ...] = field(default=())
 
@@ -109,11 +116,14 @@ class Estimate:
 
     @property
     def within_tolerance(self) -> bool | None:
-        """Whether every case that was solved again is within the scene's tolerance; None where none was."""
-        if not self.checked:
+        """Whether every case that was solved again is within the scene's tolerance.
+
+        None where none was, and where no tolerance has a meaning.
+        """
+        accuracy = self.model.scene.accuracy
+        if not self.checked or not accuracy.binds:
             return None
-        tolerance = self.model.scene.accuracy.tolerance
-        return all(error is not None and error <= tolerance for _, error in self.checked)
+        return all(error is not None and error <= accuracy.tolerance for _, error in self.checked)
 
     @property
     def holds(self) -> bool:

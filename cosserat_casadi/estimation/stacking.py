@@ -7,12 +7,14 @@ from collections.abc import Sequence
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import MeasuredCases
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.identification.cases import Case
 from cosserat_casadi.identification.quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.inputs import AXES
 
 
 def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
@@ -42,7 +44,7 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
     given = ca.MX.sym("inputs", given_size(model))
     inputs = given[: model.inputs.size]
     parameters = given[model.inputs.size :]
-    records = {number: model.scene.measurements[number] for number in sections}
+    records = {number: model.discrete.scene.measurements[number] for number in sections}
     at = ca.MX.sym("at", sum(sections.values()))
     measured = ca.MX.sym("measured", sum(len(records[number].entries) * count for number, count in sections.items()))
     results: list[list[ca.MX]] = [[], [], []]
@@ -99,3 +101,30 @@ def _of_measurement(
             weights[i, k] = np.where(given[:rows], inverse_sigma, 0.0)
     count = len(cases)
     return at, measured.reshape(count, -1), weights.reshape(count, -1)
+
+
+def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) -> list[str]:
+    """Names of the differences in their order: the measurement, the number, and the section where cases share it.
+
+    Args:
+        model: what is measured.
+        sections: rows of each measurement in one case, by its number.
+        abscissae: of all cases, shape (cases, sections).
+    """
+    names = []
+    first = 0
+    for number, count in sections.items():
+        record = model.scene.measurements[number]
+        for column in range(first, first + count):
+            own = abscissae[:, column]
+            where = f" at X = {own[0]:g}" if hasattr(record, "at") and np.ptp(own) == 0.0 else ""
+            names += [f"{record.title} {word}{where}" for word in _words_of(record)]
+        first += count
+    return names
+
+
+def _words_of(record: scenes.Measurement) -> list[str]:
+    """Words for the differences of a measurement: those of its numbers, but for a quaternion the axes of the angle."""
+    distances = [word for word, unit in zip(record.entries, record.differences, strict=False) if unit != "rad"]
+    angles = [f"about {axis}" for axis in AXES[3]][: len(record.differences) - len(distances)]
+    return [*distances, *angles]

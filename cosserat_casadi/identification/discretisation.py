@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed, union_of
+from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
+from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with_accuracy
 from cosserat_casadi.identification.cases import Case, Datum
 from cosserat_casadi.identification.fitted import with_inputs
 from cosserat_casadi.identification.misfit import inputs_of, moving
@@ -18,6 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.modes import ModesOutcome, modes_of_scene
 from cosserat_casadi.motion.resolve import simulate_scene
+from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.measurements import ModeMeasurement
 
@@ -25,7 +26,10 @@ SAMPLES = 4
 """Cases that a discretisation is chosen on."""
 
 SHARE_OF_SIGMA = 0.1
-"""Error of a motion, in standard deviations of its positions, that is small enough."""
+"""Error of the model, in standard deviations of what was measured, that is small enough."""
+
+LOOSEST = 1e-3
+"""Tolerance of equilibria, as `accuracy.tolerance`, above which none is taken: a sigma may be a guess."""
 
 LEAST = 1e-6
 """Tolerance of a motion, over the length, below which none is asked for where the scene does not."""
@@ -44,57 +48,87 @@ class Choice:
     warnings: tuple[str, ...] = ()
 
 
-def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]) -> Choice:
+def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case], report: Report) -> Choice:
     """The scene on modes and nodes that serve those cases that lie farthest apart.
 
     Args:
         scene: with all that is unknown or set by columns free.
         draft: a model of it.
         cases: what was measured.
+        report: told the stage.
     """
     if scene.accuracy.fixed:
         return Choice(scene)
-    baked = unfixed(scene.baked(), scene.accuracy.tolerance)
+    tolerance = _tolerance(scene, cases)
+    baked = unfixed(scene.baked(), tolerance)
     warnings: list[str] = []
     chosen: list[Discretisation] = []
     moves = moving(cases)
     inputs = StartInputs(draft).of(inputs_of(cases), moves)
     unloaded = scene.simulation is not None and scene.simulation.start == "unloaded"
     at_rest = inputs[~moves] if unloaded else inputs
-    chosen += _for_equilibria(baked, draft, at_rest)
+    chosen += _for_equilibria(baked, draft, at_rest, report)
     numbers = [int(datum.at) for case in cases for datum in _vibrations(scene, case)]
     if numbers:
         row = next(i for i, case in enumerate(cases) if _vibrations(scene, case))
-        modes = modes_of_scene(baked, draft.inputs.unpack(inputs[row]), count=max(numbers) + 1)
+        values = draft.inputs.unpack(inputs[row])
+        of_modes = _after("discretisation for frequencies", report)
+        modes = modes_of_scene(baked, values, count=max(numbers) + 1, report=of_modes)
         chosen += modes.model.discretisation.values()
         if modes.outcome is not ModesOutcome.RESOLVED:
             warnings.append(f"The discretisation for frequencies: {modes.message}")
     if np.any(moves):
         moved = _moving_scene(baked, draft, cases[int(np.flatnonzero(moves)[0])])
-        motion = simulate_scene(moved)
+        of_motion = _after("discretisation for motions", report)
+        motion = simulate_scene(moved, progress=lambda at: of_motion(f"{at.stage}, t = {at.time:.4g} s"))
         chosen += motion.model.discretisation.values()
         if not motion.converged:
             warnings.append(f"The discretisation for motions: {motion.message}")
     if not chosen:
         return Choice(scene)
-    return Choice(fixed(scene, union_of(chosen)), tuple(warnings))
+    # Written out: a tolerance that nobody has written asks nothing of modes that are fixed.
+    asked = with_accuracy(scene, tolerance=tolerance)
+    return Choice(fixed_alike(asked, union_of(chosen)), tuple(warnings))
 
 
-def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray) -> list[Discretisation]:
+def _tolerance(scene: scenes.Scene, cases: Sequence[Case]) -> float:
+    """The scene's tolerance; where nobody has written one, what the least deviation of the measured poses asks for.
+
+    What else was measured, such as a force or a frequency, has no deviation that a pose could be held against: the
+    default holds.
+    """
+    default = scene.accuracy.tolerance
+    if "tolerance" in scene.accuracy.model_fields_set:
+        return default
+    lengths = {rod.name: rod.length for rod in scene.rods}
+    relative: list[float] = []
+    for number in {number for case in cases for number in case.data}:
+        record = scene.measurements[number]
+        units = record.differences
+        if not set(units) <= {"m", "rad"}:
+            return default
+        # A body is as far from a base as the longest rod.
+        length = lengths.get(getattr(record, "rod", None) or "", max(lengths.values()))
+        sigmas = np.broadcast_to(np.asarray(record.sigma, dtype=float), len(units))
+        relative += [sigma / length if unit == "m" else sigma for sigma, unit in zip(sigmas, units, strict=True)]
+    return min(max(default, SHARE_OF_SIGMA * float(min(relative, default=0.0))), LOOSEST)
+
+
+def _after(task: str, report: Report) -> Report:
+    """A report of the stages of a task that is one stage of another."""
+    return lambda stage: report(f"{task}: {stage}")
+
+
+def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray, report: Report) -> list[Discretisation]:
     """One for the equilibria of some rows of inputs, shape (cases, size); none where none has an equilibrium."""
     if not len(inputs):
         return []
-    chosen = [(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
-    alone = [solve_scene(one, values) for one, values in chosen]
-    used = [i for i, solution in enumerate(alone) if solution.converged]
-    if not used:
+    cases = [LoadCase(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
+    search = CommonModes(cases, lambda done, total: report(f"discretisation for equilibria: {done} of {total} solves"))
+    answers = search.refined(no_more)
+    if len(search.without_equilibrium) == len(cases):
         return []
-    discretisation, _ = common_discretisation(
-        [chosen[i] for i in used],
-        [alone[i] for i in used],
-        solve_scene,
-    )
-    return [discretisation]
+    return list(answers.chosen.values())
 
 
 def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:

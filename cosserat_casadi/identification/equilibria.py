@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path, step_weights
+from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.continuation import Path, follow
@@ -211,7 +211,7 @@ class Equilibria:
                 change += column(model.parameter_jacobian(x, *arguments) @ p_change)
             return change
 
-        return Path(residual, jacobian, rate, near.x[case], step_weights=step_weights(model))
+        return Path(residual, jacobian, rate, near.x[case], step_weights=model.step_weights)
 
 
 def mapped(function: ca.Function, cases: int, *, has_parameters: bool) -> ca.Function:

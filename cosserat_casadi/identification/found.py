@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.fitted import with_found
+from cosserat_casadi.identification.quantities import QUANTITIES
 from cosserat_casadi.identification.statistics import Statistics
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
@@ -41,6 +42,7 @@ class Row:
         weight: what the loss leaves of it, 1 for all.
         held_out: whether it was predicted and not fitted.
         time: at which it was measured in its motion, s; None in an equilibrium.
+        at: abscissa X, or number of the mode, that its row gives; None without one.
     """
 
     where: str
@@ -53,6 +55,28 @@ class Row:
     weight: float
     held_out: bool
     time: float | None = None
+    at: float | None = None
+
+
+@dataclass(frozen=True)
+class MarkerDistances:
+    """How far the model is from one marker, over all rows in which all of its coordinates were measured.
+
+    Attributes:
+        measurement: number of its measurement.
+        at: abscissa X of its section; None of a marker on a body.
+        rows: how many rows, those that were held out left aside.
+        rms: root mean square of the distances, m.
+        largest: of the distances, m.
+        mean: mean of model less measurement, world axes, shape (3,), m: what an offset of the marker would mend.
+    """
+
+    measurement: int
+    at: float | None
+    rows: int
+    rms: float
+    largest: float
+    mean: FloatArray
 
 
 @dataclass(frozen=True)
@@ -94,6 +118,9 @@ class Identification:
         starts: how many starts there were, and how many ended here.
         step: of the motions that were measured, s; None where nothing was measured over time.
         step_error: largest error that these steps leave in a residual, in standard deviations; None likewise.
+        error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
+            solution: distance over the length, angle in rad, 1 where it is not known; None where there are none.
+        error_case: the case in which it is largest; None likewise.
     """
 
     model: Model
@@ -117,6 +144,16 @@ class Identification:
     starts: tuple[int, int]
     step: float | None = None
     step_error: float | None = None
+    error_estimate: float | None = None
+    error_case: str | None = None
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning."""
+        accuracy = self.model.scene.accuracy
+        if self.error_estimate is None or not accuracy.binds:
+            return None
+        return self.error_estimate <= accuracy.tolerance
 
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:
@@ -147,6 +184,27 @@ class Identification:
             row.residual for row in self.rows if row.held_out is held_out and measurement in (None, row.measurement)
         ]
         return float(np.sqrt(np.mean(np.square(chosen)))) if chosen else None
+
+    @property
+    def distances(self) -> tuple[MarkerDistances, ...]:
+        """How far the model is from each marker, in the order of the measurements and along the rods."""
+        apart: dict[tuple[int, float | None], dict[tuple[int, str], dict[int, float]]] = {}
+        for row in self.rows:
+            record = self.model.scene.measurements[row.measurement]
+            if row.held_out or row.entry >= QUANTITIES[record.quantity].coordinates:
+                continue
+            of_marker = apart.setdefault((row.measurement, row.at), {})
+            of_marker.setdefault((row.case, row.where), {})[row.entry] = row.modelled - row.measured
+        markers = []
+        for (measurement, at), by_row in sorted(apart.items(), key=lambda item: (item[0][0], item[0][1] or 0.0)):
+            whole = [[parts[axis] for axis in range(3)] for parts in by_row.values() if len(parts) == 3]
+            if whole:
+                differences = np.array(whole)
+                sizes = np.linalg.norm(differences, axis=1)
+                rms = float(np.sqrt(np.mean(sizes**2)))
+                mean = differences.mean(axis=0)
+                markers.append(MarkerDistances(measurement, at, len(whole), rms, float(sizes.max()), mean))
+        return tuple(markers)
 
     @property
     def outliers(self) -> tuple[Row, ...]:

@@ -75,7 +75,7 @@ class Misfit:
         self.motions = Motions(model, {i: _times(case) for i, case in enumerate(cases) if case.moves})
         self.measurements: dict[int, MeasuredRows | MeasuredModes] = {}
         vibrations = Vibrations(model)
-        for number, record in enumerate(model.scene.measurements):
+        for number, record in enumerate(model.discrete.scene.measurements):
             rows = [(i, case.data[number]) for i, case in enumerate(cases) if number in case.data]
             if rows and isinstance(record, ModeMeasurement):
                 self.measurements[number] = MeasuredModes(vibrations, record, rows)

@@ -8,11 +8,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, Generic, TypeVar, final
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, as_vector, is_symbolic
 from cosserat_casadi.maths.rotation import (
     quaternion_conjugate,
     quaternion_product,
@@ -23,6 +25,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.interpolation import interpolation_weights
+from cosserat_casadi.model.section_poses import SectionPoses
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.motion.eigenproblem import ComplexArray
 from cosserat_casadi.scene.families import Kind, Kinds, register
@@ -67,39 +70,35 @@ class Site:
         abscissae = ca.horzsplit(self.at)
         return ca.horzcat(*(interpolation_weights(self.system.discrete, rod, X) for X in abscissae))
 
+    @cached_property
+    def poses(self) -> ca.MX:
+        """A symbol for position and unit quaternion at each section or of the body, 7×k: what a quantity is written in.
+
+        :meth:`placed` says what it stands for, and its derivative; a quantity is differentiated with the symbol.
+        """
+        return ca.MX.sym("poses", 7, self.sections)
+
     def frames(self) -> list[tuple[Matrix, Matrix]]:
         """Position of the marker, 3×1, and unit quaternion, 4×1, at each section or of the body, world axes."""
-        if self.record.rod is None:
-            frame = self.system.frame(FrameName("body", str(self.record.body)))
-            poses = [(frame.position, frame.quaternion)] * self.sections
-        else:
-            poses = self._sections(self.record.rod)
-        offset = ca.DM(self.record.offset)
+        offset = as_matrix(as_vector(self.record.offset))
         markers: list[tuple[Matrix, Matrix]] = []
-        for position, quaternion in poses:
-            # A planar rod leaves entries of its quaternion structurally zero.
-            unit = ca.densify(ca.MX(quaternion))
-            marker = position
-            if any(self.record.offset):
-                marker = position + quaternion_to_matrix(unit) @ offset
-            markers.append((marker, unit))
+        for pose in ca.horzsplit(self.poses):
+            marker = pose[:3]
+            quaternion = pose[3:]
+            if any_symbolic(self.record.offset) or any(self.record.offset):
+                marker = marker + quaternion_to_matrix(quaternion) @ offset
+            markers.append((marker, quaternion))
         return markers
 
-    def _sections(self, rod: str) -> list[tuple[Matrix, Matrix]]:
-        """Poses of sections of a rod, world axes."""
-        rod_shape = self.system.rods[rod].shape
-        base = self.system.base(rod)
-        weights = self.weights(rod)
-        rotation = quaternion_to_matrix(base.quaternion)
-        positions = ca.horzsplit(ca.densify(ca.MX(rotation @ (rod_shape.position @ weights))))
-        quaternions = ca.horzsplit(ca.densify(ca.MX(rod_shape.quaternion @ weights)))
-        base_quaternion = ca.densify(ca.MX(base.quaternion))
-        poses: list[tuple[Matrix, Matrix]] = []
-        for position, quaternion in zip(positions, quaternions, strict=True):
-            # Between nodes an interpolated quaternion has the norm 1 to the accuracy of the grid only.
-            unit = quaternion / ca.sqrt(ca.sumsqr(quaternion))
-            poses.append((base.position + position, quaternion_product(base_quaternion, unit)))
-        return poses
+    def placed(self) -> tuple[Matrix, Matrix]:
+        """What :attr:`poses` stands for, 7×k, and its derivative with the unknowns, 7k×size."""
+        if self.record.rod is None:
+            frame = self.system.frame(FrameName("body", str(self.record.body)))
+            pose = ca.densify(ca.vertcat(frame.position, frame.quaternion))
+            by_unknowns = ca.jacobian(pose, self.system.arguments.x)
+            return ca.repmat(pose, 1, self.sections), ca.repmat(by_unknowns, self.sections, 1)
+        sections = SectionPoses(self.system, self.record.rod, self.weights(self.record.rod))
+        return sections.stacked, sections.by_unknowns
 
 
 class Quantity(Kind, ABC, Generic[RecordType]):
@@ -250,7 +249,7 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
         system = site.system
         discrete = system.discrete.rods[rod]
         x, y = site.record.fibre
-        place = ca.DM([x, y, 0.0])
+        place = ca.MX(as_matrix(as_vector((x, y, 0.0))))
         ratio = ratio_of(system.discrete, rod, system.arguments)
         q = system.arguments.x[system.discrete.unknowns.strain(rod)]
         # Strains are polynomials that the nodes resolve: the interpolant through them is exact.
@@ -319,11 +318,11 @@ def _strains(rows: Sequence[Matrix | None], count: int) -> Matrix:
     return ca.vertcat(*full)
 
 
-def _stretch(strain: Matrix, place: ca.DM) -> Matrix:
+def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
     """Length of a fibre per length of the centreline at each section, 1×k."""
     columns = []
     for column in ca.horzsplit(strain):
-        direction = column[3:] + ca.cross(column[:3], ca.MX(place))
+        direction = column[3:] + ca.cross(column[:3], place)
         columns.append(ca.norm_2(direction))
     return ca.horzcat(*columns)
 
@@ -333,7 +332,7 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
 
     Args:
         model: with parameters.
-        record: the measurement.
+        record: the measurement as the scene of the model's equations has it, its unknown numbers expressions of p.
         sections: number k of sections that are asked for at once.
 
     Returns:
@@ -346,7 +345,17 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     p = discrete.parameters.symbol
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
-    site = Site(System(discrete, Arguments(x, inputs)), record, at, measured)
+    place = getattr(record, "at", None)
+    # A place that is unknown is a number of p, whatever the rows say.
+    places = ca.repmat(place, 1, sections) if is_symbolic(place) else at
+    site = Site(System(discrete, Arguments(x, inputs)), record, places, measured)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
-    derivatives = [ca.densify(ca.jacobian(stacked, argument)) for argument in (x, inputs, p)]
-    return ca.Function("difference", [x, inputs, p, at, measured], [stacked, *derivatives])
+    derivatives = [ca.jacobian(stacked, argument) for argument in (x, inputs, p)]
+    results = [stacked, *derivatives]
+    if ca.depends_on(stacked, site.poses):
+        poses, by_unknowns = site.placed()
+        by_poses = ca.jacobian(stacked, site.poses)
+        of_poses = [by_unknowns, *[ca.jacobian(ca.vec(poses), argument) for argument in (inputs, p)]]
+        chained = [own + by_poses @ inner for own, inner in zip(derivatives, of_poses, strict=True)]
+        results = ca.substitute([stacked, *chained], [site.poses], [poses])
+    return ca.Function("difference", [x, inputs, p, at, measured], [ca.densify(result) for result in results])

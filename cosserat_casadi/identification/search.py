@@ -13,6 +13,7 @@ from cosserat_casadi.identification.cases import Case, Data, read_cases
 from cosserat_casadi.identification.discretisation import with_discretisation
 from cosserat_casadi.identification.found import Identification
 from cosserat_casadi.identification.measured_modes import check_vibrations
+from cosserat_casadi.identification.model_error import with_model_error
 from cosserat_casadi.identification.motions import StartInputs, check_motions
 from cosserat_casadi.identification.task import SEED, Progress, Task
 from cosserat_casadi.identification.unknowns import UnknownLayout, refuse_row_parameters, unknown_layout
@@ -64,10 +65,16 @@ def identify(
         Loss(options.loss, options.loss_width),
         options,
         options.starts if starts is None else starts,
-        report or (lambda stage: None),
+        report or _untold,
         progress,
     )
-    return task.run(fitted, held_out)
+    found = task.run(fitted, held_out)
+    task.report("judging the error of the model")
+    return with_model_error(found, {case.where: case for case in fitted})
+
+
+def _untold(stage: str) -> None:
+    """Take no note of a stage that nobody asked for."""
 
 
 def identify_scene(
@@ -82,7 +89,8 @@ def identify_scene(
     """Find the unknowns of a scene from what was measured, on modes and nodes that meet its tolerance.
 
     They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at those found, which
-    may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them.
+    may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them. Where the scene
+    writes no tolerance and poses alone were measured, a tenth of the least of their deviations is enough.
 
     Args:
         scene: with measurements and unknowns.
@@ -103,21 +111,20 @@ def identify_scene(
     unknown_layout(draft)
     check_measured(draft)
     cases = read_cases(completed, draft.inputs, data)
-    if report is not None:
-        report("choosing the discretisation")
-    choice = with_discretisation(completed, draft, cases)
+    tell = report or _untold
+    tell("choosing the discretisation")
+    choice = with_discretisation(completed, draft, cases, tell)
     found = identify(build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
     for _ in range(RECHOSEN):
         if scene.accuracy.fixed or not found.converged:
             break
-        if report is not None:
-            report("judging the discretisation")
+        tell("judging the discretisation")
         try:
             fitted = found.fitted_scene(completed)
         except SceneError:
             # What was found is told all the same; whoever wants the scene is told why there is none.
             break
-        judged = with_discretisation(fitted, draft, _with_found_inputs(cases, found))
+        judged = with_discretisation(fitted, draft, _with_found_inputs(cases, found), tell)
         if judged.scene.accuracy == choice.scene.accuracy:
             break
         choice = replace(judged, scene=completed.model_copy(update={"accuracy": judged.scene.accuracy}))

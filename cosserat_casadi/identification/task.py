@@ -358,6 +358,7 @@ class Task:
                     weight=1.0 if held_out else float(weights[i]),
                     held_out=held_out,
                     time=None if np.isnan(datum.time) else datum.time,
+                    at=None if np.isnan(datum.at) else datum.at,
                 )
                 rows.append(row)
         return rows

@@ -245,8 +245,8 @@ def unknown_layout(model: Model) -> UnknownLayout:
     typical = _typical_sizes(model)
     for number, record in enumerate(scene.unknowns):
         where = f"unknowns[{number}]"
-        if record.parameter is not None and record.parameter in parameters:
-            entries.append(_of_parameter(model, record, parameters[record.parameter], typical))
+        if record.parameter is not None and record.name in parameters:
+            entries.append(_of_parameter(model, record, parameters[record.name], typical))
         elif record.input is not None and record.input in indices:
             entries.append(_of_input(model, record, indices[record.input], typical))
         else:

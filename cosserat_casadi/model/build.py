@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import casadi as ca
 import numpy as np
@@ -16,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import operations
 from cosserat_casadi.model.actuator_assembly import actuators_have_potential
 from cosserat_casadi.model.constraints import decisive_axes
-from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers, with_parameters
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.functions import ModelFunctions
 from cosserat_casadi.model.inputs import InputLayout, input_layout
@@ -24,7 +25,7 @@ from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.load_potential import loads_have_potential
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
-from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
+from cosserat_casadi.model.parameters import ParameterLayout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.tube_checks import refuse_tubes
@@ -44,6 +45,10 @@ class Model(ModelFunctions, MotionFunctions):
     """
 
     discrete: DiscreteScene
+
+    def __reduce__(self) -> tuple[type[Self], tuple[DiscreteScene]]:
+        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        return type(self), (self.discrete,)
 
     @property
     def scene(self) -> scenes.Scene:
@@ -113,6 +118,16 @@ class Model(ModelFunctions, MotionFunctions):
     def size(self) -> int:
         """Number of unknowns."""
         return self.discrete.size
+
+    @property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces less."""
+        return self.discrete.unknowns.step_weights
+
+    @property
+    def is_assembly(self) -> bool:
+        """Whether joints or frames tie rods together, so that the Jacobian is sparse."""
+        return self.discrete.is_assembly
 
     @property
     def discretisation(self) -> dict[str, Discretisation]:
@@ -209,8 +224,8 @@ def build(
     check_loads(nominal)
     if scene.obstacles:
         check_obstacles(nominal)
-    parameters = parameter_layout(scene)
-    if not parameters.size:
+    if not scene.parameters:
         return Model(nominal)
-    check_axes(nominal, parameters)
-    return Model(with_numbers(nominal, parameters.written(scene, parameters.symbol), parameters))
+    parametric = with_parameters(nominal)
+    check_axes(nominal, parametric.parameters)
+    return Model(parametric)

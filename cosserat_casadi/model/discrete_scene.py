@@ -6,9 +6,10 @@ tensions of the cables of given length, as in docs/theory.md, section 8.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -24,7 +25,7 @@ from cosserat_casadi.model.enrichment import enriched
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
@@ -92,6 +93,15 @@ class DiscreteScene:
     rods: dict[str, DiscreteRod]
     parameters: ParameterLayout = NO_PARAMETERS
     scaling: DiscreteScene | None = None
+
+    def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
+        """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
+        if self.scaling is None:
+            discretisation = {name: rod.discretisation for name, rod in self.rods.items()}
+            return discrete_scene, (self.scene, self.layout, discretisation)
+        if self.parameters.size:
+            return with_parameters, (self.scaling,)
+        return with_numbers, (self.scaling, self.scene)
 
     @property
     def nominal(self) -> DiscreteScene:
@@ -419,3 +429,14 @@ def with_numbers(
         ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
         rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)
     return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)
+
+
+def with_parameters(nominal: DiscreteScene) -> DiscreteScene:
+    """A scene whose parameters are entries of one symbol, under the scaling and the grids of its own numbers.
+
+    Raises:
+        SceneError: a parameter would move a place that elements cannot follow.
+    """
+    parameters = parameter_layout(nominal.scene)
+    written = parameters.written(nominal.scene, parameters.symbol)
+    return with_numbers(nominal, written, parameters)

@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from importlib import import_module
+from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
 import casadi as ca
@@ -149,6 +151,10 @@ class FunctionSpec:
     differentiable: bool = False
     doc: str = ""
 
+    def __reduce__(self) -> tuple[Callable[..., FunctionSpec], tuple[str, str]]:
+        """How pickle and copy find the entry again: under the name of its method, which the entry has taken."""
+        return _entry_of, (self.write.__module__, self.write.__qualname__)
+
     def arguments_of(self, discrete: DiscreteScene) -> list[str]:
         """Names of the arguments: in a scene with parameters p follows the inputs."""
         arguments = list(self.arguments)
@@ -212,6 +218,12 @@ class FunctionSpec:
         # CasADi takes no two underscores in a row.
         name = re.sub("_+", "_", f"{self.name}_{owner}") if owner else self.name
         return ca.Function(name, list(symbols.values()), list(results), arguments, names)
+
+
+def _entry_of(module: str, method: str) -> FunctionSpec:
+    """The entry of a method, such as "ModelFunctions.residual" of a module."""
+    function: NamedFunction[Any] = attrgetter(method)(import_module(module))
+    return function.spec
 
 
 def _symbol(discrete: DiscreteScene, name: str, owner: str) -> ca.MX:

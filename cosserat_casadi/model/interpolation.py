@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.numbers import Scalar
+from cosserat_casadi.maths.numbers import Scalar, any_symbolic
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 
@@ -24,6 +26,14 @@ def interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matri
             weights = _inside(grid.places, element, X) * weights
         rows.append(weights)
     return ca.vertcat(*rows)
+
+
+def section_weights(discrete: DiscreteScene, rod: str, X: Sequence[float]) -> Matrix:
+    """Weights of the nodal values at k known abscissae, M×k: numbers unless a parameter moves element ends."""
+    grid = discrete.rods[rod].grid
+    if any_symbolic(grid.places):
+        return ca.horzcat(*[interpolation_weights(discrete, rod, ca.MX(abscissa)) for abscissa in X])
+    return ca.sparsify(ca.DM(grid.interpolation_matrix(np.asarray(X, dtype=float)).T))
 
 
 def _inside(breaks: tuple[Scalar, ...], element: int, X: Matrix) -> Matrix | int:

@@ -83,12 +83,6 @@ class CaseLayout:
         inputs = {name: value for name, value in values.items() if name not in parameters}
         return np.concatenate([self.inputs.pack(inputs), self.parameters.pack(parameters)])
 
-    def ranges(self, cases: FloatArray) -> tuple[str, ...]:
-        """What cases, shape (count, size), range over: ``column=low:high`` for each column that they set."""
-        moved = np.any(cases != self.default, axis=0)
-        lowest, highest = cases.min(axis=0), cases.max(axis=0)
-        return tuple(f"{column}={lowest[k]:.6g}:{highest[k]:.6g}" for column, k in self.columns.items() if moved[k])
-
 
 def case_layout(scene: scenes.Scene) -> CaseLayout:
     """The inputs and the parameters of a scene.

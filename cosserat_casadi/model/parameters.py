@@ -108,10 +108,11 @@ class ParameterLayout(StackedLayout[Parameter]):
         """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""
         turning = []
         for entry in self.entries:
-            holder = entry.numbers.holder
-            turns = entry.numbers.keys[-1] in ("axis", "quaternion") and hasattr(holder.record, "axis")
-            if holder.table == "joints" and turns:
-                turning.append((entry.name, holder.index))
+            for numbers in entry.numbers.all_numbers:
+                holder = numbers.holder
+                turns = numbers.keys[-1] in ("axis", "quaternion") and hasattr(holder.record, "axis")
+                if holder.table == "joints" and turns:
+                    turning.append((entry.name, holder.index))
         return turning
 
     def written(self, scene: scenes.Scene, p: Matrix | FloatArray) -> scenes.Scene:

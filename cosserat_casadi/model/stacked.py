@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import ClassVar, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -50,6 +50,10 @@ class StackedLayout(Generic[EntryType]):
     """One of them in words, with its article, and several."""
 
     several: ClassVar[str]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickle and copy take along: the values, without the symbol that is made of them."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def names(self) -> tuple[str, ...]:

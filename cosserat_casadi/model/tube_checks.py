@@ -14,5 +14,5 @@ def refuse_tubes(scene: scenes.Scene) -> None:
     """
     if scene.tubes:
         problem = "this works on rods, and the scene has concentric tubes"
-        remedy = "solve, path, sweep, export and check take them; in Python solve_tubes, follow_tubes, export_tubes"
+        remedy = "solve, path, sweep, export and check take them"
         raise SceneError(Problem("tubes", problem, remedy))

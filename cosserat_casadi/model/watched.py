@@ -15,7 +15,9 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.interpolation import section_weights
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.section_poses import SectionPoses
 from cosserat_casadi.model.system import System
 
 BETWEEN = (0.25, 0.5, 0.75, 1.0)
@@ -112,20 +114,11 @@ def section_poses(system: System, rod: str, X: FloatArray) -> tuple[Matrix, Matr
         rod: name of the rod.
         X: abscissae, shape (k,).
     """
-    shape = system.shapes[rod]
     if len(X) == 1 and X[0] == 1.0:
-        position = shape.position_at(-1)
-        quaternion = ca.densify(shape.quaternion[:, -1])
-    else:
-        interpolation = ca.DM(system.discrete.rods[rod].grid.interpolation_matrix(X)).T
-        position = shape.position @ interpolation
-        quaternion = ca.densify(shape.quaternion @ interpolation)
-        # Between nodes an interpolated quaternion is of unit length to the accuracy of the grid only.
-        lengths = ca.sqrt(ca.sum1(quaternion * quaternion))
-        quaternion = quaternion / ca.repmat(lengths, 4, 1)
-    # The shape is that in the frame of the base section (docs/theory.md, section 1).
-    base = system.base(rod)
-    base_positions = ca.repmat(base.position, 1, len(X))
-    base_quaternions = ca.densify(ca.repmat(base.quaternion, 1, len(X)))
-    world_positions = base_positions + quaternion_to_matrix(base.quaternion) @ position
-    return world_positions, quaternion_product(base_quaternions, quaternion)
+        base = system.base(rod)
+        shape = system.shapes[rod]
+        position = base.position + quaternion_to_matrix(base.quaternion) @ shape.position_at(-1)
+        tip_quaternion = ca.densify(shape.quaternion[:, -1])
+        return position, quaternion_product(ca.densify(base.quaternion), tip_quaternion)
+    poses = SectionPoses(system, rod, section_weights(system.discrete, rod, X.tolist()))
+    return poses.positions, poses.quaternions

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.accuracy.refine import FINER_MODES, solve_scene
+from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
@@ -225,12 +225,13 @@ def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
     return gradients
 
 
-def modes_of(solution: Solution, count: int | None = None) -> Modes:
+def modes_of(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:
     """Modes of a model about one of its equilibria; their errors are not estimated.
 
     Args:
         solution: the equilibrium.
         count: how many modes of lowest |λ|; None for all that the model has.
+        report: told the stage.
 
     Raises:
         SceneError: nothing that may move has mass.
@@ -239,8 +240,11 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
     if not solution.converged:
         return _no_equilibrium(solution)
     model = solution.model
+    tell = report or _untold
+    tell(f"equations of motion of {model.size} unknowns")
     motions = small_motions(model, solution.x, solution.inputs)
     check_mass(motions)
+    tell(f"eigenvalues of {model.size} unknowns")
     pairs = eigenpairs(
         motions.free_stiffness,
         motions.free_damping,
@@ -262,6 +266,10 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
         tuple(modes[:count]),
         pairs.values,
     )
+
+
+def _untold(stage: str) -> None:
+    """Take no note of a stage that nobody asked for."""
 
 
 def modes_of_scene(
@@ -290,7 +298,7 @@ def modes_of_scene(
     refuse_obstacles(scene, "an analysis of modes")
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
-    equilibrium = solve_scene(scene, values, progress=progress, report=report)
+    equilibrium = solve_rods(scene, values, progress=progress, report=report)
     if not equilibrium.converged:
         return _no_equilibrium(equilibrium)
     if scene.accuracy.fixed:
@@ -300,8 +308,8 @@ def modes_of_scene(
 
 def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes:
     """Modes on the discretisation of an equilibrium, judged by a finer one."""
-    own = modes_of(equilibrium, count)
-    witness = modes_of(_finer_equilibrium(equilibrium, FINER_MODES, report), count)
+    own = modes_of(equilibrium, count, report=report)
+    witness = modes_of(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
     return _judged(own, witness)
 
 
@@ -310,10 +318,10 @@ def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> M
     scene = equilibrium.model.scene
     # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
     first = max(ceil(count / 2) + SPARE_MODES, signal_modes(scene), _most_modes(equilibrium))
-    coarser = modes_of(_on_level(equilibrium, first, report), count)
+    coarser = modes_of(_on_level(equilibrium, first, report), count, report=report)
     while coarser.solution.converged:
         more = ceil((LEVEL_FACTOR - 1.0) * _most_modes(coarser.solution))
-        finer = modes_of(_finer_equilibrium(coarser.solution, more, report), count)
+        finer = modes_of(_finer_equilibrium(coarser.solution, more, report), count, report=report)
         judged = _judged(finer, coarser)
         if judged.outcome is not ModesOutcome.UNRESOLVED or _most_modes(finer.solution) >= MOST_MODES:
             return judged
@@ -332,7 +340,7 @@ def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Sol
     transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
     model = build(scene, discretise(scene, polynomials, nodes, transport))
     if report is not None:
-        report(f"modes of {model.size} unknowns, {nodes} intervals")
+        report(f"equilibrium of {model.size} unknowns, {nodes} intervals")
     newton = ContinuationSettings().newton
     corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
     if corrected is None:

@@ -8,8 +8,8 @@ from enum import Enum
 class Outcome(Enum):
     """Every way a solve can end. Only CONVERGED carries a result to build on.
 
-    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before the one of
-    contact, for which C has libraries of their own.
+    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before those of
+    contact and of concentric tubes, for which C has libraries of their own.
     """
 
     CONVERGED = "Equilibrium found: the residual is below its tolerance."
@@ -21,7 +21,7 @@ class Outcome(Enum):
         "followed further; there may be a limit point or a buckling load."
     )
     UNRESOLVED = (
-        "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: "
+        "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: "
         "allow more of them, or a larger tolerance."
     )
     NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
@@ -36,6 +36,10 @@ class Outcome(Enum):
     CONTACT_UNSETTLED = (
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
         "and forces that only push."
+    )
+    OUT_OF_RANGE = (
+        "A translation is below zero or above the length of its tube, or no tube stands out of the plate: nothing was "
+        "computed."
     )
 
     @property

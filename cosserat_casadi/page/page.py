@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.codegen.texts import fill
+from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
@@ -31,7 +32,8 @@ def export_page(solution: Solution, file: Path) -> Path:
     """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
 
     Args:
-        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps.
+        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
+            :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
         file: what is written.
 
     Raises:
@@ -41,9 +43,8 @@ def export_page(solution: Solution, file: Path) -> Path:
     refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    content = page_text(
-        {**page_facts(solution), "chosenFor": chosen_for(solution)}, [asset("wasm_robot.js")], module
-    ).encode()
+    facts = {**page_facts(solution), **asked_accuracy(solution)}
+    content = page_text(facts, [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
         raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
@@ -51,14 +52,10 @@ def export_page(solution: Solution, file: Path) -> Path:
     return file
 
 
-def chosen_for(solution: Solution) -> list[list[float]] | None:
-    """Ends of each input between which the error of the modes was judged: the scene's own inputs, shape (inputs, 2).
-
-    None where no tolerance has a meaning, or nobody judged.
-    """
-    if solution.within_tolerance is None:
-        return None
-    return [[value, value] for value in solution.inputs.tolist()]
+def asked_accuracy(solution: Solution) -> dict[str, Any]:
+    """What errors are judged by: the tolerance, None where none has a meaning, and what helps above it."""
+    accuracy = solution.model.scene.accuracy
+    return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
 
 
 def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:

@@ -24,10 +24,10 @@ from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
 from cosserat_casadi.paths.arrangement import Arrangement
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.paths.margins import Key, margins, violated
-from cosserat_casadi.paths.trace import PathOutcome, Trace, extend
 from cosserat_casadi.paths.transitions import Entry, changes, entered
 
 MOST_CHANGES = 100

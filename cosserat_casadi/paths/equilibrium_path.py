@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.numerics.trace import PathOutcome
 
 
 @dataclass(frozen=True)

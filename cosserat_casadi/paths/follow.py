@@ -26,9 +26,9 @@ from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Arc, Event
 from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
-from cosserat_casadi.paths.trace import Guard, PathOutcome, Trace, trace
 
 
 @dataclass(frozen=True)

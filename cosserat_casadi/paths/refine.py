@@ -15,14 +15,17 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes
 from cosserat_casadi.equilibrium.metrics import ROUNDING, largest_turn
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.follow import follow_path
-from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.tubes.path import TubePath, follow_tubes
+from cosserat_casadi.tubes.solution import TubeSolution
 
 MODES = (6, 9, 12, 16, 21, 28, 36)
 """Modes per strain component and element, one refinement level after the other."""
@@ -45,28 +48,38 @@ def follow_scene_path(
     *,
     branch: int = 0,
     settings: ArcSettings | None = None,
+    first: TubeSolution | None = None,
     progress: Progress | None = None,
     report: Report | None = None,
-) -> EquilibriumPath:
-    """Follow a path of a scene on modes and nodes that meet its tolerance.
+) -> EquilibriumPath | TubePath:
+    """Follow a path of a scene on modes and nodes, or steps, that meet its tolerance.
 
     Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path is
     followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
     relative to the lengths, change by less than the tolerance; the last change is ``error_estimate``.
 
+    An input of rods grows from zero; one of concentric tubes moves on from the value that it has.
+
     Args:
         scene: a validated scene.
-        name: as in :func:`follow_path`, like all that follow but the last.
+        name: as in :func:`follow_path`, like all that follow but ``first`` and ``report``; of concentric tubes an input
+            that is one number, such as "inner.rotation" or "push.force.z".
         value: its value at factor 1.
         values: other inputs.
         branch: number of the bifurcation to leave at.
         settings: limits.
+        first: an equilibrium of the same tubes to begin at, such as one of another path.
         progress: receives the largest factor reached.
-        report: receives the discretisation, in words.
+        report: receives the discretisation of rods, in words.
 
     Raises:
-        SceneError: the input is unknown, or a value is refused.
+        SceneError: the input is unknown, a value is refused, or a path of tubes is to leave at a bifurcation.
     """
+    if scene.tubes:
+        if branch:
+            problem = "is for rods: a path of tubes goes straight on"
+            raise SceneError(Problem("--branch", problem, "leave it out"))
+        return follow_tubes(scene, name, value, values, first=first, settings=settings, progress=progress)
 
     def follow(model: Model) -> EquilibriumPath:
         if report is not None:

@@ -20,6 +20,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.tubes.arrows import load_arrows
+from cosserat_casadi.tubes.equilibria import TubeEquilibria
 from cosserat_casadi.tubes.path import TubeEvent, TubePath
 from cosserat_casadi.tubes.solution import TubeSolution
 
@@ -36,13 +37,14 @@ WIDEST = 6.0
 """Width of the innermost reach of the tubes, in points; a tube that ends leaves a thinner line."""
 
 
-def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None:
-    """Draw equilibria at the same inputs into a file, whole or not at all; the same give the same bytes.
+def save_tubes_plot(solution: TubeSolution | TubeEquilibria, file: str | Path) -> None:
+    """Draw an equilibrium, or all at the same inputs, into a file, whole or not at all; the same give the same bytes.
 
     Raises:
         SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
         PlotUnavailableError: matplotlib is not installed.
     """
+    solutions = [solution] if isinstance(solution, TubeSolution) else solution.solutions
     save_figure(lambda: plot_tubes(solutions), file)
 
 
@@ -76,7 +78,7 @@ def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
     panel.legend(fontsize=9)
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
     first = solutions[0]
-    add_title(figure, first.robot.title)
+    add_title(figure, first.robot.scene.title)
     _draw_subtitle(canvas.axes, solutions)
     return figure
 

@@ -22,6 +22,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
             "sigma": found.sigma[i],
             "covariance": found.covariance[i],
             "cost": found.cost[i],
+            "deviations": found.consistency.row_deviations[i],
             **_second_best(found, i),
         }
         for i, (case, outcome) in enumerate(zip(found.cases, found.outcomes, strict=True))
@@ -33,6 +34,14 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
             "unknowns": list(found.labels),
             "units": list(found.units),
             "outcomes": found.counts,
+            "shared": _shared(found),
+            "consistency": {
+                "holds": found.consistency.holds,
+                "squares": found.consistency.squares,
+                "expected": found.consistency.freedom,
+                "deviations": found.consistency.deviations,
+                "bias": [{"sensor": name, "deviations": bias} for name, bias in found.consistency.bias.items()],
+            },
             "unseen": [{"direction": direction, "rows": count} for direction, count in found.unseen.items()],
             "within_tolerance": found.within_tolerance,
             "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
@@ -42,6 +51,15 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
         }
     )
     return data
+
+
+def _shared(found: Estimate) -> list[dict[str, Any]]:
+    """What all rows share; none where nothing of that is unknown."""
+    shared = found.shared
+    if shared is None:
+        return []
+    columns = zip(shared.labels, shared.units, shared.values, shared.sigma, strict=True)
+    return [{"unknown": label, "unit": unit, "value": value, "sigma": sigma} for label, unit, value, sigma in columns]
 
 
 def _second_best(found: Estimate, case: int) -> dict[str, Any]:

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
-from cosserat_casadi.identification.unknowns import parts
+from cosserat_casadi.identification.unknowns import UnknownEntry, parts
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.scene.values import names_in
 
 MOST_OUTLIERS = 100
 """Outliers that the file names."""
@@ -45,6 +46,9 @@ def identification_result(found: Identification) -> dict[str, Any]:
         "unstable": list(found.unstable),
         "left_out": [{"where": case.where, "reason": case.reason} for case in found.left_out],
         "warnings": list(found.warnings),
+        "error_estimate": found.error_estimate,
+        "error_case": found.error_case,
+        "within_tolerance": found.within_tolerance,
         **_steps(found),
         "discretisation": discretisation_entries(found.model),
     }
@@ -75,8 +79,14 @@ def _shared(found: Identification) -> dict[str, Any]:
             # What is not the least misfit has no statistics.
             values["determined"] = np.zeros(entry.size, dtype=bool)
         single = {key: _single(value) for key, value in values.items()}
-        entries[entry.record.name] = {**single, "unit": entry.unit}
+        entries[entry.record.name] = {**single, "unit": entry.unit, **_tied(entry)}
     return entries
+
+
+def _tied(entry: UnknownEntry) -> dict[str, list[str]]:
+    """The names whose numbers follow those that were found; nothing where none do."""
+    names = names_in(entry.record.parameter or ())
+    return {"tied": list(names[1:])} if len(names) > 1 else {}
 
 
 def _own(found: Identification) -> dict[str, Any]:
@@ -116,6 +126,17 @@ def _residual(found: Identification) -> dict[str, Any]:
             "numbers": len(rows),
             "rms": found.rms(measurement=number),
             "held_out_rms": found.rms(held_out=True, measurement=number),
+            "markers": [
+                {
+                    "at": marker.at,
+                    "rows": marker.rows,
+                    "rms": marker.rms,
+                    "largest": marker.largest,
+                    "mean": marker.mean,
+                }
+                for marker in found.distances
+                if marker.measurement == number
+            ],
             "rms_by_unit": {unit: float(np.sqrt(np.mean(np.square(values)))) for unit, values in by_unit.items()},
         }
         title = measurement.title

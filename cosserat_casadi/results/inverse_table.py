@@ -1,4 +1,4 @@
-"""The file of a table of targets: a row for each, with its outcome, the gaps and the inputs found."""
+"""The file of a table of targets: a row for each, with its outcome, the gaps, the error and the inputs found."""
 
 from __future__ import annotations
 
@@ -20,6 +20,10 @@ UNSTABLE = "unstable"
 """Outcome of a row whose equilibrium a real rod leaves."""
 
 
+_WORDS = {True: "true", False: "false", None: None}
+"""Cells of what is true, false or without a meaning."""
+
+
 def row_outcome(inverse: Inverse, unstable: bool) -> str:
     """How a row ended, in a word: met, missed, unstable, or the label of a failed solve.
 
@@ -35,7 +39,7 @@ def row_outcome(inverse: Inverse, unstable: bool) -> str:
 
 
 def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> str:
-    """The file as text: the table's own columns, the outcome, gaps with their errors, and the inputs found.
+    """The file as text: the table's own columns, the outcome, gaps with their errors, that of the tips, and the inputs.
 
     Args:
         table: the targets.
@@ -46,15 +50,17 @@ def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> 
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     gaps = ("position_gap", "angle_gap", "position_error_estimate", "angle_error_estimate")
-    writer.writerow([*table.columns, "outcome", *gaps, *indices])
+    errors = ("error_estimate", "within_tolerance")
+    writer.writerow([*table.columns, "outcome", *gaps, *errors, *indices])
     for given, inverse in zip(table.values.tolist(), found, strict=True):
         cells: list[object] = [*given, row_outcome(inverse, unstable)]
         # Where no equilibrium was found there is nothing to give.
         if inverse.solution.converged:
             (gap,) = inverse.gaps
             cells += [gap.position, gap.angle, gap.position_error, gap.angle_error]
+            cells += [inverse.solution.error_estimate, _WORDS[inverse.solution.within_tolerance]]
             cells += [float(inverse.solution.inputs[index]) for index in indices.values()]
         else:
-            cells += [None] * (len(gaps) + len(indices))
+            cells += [None] * (len(gaps) + len(errors) + len(indices))
         writer.writerow(cells)
     return stream.getvalue()

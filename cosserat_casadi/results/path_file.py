@@ -12,6 +12,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.tubes_file import tube_path_result, tube_path_table
+from cosserat_casadi.tubes.path import TubePath
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
@@ -41,8 +43,10 @@ class _RodPoints:
         return {"tip": tip, "section": section}
 
 
-def path_result(path: EquilibriumPath) -> dict[str, Any]:
+def path_result(path: EquilibriumPath | TubePath) -> dict[str, Any]:
     """A path as the plain data of its file; a number that is not finite becomes null."""
+    if isinstance(path, TubePath):
+        return tube_path_result(path)
     data = {
         "schema": SCHEMA,
         "title": path.model.scene.title,
@@ -63,13 +67,18 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
     return plain_data
 
 
-def path_text(path: EquilibriumPath) -> str:
+def path_text(path: EquilibriumPath | TubePath) -> str:
     """The file of a path as text."""
     return json_text(path_result(path))
 
 
-def path_table(path: EquilibriumPath) -> str:
-    """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod."""
+def path_table(path: EquilibriumPath | TubePath) -> str:
+    """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod.
+
+    Of concentric tubes: the input, stability, energy, and the tips of all tubes.
+    """
+    if isinstance(path, TubePath):
+        return tube_path_table(path)
     tips = {name: path.tip(name) for name in path.model.discrete.rods}
     pose_columns = [f"{name}.{axis}" for name in tips for axis in POSE_COLUMNS]
     lines = io.StringIO()

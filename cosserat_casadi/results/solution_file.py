@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -15,12 +15,25 @@ from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.contact_entry import point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.solution import TubeSolution
+
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
 
 
-def result(solution: Solution) -> dict[str, Any]:
+Solved: TypeAlias = "Solution | TubeSolution | TubeEquilibria"
+"""What a result file may be of: rods, concentric tubes, or all equilibria of these."""
+
+
+def result(solution: Solved) -> dict[str, Any]:
     """A solution as the plain data of the result file; a number that is not finite becomes null."""
+    if not isinstance(solution, Solution):
+        # Imported here, because no scene of rods needs the modules of tubes.
+        from cosserat_casadi.results.tubes_file import tubes_result
+
+        return tubes_result(solution)
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)
@@ -57,12 +70,12 @@ def result(solution: Solution) -> dict[str, Any]:
     return plain_data
 
 
-def result_text(solution: Solution) -> str:
+def result_text(solution: Solved) -> str:
     """The result file as text."""
     return json_text(result(solution))
 
 
-def write_result(solution: Solution, path: str | Path) -> None:
+def write_result(solution: Solved, path: str | Path) -> None:
     """Write the result file, whole or not at all."""
     write_atomically(Path(path), result_text(solution).encode())
 

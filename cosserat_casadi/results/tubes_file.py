@@ -10,23 +10,20 @@ from cosserat_casadi.tubes.path import TubeEvent, TubePath
 from cosserat_casadi.tubes.solution import TubeSolution
 
 
-def tubes_result(solution: TubeSolution) -> dict[str, Any]:
-    """An equilibrium as the plain data of a file; a number that is not finite becomes null."""
-    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.title, **_equilibrium(solution)})
-    return data
+def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:
+    """An equilibrium, or all at the same inputs by their energy, as the plain data of a file.
 
-
-def equilibria_result(equilibria: TubeEquilibria) -> dict[str, Any]:
-    """All equilibria at the same inputs as the plain data of a file, by their energy."""
-    data: dict[str, Any] = plain(
-        {
-            "schema": SCHEMA,
-            "title": equilibria.robot.title,
-            "complete": equilibria.complete,
-            "message": equilibria.message,
-            "equilibria": [_equilibrium(solution) for solution in equilibria.solutions],
+    A number that is not finite becomes null.
+    """
+    if isinstance(solution, TubeSolution):
+        entries = _equilibrium(solution)
+    else:
+        entries = {
+            "complete": solution.complete,
+            "message": solution.message,
+            "equilibria": [_equilibrium(one) for one in solution.solutions],
         }
-    )
+    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.scene.title, **entries})
     return data
 
 
@@ -97,7 +94,7 @@ def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
         "determinant": solution.stability.determinant,
         "energy": solution.energy,
         "steps": solution.model.steps,
-        "inputs": dict(zip(robot.input_names, solution.inputs.tolist(), strict=True)),
+        "inputs": dict(zip(robot.columns, solution.inputs.tolist(), strict=True)),
         "tip_angles": solution.angles,
         "centre_line": {"distance": shape.distance, "position": shape.position, "quaternion": shape.quaternion},
         "tubes": entries,

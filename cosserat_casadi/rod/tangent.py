@@ -200,8 +200,40 @@ class Tangent:
 
     def position(self, node: int) -> Matrix:
         """δr of one node, 3×n, m."""
-        weights = self.rod.grid.integration_matrix[[node]]
-        weighted = self.shape.tangent * ca.repmat(ca.DM(weights), 3, 1)
+        return self._displacement(ca.DM(self.rod.grid.integration_matrix[[node]]))
+
+    def displacement(self, weights: Matrix) -> Matrix:
+        """δr of k sections, one below the other, 3k×n, m.
+
+        Args:
+            weights: of the values at the nodes, M×k.
+        """
+        integrals = weights.T @ ca.DM(self.rod.grid.integration_matrix)
+        return ca.vertcat(*[self._displacement(row) for row in ca.vertsplit(integrals)])
+
+    def quaternion_change(self, weights: Matrix) -> Matrix:
+        """Changes Σ w δQ of the weighted means of the quaternions at the nodes, one below the other, 4k×n.
+
+        Args:
+            weights: of the values at the nodes, M×k.
+        """
+        changes = []
+        for column in ca.horzsplit(weights):
+            # δQ = ½ (0, δθ) ⊗ Q at every node.
+            weighted = ca.densify(self.shape.quaternion * ca.repmat(column.T / 2, 4, 1))
+            w, x, y, z = ca.vertsplit(weighted)
+            spins = [
+                [-x, -y, -z],
+                [w, z, -y],
+                [-z, w, x],
+                [y, -x, w],
+            ]
+            changes.append(self._with_linear_columns(ca.blockcat(spins) @ self.rotation))
+        return ca.vertcat(*changes)
+
+    def _displacement(self, weights: Matrix) -> Matrix:
+        """Weighted sum of the δt of the nodes, 3×n, m; weights are 1×M."""
+        weighted = self.shape.tangent * ca.repmat(weights, 3, 1)
         x, y, z = ca.vertsplit(weighted)
         none = type(x)(*x.shape)
         # Σ w δθ × t, the sum over the nodes.
@@ -212,8 +244,9 @@ class Tangent:
         ]
         columns = [ca.blockcat(levers) @ self.rotation]
         for c in self.rod.linear:
-            stretch = weights.T * np.asarray(self._stretch(c))
-            columns.append(self.shape.directors[c - 3] @ ca.DM(stretch))
+            stretch = self._stretch(c)
+            weighted_stretch = ca.repmat(weights.T, 1, stretch.shape[1]) * stretch
+            columns.append(self.shape.directors[c - 3] @ weighted_stretch)
         return ca.horzcat(*columns)
 
     def rotation_of(self, node: int) -> Matrix:

@@ -50,7 +50,9 @@ def ranges_of_no_input(scene: SceneTables) -> Iterator[Fault]:
         return
     counts = entry_counts(scene)
     parameters = scene.get("parameters")
-    names = [*counts, *(parameters if isinstance(parameters, list) else [])]
+    listed = parameters if isinstance(parameters, list) else []
+    # Of names that are tied together the first is the parameter's.
+    names = [*counts, *(entry[0] if isinstance(entry, list) and entry else entry for entry in listed)]
     for name, pairs in ranges.items():
         if name not in names:
             yield Fault(("ranges", name), "is not free at run time", listing(names, "inputs and parameters"))

@@ -93,10 +93,12 @@ class MeasurementRecord(Entry):
     Attributes:
         entries: what each of the columns holds.
         differences: units of the numbers by which model and measurement differ: those that sigma is for.
+        of_sensor: keys whose numbers say where the sensor is: they may be unknown.
     """
 
     entries: ClassVar[tuple[str, ...]] = ()
     differences: ClassVar[tuple[str, ...]] = ()
+    of_sensor: ClassVar[tuple[str, ...]] = ()
 
     if TYPE_CHECKING:
         quantity: str  # each member declares its own word, where it stands among its keys
@@ -138,6 +140,13 @@ class MeasurementRecord(Entry):
     def title(self) -> str:
         """What results call it, where it has no other of that name."""
         return self.name or f"{PurePath(self.file).stem} {self.quantity}"
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """What its table is read with is no parameter."""
+        if key in self.of_sensor:
+            return super().parameter_refusal(key)
+        known = " or ".join(self.of_sensor) or "none of its numbers"
+        return "is what the table is read with", f"of this measurement {known} may be unknown"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

@@ -22,6 +22,7 @@ class FrameMeasurement(MovingMeasurement):
     """Something that was measured at a section of a rod, or of a body."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods", "body": "bodies"}
+    of_sensor: ClassVar[tuple[str, ...]] = ("at", "offset")
 
     rod: str | None = Field(None, description="name of the rod; or body")
     at: Abscissa = Field(1.0, description="abscissa X of the section, or the column that has it, without unit")
@@ -175,6 +176,7 @@ sigma = 2e-6
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
     entries: ClassVar[tuple[str, ...]] = ("strain",)
     differences: ClassVar[tuple[str, ...]] = ("1",)
+    of_sensor: ClassVar[tuple[str, ...]] = ("at", "fibre")
 
     quantity: Literal["strain"] = Field(description="strain of a fibre, without unit")
     rod: str = Field(description="name of the rod")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -23,7 +23,7 @@ from cosserat_casadi.scene.profiles import ENDS
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.spelling import closest
 
-PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "supports")
+PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "supports", "measurements")
 """Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
 
 SPAN = ("start", "end")
@@ -67,6 +67,19 @@ Holders = Mapping[str, Sequence[Holder]]
 
 
 @dataclass(frozen=True)
+class Tied:
+    """Numbers of a scene that follow others.
+
+    Attributes:
+        numbers: which.
+        ratios: what each is times the number that it follows, one for each cell.
+    """
+
+    numbers: NamedNumbers
+    ratios: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class NamedNumbers:
     """Numbers of a scene that have been named as one parameter.
 
@@ -78,6 +91,7 @@ class NamedNumbers:
         form: how the key holds its numbers.
         cells: which of the numbers of the key they are, column after column.
         default: their values in the scene, shape (components, places along the rod).
+        tied: other numbers that follow these.
     """
 
     name: str
@@ -87,6 +101,12 @@ class NamedNumbers:
     form: Form
     cells: tuple[Cell, ...]
     default: FloatArray
+    tied: tuple[Tied, ...] = ()
+
+    @property
+    def all_numbers(self) -> tuple[NamedNumbers, ...]:
+        """These numbers, and those that follow them."""
+        return (self, *(other.numbers for other in self.tied))
 
     @property
     def field(self) -> str:
@@ -146,6 +166,39 @@ def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
     if holder.record is None:
         return None
     return _numbers_in(name, holder, segments)
+
+
+def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
+    """The numbers that the first of several names stands for, with those of the others, which follow them.
+
+    All keep the ratios that they have in the scene; equal numbers stay equal. None where some entry is faulty.
+
+    Raises:
+        RefusedParameter: a name stands for no number that may be a parameter, or some cannot follow the first.
+    """
+    first, *others = [named_numbers(name, holders) for name in names]
+    if first is None or None in others:
+        return None
+    tied = tuple(Tied(other, _ratios(first, other)) for other in others if other is not None)
+    return replace(first, tied=tied)
+
+
+def _ratios(first: NamedNumbers, other: NamedNumbers) -> tuple[float, ...]:
+    """What numbers are times those that they follow."""
+    if other.unit != first.unit:
+        problem = f"{shown(other.name)} is in {other.unit} and cannot follow {shown(first.name)}, in {first.unit}"
+        raise RefusedParameter(problem, "tie numbers of one kind together")
+    leading = first.default.ravel(order="F")
+    following = other.default.ravel(order="F")
+    if len(leading) != len(following):
+        problem = f"{shown(other.name)} has {len(following)} numbers and {shown(first.name)} {len(leading)}"
+        raise RefusedParameter(problem, "name parts of them that have as many")
+    if np.array_equal(leading, following):
+        return (1.0,) * len(leading)
+    if np.any(leading == 0.0):
+        problem = f"{shown(first.name)} is zero in the scene, so that {shown(other.name)} has no ratio to it"
+        raise RefusedParameter(problem, "begin the list with numbers that are not zero, or give both the same values")
+    return tuple((following / leading).tolist())
 
 
 def _with_key(holders: Sequence[Holder], key: str) -> Holder:
@@ -342,6 +395,28 @@ def parameter_faults(
             yield Fault(path, problem, "name each number once")
         for place in places:
             first.setdefault(place, name)
+
+
+def tie_faults(groups: Iterable[tuple[Sequence[Any], Path]], holders: Holders) -> Iterator[Fault]:
+    """Why names that are listed together cannot stand for one number; faults of single names have been told.
+
+    Args:
+        groups: names that are listed together, with where their list stands.
+        holders: entries that may have parameters.
+    """
+    for names, path in groups:
+        if not all(isinstance(name, str) for name in names):
+            continue
+        try:
+            for name in names:
+                named_numbers(name, holders)
+        except RefusedParameter:
+            continue
+        try:
+            tied_numbers(names, holders)
+        except RefusedParameter as refused:
+            problem, remedy = refused.args
+            yield Fault(path, problem, remedy)
 
 
 def holders_of(entries: Iterable[Holder], names: Iterable[Any]) -> dict[str, list[Holder]]:

@@ -22,7 +22,7 @@ from cosserat_casadi.scene.measurement_record import MEASUREMENTS, overlap
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import OBSTACLES
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults
+from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults, tie_faults
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.rods import Rod, admitted_strains
 from cosserat_casadi.scene.targets import TARGETS, Bound
@@ -253,27 +253,35 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """A parameter, or an unknown, names no number of the scene, or one that cannot be a parameter."""
     listed = scene.get("parameters")
-    names = list(listed) if isinstance(listed, list | tuple) else []
-    paths: list[Path] = [("parameters", i) for i in range(len(names))]
+    groups: list[tuple[list[Any], Path]] = []
+    for i, entry in enumerate(listed if isinstance(listed, list | tuple) else []):
+        groups.append((_listed_names(entry), ("parameters", i)))
+    parameters = len(groups)
     first: dict[str, int] = {}
     for i, table in scene.tables("unknowns"):
-        name = table.get("parameter", table.get("input"))
-        if not isinstance(name, str):
+        key = "parameter" if "parameter" in table else "input"
+        names = _listed_names(table.get(key))
+        if not names or not all(isinstance(name, str) for name in names):
             continue
-        if first.setdefault(name, i) != i:
-            key = "parameter" if "parameter" in table else "input"
-            yield Fault(("unknowns", i, key), f"unknowns[{first[name]}] is {shown(name)} already", "name it once")
-        elif "parameter" in table and name not in names:
-            names.append(name)
-            paths.append(("unknowns", i, "parameter"))
-        elif "input" in table:
+        again = next((name for name in names if first.setdefault(name, i) != i), None)
+        if again is not None:
+            yield Fault(("unknowns", i, key), f"unknowns[{first[again]}] is {shown(again)} already", "name it once")
+        elif key == "parameter":
+            listed_groups = [group for group, _ in groups[:parameters]]
+            shared = [group for group in listed_groups if group != names and set(map(str, group)) & set(names)]
+            if shared:
+                problem = f"{shown(names)} and {shown(shared[0])} of parameters share numbers"
+                yield Fault(("unknowns", i, "parameter"), problem, "tie the same numbers in both, or leave one out")
+            elif names not in listed_groups:
+                groups.append((names, ("unknowns", i, "parameter")))
+        else:
             # Of parameters the rules of `parameters` tell.
             for other in first:
-                if other != name and overlap(name, other):
-                    problem = f"{shown(name)} and unknowns[{first[other]}] share numbers"
+                if other != names[0] and overlap(names[0], other):
+                    problem = f"{shown(names[0])} and unknowns[{first[other]}] share numbers"
                     yield Fault(("unknowns", i, "input"), problem, "name each number once")
                     break
-    if not names:
+    if not groups:
         return
     by_list: dict[str, list[tuple[Holder, Any]]] = {key: [] for key in PARAMETER_LISTS}
     for (key, index), record, table in _entries(scene):
@@ -282,7 +290,15 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             by_list[str(key)].append((holder, table.get("name")))
     entries = [entry for key in PARAMETER_LISTS for entry in by_list[key]]
     holders = holders_of([holder for holder, _ in entries], [name for _, name in entries])
+    names = [name for group, _ in groups for name in group]
+    paths = [path if len(group) == 1 else (*path, j) for group, path in groups for j in range(len(group))]
     yield from parameter_faults(names, paths, holders, free_names(scene), requested_fields(scene))
+    yield from tie_faults([(group, path) for group, path in groups if len(group) > 1], holders)
+
+
+def _listed_names(given: Any) -> list[Any]:
+    """The names of a key that holds one or a list of them."""
+    return list(given) if isinstance(given, list | tuple) else [given]
 
 
 def measured_twice(scene: SceneTables) -> Iterator[Fault]:

@@ -19,7 +19,7 @@ from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import Obstacle
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
+from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
@@ -27,7 +27,7 @@ from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
 from cosserat_casadi.scene.tubes import Tube
 from cosserat_casadi.scene.unknowns import Identification, Unknown
-from cosserat_casadi.scene.values import NotEmpty, without_repetition
+from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 
 
 def _exactly_one(value: Any) -> Any:
@@ -42,18 +42,18 @@ class FreeInput:
     """A field of one of the scene's tables that stays free at run time.
 
     Attributes:
-        record: the rod, load or actuator that it belongs to.
+        record: the rod, tube, load or actuator that it belongs to.
         field: its name in that record, with dots where it is in an inner table.
         declared: what the record says of it: unit, components, axes.
     """
 
-    record: Rod | Load | Actuator
+    record: Rod | Tube | Load | Actuator
     field: str
     declared: InputField
 
     @property
     def owner(self) -> str:
-        """Name of the rod, load or actuator."""
+        """Name of the rod, tube, load or actuator."""
         return self.record.name
 
     @property
@@ -83,10 +83,11 @@ inputs = ["push.force", "cable.tension"]
         None,
         description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
-    parameters: Annotated[tuple[str, ...], AfterValidator(without_repetition)] = Field(
+    parameters: Annotated[tuple[TiedNames, ...], AfterValidator(without_tied_repetition)] = Field(
         (),
         description="numbers of the scene that become arguments of every function, by their keys, such as "
-        "'finger.material.youngs_modulus'",
+        "'finger.material.youngs_modulus'; a list of keys is one parameter, named as its first: their numbers keep "
+        "their ratios",
     )
     ranges: InputRanges = Field(
         default_factory=HashedTable,
@@ -126,17 +127,20 @@ inputs = ["push.force", "cable.tension"]
         """What stays free at run time: the inputs that the scene lists, or else every magnitude that it gives.
 
         Returns:
-            listed inputs in their order; magnitudes of loads, then of actuators, in the order of the file.
+            listed inputs in their order; rotations and translations of tubes, then magnitudes of loads, then of
+            actuators, in the order of the file.
         """
         # An empty list is an answer too: nothing stays free.
         if self.inputs is not None:
             return tuple(self._named_input(name) for name in self.inputs)
-        return tuple(
+        of_tubes = [FreeInput(tube, *entry) for tube in self.tubes for entry in tube.inputs.items()]
+        magnitudes = [
             FreeInput(record, field, declared)
             for record in self.causes
             for field, declared in record.inputs.items()
             if field in record.model_fields_set and not declared.on_request
-        )
+        ]
+        return (*of_tubes, *magnitudes)
 
     def input_names(self) -> tuple[str, ...]:
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
@@ -150,16 +154,29 @@ inputs = ["push.force", "cable.tension"]
             records = getattr(self, key)
             entries += [Holder(key, index, record) for index, record in enumerate(records)]
         holders = holders_of(entries, [getattr(holder.record, "name", None) for holder in entries])
-        named = [named_numbers(name, holders) for name in self.parameters]
+        named = [tied_numbers(names_in(entry), holders) for entry in self.parameters]
         return tuple(numbers for numbers in named if numbers is not None)
 
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters, in the order of its list."""
+        return tuple(names_in(entry)[0] for entry in self.parameters)
+
     def with_numbers(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
-        """The scene with other numbers for those that one parameter names.
+        """The scene with other numbers for those that one parameter names, and for those that follow them.
 
         Args:
             numbers: what to change.
             values: one for each of its cells: numbers, which are not judged, or expressions.
         """
+        scene = self._with_cells(numbers, values)
+        for tied in numbers.tied:
+            following = [
+                value if ratio == 1.0 else ratio * value for ratio, value in zip(tied.ratios, values, strict=True)
+            ]
+            scene = scene._with_cells(tied.numbers, following)
+        return scene
+
+    def _with_cells(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
         holder = numbers.holder
         records = list(getattr(self, holder.table))
         records[holder.index] = numbers.written(records[holder.index], values)
@@ -203,7 +220,7 @@ inputs = ["push.force", "cable.tension"]
             owner, _, rest = name.partition(".")
             known = [field for field in owners[owner].inputs if rest == field or rest.startswith(f"{field}.")]
             fields.append(f"{owner}.{max(known, key=len)}")
-        parameters = [unknown.parameter for unknown in self.unknowns if unknown.parameter is not None]
+        parameters: list[str | tuple[str, ...]] = [unknown.parameter for unknown in self.unknowns if unknown.parameter]
         further = [name for name in parameters if name not in self.parameters]
         if self.measured_over_time:
             fields += [motion.input for motion in self.motions]

@@ -11,7 +11,7 @@ from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.measurement_record import PositiveComponent, overlap, table_that_moves
 from cosserat_casadi.scene.records import Entry, Record
-from cosserat_casadi.scene.values import Component, Number, Positive, Whole, numbers_of
+from cosserat_casadi.scene.values import Component, Number, Positive, TiedNames, Whole, names_in, numbers_of
 
 
 class Prior(Record):
@@ -40,17 +40,23 @@ upper = 1e11
 prior = { mean = 2e9, sigma = 5e8 }
 
 [[unknowns]]
+parameter = ["arm.stiffness.bending_x", "arm.stiffness.bending_y"]
+
+[[unknowns]]
 input = "push.force"
 per_row = true
 """
 
-    parameter: str | None = Field(
-        None, description="the number's name as `parameters` spells it; it need not be listed there; or input"
+    parameter: TiedNames | None = Field(
+        None,
+        description="the number's name as `parameters` spells it; it need not be listed there; or a list of names, "
+        "whose numbers keep the ratios that they have in the scene: those of the first are found; or input",
     )
     input: str | None = Field(None, description="'load.field' of the input, or of a part such as 'push.force.z'")
     per_row: bool = Field(
         False,
-        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds",
+        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds; an "
+        "estimate asks for a prior where not",
     )
     lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
     upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")
@@ -59,7 +65,9 @@ per_row = true
     @property
     def name(self) -> str:
         """As the scene spells it."""
-        return str(self.parameter or self.input)
+        if self.parameter is not None:
+            return names_in(self.parameter)[0]
+        return str(self.input)
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

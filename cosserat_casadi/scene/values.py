@@ -203,6 +203,26 @@ def without_repetition(value: tuple[str, ...]) -> tuple[str, ...]:
     return value
 
 
+def without_tied_repetition(value: tuple[str | tuple[str, ...], ...]) -> tuple[str | tuple[str, ...], ...]:
+    """Refuse names that are listed twice, be it in lists of names that stand for one number."""
+    seen: set[str] = set()
+    faults = []
+    for i, entry in enumerate(value):
+        for j, name in enumerate(names_in(entry)):
+            path: Path = (i,) if isinstance(entry, str) else (i, j)
+            if name in seen:
+                faults.append(Fault(path, f"{shown(name)} is listed twice"))
+            seen.add(name)
+    if faults:
+        raise refusal(faults)
+    return value
+
+
+def names_in(entry: str | tuple[str, ...]) -> tuple[str, ...]:
+    """The names of an entry that is one, or several that are tied together."""
+    return (entry,) if isinstance(entry, str) else entry
+
+
 def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
     seen: set[str] = set()
     for i, name in enumerate(names):
@@ -289,6 +309,12 @@ Component = Annotated[
     BY_LENGTH,
 ]
 """A number, or several."""
+
+TiedNames = Annotated[
+    Annotated[str, SINGLE] | Annotated[tuple[str, ...], NotEmpty(), SEVERAL],
+    BY_LENGTH,
+]
+"""A name, or several whose numbers are tied together."""
 
 LegendreComponent = Annotated[Component, Varying(Notation.LEGENDRE)]
 """A number, or what varies along the rod: a plain list is of Legendre coefficients in 2X − 1."""

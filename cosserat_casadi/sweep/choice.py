@@ -8,14 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed
+from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
+from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweep.row_model import result_row
 from cosserat_casadi.sweep.sampling import representative_rows
 from cosserat_casadi.sweep.variants import Variants
@@ -47,7 +50,7 @@ class Choice:
         """The scene of a variant on this discretisation."""
         if self.discretisation is None:
             return variant
-        return fixed(variant, self.discretisation)
+        return fixed_alike(variant, self.discretisation)
 
     def plain(self) -> dict[str, Any]:
         """The choice as data of a JSON file."""
@@ -90,35 +93,27 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
     if accuracy.fixed:
         return Choice(None)
     rows = representative_rows(values, samples)
+    scenes: dict[str, Scene] = {}
     cases = []
     for row in rows:
-        scene = unfixed(variants.scene_of_row(row), accuracy.tolerance)
-        cases.append((scene, variants.inputs_of_row(row)))
-    # Each row once by itself and once on the union, which may have to be refined.
-    expected = 2 * len(cases)
-    solved_cases = 0
+        variant = variants.scene_of_row(row)
+        text = scene_text(variant)
+        # Rows of equal scenes share one, and with it a model.
+        if text not in scenes:
+            scenes[text] = unfixed(variant, accuracy.tolerance)
+        cases.append(LoadCase(scenes[text], variants.inputs_of_row(row)))
 
-    def solve_reporting(scene: Scene, inputs: dict[str, FloatArray]) -> Solution:
-        nonlocal solved_cases
-        progress("Choosing the discretisation", solved_cases, max(expected, solved_cases + 1))
-        solved_cases += 1
-        return solve_scene(scene, inputs)
+    def show(done: int, total: int) -> None:
+        progress("Choosing the discretisation", done, total)
 
-    alone = [solve_reporting(scene, inputs) for scene, inputs in cases]
-    with_equilibrium = [i for i, solution in enumerate(alone) if solution.converged]
-    used = with_equilibrium or list(range(len(cases)))
-    discretisation, together = common_discretisation(
-        [cases[i] for i in used],
-        [alone[i] for i in used],
-        solve_reporting,  # type: ignore[arg-type]
-    )
-    converged = [solution for solution in together if solution.converged]
-    estimates = [s.error_estimate for s in converged if s.error_estimate is not None]
+    search = CommonModes(cases, show)
+    answers = search.refined(no_more)
+    _, error = search.worst(answers)
     return Choice(
-        discretisation,
+        union_of(list(answers.chosen.values())),
         tuple(rows),
-        len(converged),
-        max(estimates, default=None),
+        len(cases) - len(search.without_equilibrium),
+        error if error >= 0.0 else None,
     )
 
 
@@ -128,7 +123,7 @@ def check(
     results: FloatArray,
     progress: Progress,
 ) -> list[dict[str, Any]]:
-    """Some rows solved again in Python, beside a finer discretisation that tells their error.
+    """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
 
     Args:
         variants: scenes and inputs of the table.
@@ -147,11 +142,15 @@ def check(
     first = len(JUDGED)
     positions = results[converged][:, first : first + 3]
     rows = converged[representative_rows(positions, CHECKED)].tolist()
+    models: dict[str, Model] = {}
     checked = []
     for done, row in enumerate(rows):
         progress("Checking rows", done, len(rows))
         scene = choice.scene(variants.scene_of_row(row))
-        solution = solve_scene(scene, variants.inputs_of_row(row))
+        text = scene_text(scene)
+        if text not in models:
+            models[text] = build(scene)
+        solution = solve(models[text], variants.inputs_of_row(row))
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate

@@ -17,19 +17,25 @@ import numpy as np
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import atomic_file, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.outcome_table import LABELS, Sweep
+from cosserat_casadi.sweep.outcome_table import LABELS, WITHIN, Sweep
 
 FORMATS = (".csv", ".parquet")
 """Suffixes of the results."""
 
 STABLE = "stable"
-"""A column of true and false; empty where stability is not judged."""
+"""The column that says whether a row is stable; empty where stability is not judged."""
+
+TRUTHS = (WITHIN, STABLE)
+"""Columns of true and false."""
 
 WORDS = {"true": 1.0, "false": 0.0}
 """Its cells as numbers."""
 
 BLOCK = 4096
 """Rows that are written at once."""
+
+ROW_GROUP = 65_536
+"""The same of Parquet, whose readers skip or share out such groups of rows."""
 
 
 class ParquetUnavailableError(CosseratError):
@@ -145,7 +151,7 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
     """Rows of the CSV file; what was not found is an empty cell."""
     swept_count = len(sweep.swept)
     iterations = swept_count + sweep.found.index("iterations")
-    stable = swept_count + sweep.found.index(STABLE) if STABLE in sweep.found else None
+    truths = [swept_count + sweep.found.index(name) for name in TRUTHS if name in sweep.found]
     complete = np.isfinite(sweep.values.sum(axis=1)).tolist()
     # Lists of a block of rows: Python's own numbers print faster, and all at once would take too much memory.
     for first in range(0, len(sweep.values), BLOCK):
@@ -156,32 +162,44 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             else:
                 cells = ["" if math.isnan(cell) else repr(cell) for cell in row]
             cells[iterations] = str(int(row[iterations]))
-            if stable is not None and cells[stable]:
-                cells[stable] = str(bool(row[stable])).lower()
+            for truth in truths:
+                if cells[truth]:
+                    cells[truth] = "true" if row[truth] else "false"
             outcome = LABELS[sweep.outcomes[index]]
             cells.insert(swept_count, outcome)
             yield cells
 
 
 def _write_parquet(sweep: Sweep, path: Path) -> None:
+    arrow_module()
+    import pyarrow.parquet
+
+    # A block at once: a copy of all columns would take as much memory again as the results.
+    first = _arrow_table(sweep, slice(0, ROW_GROUP))
+    with pyarrow.parquet.ParquetWriter(path, first.schema) as writer:
+        writer.write_table(first)
+        for start in range(ROW_GROUP, len(sweep.values), ROW_GROUP):
+            writer.write_table(_arrow_table(sweep, slice(start, start + ROW_GROUP)))
+
+
+def _arrow_table(sweep: Sweep, rows: slice) -> Any:
+    """Some rows as a table of pyarrow."""
     arrow = arrow_module()
     columns: dict[str, Any] = {}
     for name in sweep.swept:
-        columns[name] = arrow.array(sweep[name])
-    numbers_of_outcomes = arrow.array(sweep.outcomes, arrow.int8())
+        columns[name] = arrow.array(sweep[name][rows])
+    numbers_of_outcomes = arrow.array(sweep.outcomes[rows], arrow.int8())
     columns["outcome"] = arrow.DictionaryArray.from_arrays(numbers_of_outcomes, list(LABELS))
     for name in sweep.found:
-        numbers = sweep[name]
+        numbers = sweep[name][rows]
         # Taken before the cast: whole numbers have no NaN.
         missing = ~np.isfinite(numbers)
         if name == "iterations":
             numbers = numbers.astype(np.int32)
-        if name == STABLE:
+        if name in TRUTHS:
             numbers = numbers == 1.0
         columns[name] = arrow.array(numbers, mask=missing)
-    import pyarrow.parquet
-
-    pyarrow.parquet.write_table(arrow.table(columns), path)
+    return arrow.table(columns)
 
 
 def _read_parquet(path: Path) -> tuple[list[str], list[Any]]:

@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
 ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
 """How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
+
+ERROR, WITHIN = ERRORS
+"""Columns of the estimated error, and of whether it is within the tolerance."""
 
 LABELS = tuple(outcome.label for outcome in ENDINGS)
 """Words of the column ``outcome``."""
@@ -26,7 +30,7 @@ class Sweep:
 
     Attributes:
         swept: columns of the table.
-        found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert.
+        found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert, errors.
         values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
         outcomes: how each row ended, as its place in LABELS, shape (rows,).
         record: what was computed, how and how well, as plain data: the file beside the results; empty without it.
@@ -63,21 +67,35 @@ class Sweep:
 
     @property
     def holds(self) -> bool:
-        """Whether some row converged, and every row that was looked at is within the scene's tolerance.
+        """Whether some row converged, and no estimate of an error is above the scene's tolerance.
 
         Without a record nothing says so.
         """
         if not self.record:
             return False
         tolerance = self.record["tolerance"]
-        # Where the scene fixes its discretisation nothing was estimated beforehand; the checked rows decide.
-        errors = [self.record["chosen"]["error_estimate"] or 0.0]
-        for row in self.record["checked"]:
-            errors += [row["error_estimate"], row["difference"]]
+        errors = [row["difference"] for row in self.record["checked"]]
+        # A tolerance that nobody has written asks nothing of modes that the scene fixes.
+        if self.tolerance_binds:
+            # Where the scene fixes its discretisation nothing was estimated beforehand; the rows decide.
+            errors.append(self.record["chosen"]["error_estimate"] or 0.0)
+            errors += [row["error_estimate"] for row in self.record["checked"]]
         # A row without an equilibrium in Python has no error, and so cannot be within the tolerance.
         errors = [np.inf if error is None else error for error in errors]
         within_tolerance = all(error <= tolerance for error in errors)
-        return within_tolerance and bool(self.converged.any())
+        return within_tolerance and not self.missed.any() and bool(self.converged.any())
+
+    @property
+    def tolerance_binds(self) -> bool:
+        """Whether the tolerance of the record is asked for; older records do not say, and mean that it is."""
+        return bool(self.record.get("tolerance_binds", True))
+
+    @property
+    def missed(self) -> npt.NDArray[np.bool_]:
+        """Which rows hold an equilibrium that is not within the tolerance, shape (rows,); none without estimates."""
+        if WITHIN not in self.found:
+            return np.zeros(len(self.values), dtype=bool)
+        return np.asarray(self.converged & (self[WITHIN] == 0.0))
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).

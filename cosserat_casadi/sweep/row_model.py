@@ -30,26 +30,30 @@ class RowModel:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
         measure: text of the scene that eigenvalues are counted in: that of the sweep as it stands. Empty for this one.
+        estimate_errors: whether rows tell their estimated error.
     """
 
     scene: str
     stability: bool = False
     measure: str = ""
+    estimate_errors: bool = False
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
         model = _model(self.scene)
-        width = len(row_results(model.scene, stability=self.stability))
+        columns = row_results(model.scene, estimate_errors=self.estimate_errors, stability=self.stability)
+        width = len(columns)
         rows = []
         near: Solution | None = None
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
             # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
-            solution = solve(model, model.inputs.unpack(row), start=near, estimate_error=False)
+            values = model.inputs.unpack(row)
+            solution = solve(model, values, start=near, estimate_error=self.estimate_errors)
             if model.scene.touches_exactly and solution.converged:
                 near = solution
             judged = self._counted_in_measure(solution) if self.stability else None
-            rows.append(result_row(solution, width, judged))
+            rows.append(result_row(solution, width, judged, estimate_errors=self.estimate_errors))
         return np.array(rows).reshape(len(inputs), width)
 
     def _counted_in_measure(self, solution: Solution) -> Solution:
@@ -65,7 +69,9 @@ class RowModel:
         return again
 
 
-def result_row(solution: Solution, width: int, judged: Solution | None = None) -> FloatArray:
+def result_row(
+    solution: Solution, width: int, judged: Solution | None = None, *, estimate_errors: bool = False
+) -> FloatArray:
     """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
 
     Args:
@@ -73,6 +79,7 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
         width: numbers in the row.
         judged: the same equilibrium in the units of its smallest eigenvalue, where the row ends with its stability:
             NaN where the loads have no potential.
+        estimate_errors: whether the row tells the estimated error; NaN where there is no estimate.
     """
     row = np.full(width, np.nan)
     outcome = ENDINGS.index(solution.outcome)
@@ -93,11 +100,18 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
         numbers += contact_numbers(_contacts_of(solution, rod, obstacle.name, of_body=False))
     for body, obstacle in body_pairs(scene):
         numbers += body_contact_numbers(_contacts_of(solution, body.name, obstacle.name, of_body=True))
+    if estimate_errors:
+        numbers += error_numbers(solution.error_estimate)
     if judged is not None:
         verdict = (judged.smallest_eigenvalue, judged.stable)
         numbers += [np.nan if number is None else float(number) for number in verdict]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
+
+
+def error_numbers(estimate: float | None) -> list[float]:
+    """Columns :data:`ERRORS` of a row; what is not known is NaN, and so is the verdict, which the sweep passes."""
+    return [np.nan if estimate is None else estimate, np.nan]
 
 
 def _contacts_of(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[Contact]:

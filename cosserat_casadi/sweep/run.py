@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import NAME, STABILITY, RowLibrary, row_library, row_results
+from cosserat_casadi.codegen.rows import ERRORS, NAME, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
@@ -33,6 +33,7 @@ from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_s
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweep.shards import Shard, named, shard_files
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
@@ -58,6 +59,7 @@ class Plan:
         output: file of the results, if one is wanted.
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable.
+        estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
     """
 
     scene: Scene
@@ -66,6 +68,7 @@ class Plan:
     output: Path | None
     samples: int
     stability: bool = False
+    estimate_errors: bool = True
 
     @property
     def identity(self) -> str:
@@ -79,6 +82,7 @@ class Plan:
             [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
             self.stability,
             self.table.factors,
+            self.estimate_errors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
         values = np.ascontiguousarray(self.table.values, dtype="<f8")
@@ -96,9 +100,8 @@ class Plan:
     @property
     def results(self) -> tuple[str, ...]:
         """Names of the numbers that a row is answered with."""
-        if self.scene.tubes:
-            return tube_results(self.scene, stability=self.stability)
-        return row_results(self.scene, stability=self.stability)
+        names = tube_results if self.scene.tubes else row_results
+        return names(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
 
     @property
     def part(self) -> Path | None:
@@ -117,7 +120,13 @@ class Plan:
 
 
 def plan_sweep(
-    scene: Scene, table: Table, output: Path | None = None, samples: int = SAMPLES, *, stability: bool = False
+    scene: Scene,
+    table: Table,
+    output: Path | None = None,
+    samples: int = SAMPLES,
+    *,
+    stability: bool = False,
+    estimate_errors: bool = True,
 ) -> Plan:
     """A sweep, refused before anything is computed where it could not be done.
 
@@ -127,6 +136,7 @@ def plan_sweep(
         output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
         samples: rows that the discretisation is chosen on, at least 1.
         stability: whether each row says whether its equilibrium is stable.
+        estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
 
     Raises:
         SceneError: with every fault of scene, table and output.
@@ -141,7 +151,7 @@ def plan_sweep(
     try:
         refuse_held_by_contact(scene)
         seen = tube_variants(scene, table) if scene.tubes else variants_of(scene, table)
-        plan = Plan(scene, table, seen, output, samples, stability)
+        plan = Plan(scene, table, seen, output, samples, stability, estimate_errors)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -164,6 +174,7 @@ def sweep_scene(
     cores: int | None = None,
     samples: int = SAMPLES,
     stability: bool = False,
+    estimate_errors: bool = True,
     progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
@@ -179,6 +190,8 @@ def sweep_scene(
         stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
             units of EI/ℓ of the scene as it stands, and ``stable``, 1 or 0; NaN where the loads of a row have no
             potential.
+        estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
+            not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
         progress: told what is being done, how much of it is done, and of how much.
 
     Raises:
@@ -191,7 +204,7 @@ def sweep_scene(
     elif not isinstance(table, Table):
         table = read_table(Path(table))
     file = None if output is None else Path(output)
-    plan = plan_sweep(scene, table, file, samples, stability=stability)
+    plan = plan_sweep(scene, table, file, samples, stability=stability, estimate_errors=estimate_errors)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -230,6 +243,118 @@ def run_sweep(
     return sweep
 
 
+def run_shard(
+    plan: Plan,
+    shard: Shard,
+    *,
+    scheduler: str | None = None,
+    cores: int | None = None,
+    progress: Progress | None = None,
+) -> int:
+    """Do what is left of one shard of a sweep, and keep it beside the file of the results; returns its rows.
+
+    Args:
+        plan: of :func:`plan_sweep`, with an output.
+        shard: which part.
+        scheduler: as in :func:`sweep_scene`.
+        cores: as there.
+        progress: as there.
+
+    Raises:
+        SceneError: the file of the shard is of another sweep.
+    """
+    assert plan.output is not None, "a shard is kept in a file"
+    told = progress or _ignore
+    file = shard.file(plan.output)
+    begun = Store(file).head()
+    if begun is not None and begun["sweep"] != plan.identity:
+        raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
+    work = [chunk for chunk in chunks(plan.variants) if shard.has(chunk)]
+    with _machine(scheduler, cores) as machine, Store(file) as store:
+        choice, done = _begun(plan, work, store, told, _choice_of_others(plan, shard))
+        _solve_rest(plan, choice, machine, work, done, store, told)
+    return sum(len(chunk.rows) for chunk in work)
+
+
+def _choice_of_others(plan: Plan, shard: Shard) -> Choice | None:
+    """The discretisation that another shard of this sweep has chosen; None where none has begun."""
+    assert plan.output is not None
+    for other, file in shard_files(plan.output).items():
+        head = Store(file).head()
+        if other != shard and head is not None and head["sweep"] == plan.identity:
+            return Choice.read(head["choice"])
+    return None
+
+
+def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
+    """Write the results of a sweep from its shards, and remove these.
+
+    Args:
+        plan: of :func:`plan_sweep`, with an output.
+        progress: as in :func:`sweep_scene`.
+
+    Raises:
+        SceneError: shards are missing or not done, of another sweep, or of different discretisations.
+    """
+    assert plan.output is not None, "shards lie beside their output"
+    if plan.finished:
+        return read_sweep(plan.output)
+    files = shard_files(plan.output)
+    work = chunks(plan.variants)
+    rows = {chunk.number: len(chunk.rows) for chunk in work}
+    heads = {shard: Store(file).head() for shard, file in files.items()}
+    _check_shards(plan, work, heads)
+    done: dict[int, FloatArray] = {}
+    for file in files.values():
+        with Store(file) as store:
+            done |= store.resume(rows, len(plan.results))
+    missing = [chunk for chunk in work if chunk.number not in done]
+    if missing:
+        unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
+        raise SceneError(Problem("--merge", f"not done to the end: {named(unfinished)}", "run these shards again"))
+    choice = Choice.read(_known(heads)[0]["choice"])
+    sweep = _sweep(plan, choice, work, done, progress or _ignore)
+    write_sweep(sweep, plan.output)
+    for file in files.values():
+        file.unlink(missing_ok=True)
+    return sweep
+
+
+def _known(heads: Mapping[Shard, dict[str, Any] | None]) -> list[dict[str, Any]]:
+    return [head for head in heads.values() if head is not None]
+
+
+def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[str, Any] | None]) -> None:
+    """Refuse shards that are no whole sweep.
+
+    Raises:
+        SceneError: with every reason.
+    """
+    if not heads:
+        remedy = "run the sweep with --shard 1/4 to 4/4, say, and the same --output"
+        raise SceneError(Problem("--merge", f"there is no shard beside {plan.output}", remedy))
+    problems = []
+    others = [shard for shard, head in heads.items() if head is None or head["sweep"] != plan.identity]
+    if others:
+        problem = f"of another sweep, or damaged: {named(others)}"
+        problems.append(Problem("--merge", problem, "remove their files; scene, table and options must be the same"))
+    counts = sorted({shard.count for shard in heads})
+    if len(counts) > 1:
+        words = " and ".join(str(count) for count in counts)
+        problems.append(Problem("--merge", f"the sweep was cut into {words} shards", "remove those of one cut"))
+    elif not others:
+        wanted = [Shard(number, counts[0]) for number in range(1, counts[0] + 1)]
+        absent = [shard for shard in wanted if shard not in heads and any(shard.has(chunk) for chunk in work)]
+        if absent:
+            problems.append(Problem("--merge", f"missing: {named(absent)}", "run these shards first"))
+    choices = {json.dumps(head["choice"], sort_keys=True) for head in _known(heads)}
+    if len(choices) > 1 and not others:
+        remedy = "tune the scene first, and sweep that, so that modes and nodes are fixed"
+        problems.append(Problem("--merge", "shards have chosen different discretisations", remedy))
+    if problems:
+        raise SceneError(*problems)
+
+
 def _ignore(doing: str, done: int, total: int) -> None:
     """Progress that nobody asked for."""
 
@@ -245,15 +370,18 @@ def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
 
 
 def _begun(
-    plan: Plan, work: Sequence[Chunk], store: Store | None, progress: Progress
+    plan: Plan, work: Sequence[Chunk], store: Store | None, progress: Progress, choice: Choice | None = None
 ) -> tuple[Choice, dict[int, FloatArray]]:
-    """The discretisation and what is done; of a new sweep the one is chosen now, and nothing is done."""
+    """The discretisation and what is done; of a new sweep the one is chosen now, unless it is given."""
     head = None if store is None else store.head()
     if store is not None and head is not None:
         rows = {chunk.number: len(chunk.rows) for chunk in work}
         return Choice.read(head["choice"]), store.resume(rows, len(plan.results))
     # Each row of tubes has as many steps as its own tolerance asks for.
-    choice = Choice(None) if plan.scene.tubes else choose(plan.variants, plan.table.values, plan.samples, progress)
+    if choice is None and plan.scene.tubes:
+        choice = Choice(None)
+    elif choice is None:
+        choice = choose(plan.variants, plan.table.values, plan.samples, progress)
     if store is not None:
         store.start({"sweep": plan.identity, "choice": choice.plain()})
     return choice, {}
@@ -270,6 +398,7 @@ def _solve_rest(
 ) -> None:
     """Solve every chunk that is not done, and keep it."""
     rest = [chunk for chunk in work if chunk.number not in done]
+    total = sum(len(chunk.rows) for chunk in work)
     count = sum(len(chunk.rows) for chunk in work if chunk.number in done)
     tasks = _tasks(plan, choice, rest, progress)
     for chunk, results in machine.run(tasks):
@@ -277,7 +406,7 @@ def _solve_rest(
         if store is not None:
             store.add(chunk.number, results)
         count += len(results)
-        progress("Sweeping", count, len(plan.table.values))
+        progress("Sweeping", count, total)
 
 
 def _tasks(
@@ -300,7 +429,9 @@ def _tasks(
             progress("Compiling", 0, 0)
             scene = choice.scene(variants.entries[variant].scene)
             many = len(variants.entries[variant].rows) >= IN_LANES_FROM
-            library = row_library(build(scene), stability=plan.stability, lanes=many)
+            library = row_library(
+                build(scene), estimate_errors=plan.estimate_errors, stability=plan.stability, lanes=many
+            )
             library_of = variant
         answer: Answer = Parametrised(library) if variants.arguments else library
         yield chunk, [(answer, variants.given(rows))]
@@ -309,13 +440,14 @@ def _tasks(
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """What solves a chunk in Python: a model for each variant that it has rows of."""
     if plan.scene.tubes:
-        return [(TubeRows(scene_text(plan.scene), plan.stability), plan.variants.inputs[chunk.rows])]
+        tubes = TubeRows(scene_text(plan.scene), plan.stability, plan.estimate_errors)
+        return [(tubes, plan.variants.inputs[chunk.rows])]
     parts: list[Part] = []
     # Text, since models of CasADi do not travel to other processes.
     measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
     for variant, rows in chunk.pieces:
         scene = choice.scene(plan.variants.entries[variant].scene)
-        model = RowModel(scene_text(scene), plan.stability, measure)
+        model = RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
         parts.append((model, plan.variants.inputs[rows]))
     return parts
 
@@ -329,20 +461,29 @@ def _sweep(
 ) -> Sweep:
     """All results in the order of the table, some of them checked."""
     names = plan.results
-    results = np.full((len(plan.table.values), len(names)), np.nan)
+    # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
+    results = np.empty((len(plan.table.values), len(names)))
     for chunk in work:
-        results[chunk.rows] = done[chunk.number]
+        results[chunk.rows] = done.pop(chunk.number)
     if plan.stability and not plan.scene.tubes:
         judged = rows_with_potential(plan.variants, work)
         results[~judged, -len(STABILITY) :] = np.nan
+    if plan.estimate_errors:
+        estimate, verdict = (names.index(name) for name in ERRORS)
+        results[:, verdict] = _within_tolerance(plan.scene, results[:, 0] == 0, results[:, estimate])
     # Rows of tubes are within tolerance each, or do not converge.
     checked = [] if plan.scene.tubes else check(plan.variants, choice, results, progress)
     result_names = plan.columns[len(plan.table.columns) :]
     result_columns = [names.index(name) for name in result_names]
+    swept = len(plan.table.columns)
+    values = np.empty((len(results), swept + len(result_columns)))
+    values[:, :swept] = plan.table.values
+    for place, column in enumerate(result_columns, swept):
+        values[:, place] = results[:, column]
     sweep = Sweep(
         swept=plan.table.columns,
         found=result_names,
-        values=np.hstack([plan.table.values, results[:, result_columns]]),
+        values=values,
         outcomes=results[:, 0].astype(np.int64),
         record={},
     )
@@ -351,8 +492,17 @@ def _sweep(
     return sweep
 
 
+def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: FloatArray) -> FloatArray:
+    """Which rows are within the tolerance, 1 or 0, as of a solution; NaN where that is not known or has no meaning."""
+    if not scene.accuracy.binds:
+        return np.full(len(errors), np.nan)
+    within = np.where(np.isnan(errors), np.nan, errors <= scene.accuracy.tolerance)
+    return np.where(converged, within, 0.0)
+
+
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
     sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
+    missed = {"missed": int(sweep.missed.sum())} if plan.estimate_errors else {}
     return {
         "schema": 1,
         "sweep": plan.identity,
@@ -361,6 +511,8 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "rows": len(sweep.values),
         "outcomes": sweep.counts,
         "tolerance": plan.scene.accuracy.tolerance,
+        "tolerance_binds": plan.scene.accuracy.binds,
+        **missed,
         "chosen": choice.plain(),
         "checked": checked,
         "swept": list(sweep.swept),

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep.outcome_table import Sweep
@@ -111,7 +112,7 @@ UNVARIED = (".qw", ".qx", ".qy", ".qz")
 
 def varied_results(sweep: Sweep) -> list[str]:
     """Columns of results that have indices: positions, what actuators exert, the smallest eigenvalue."""
-    judged = ("iterations", "residual", "stable")
+    judged = ("iterations", "residual", *ERRORS, "stable")
     kept = [name for name in sweep.found if name not in judged and not name.endswith(UNVARIED)]
     # Where stability is not judged there is no number.
     return [name for name in kept if np.isfinite(sweep[name][sweep.converged]).all()]

@@ -8,19 +8,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from cosserat_casadi.codegen.rows import JUDGED, POSE
+from cosserat_casadi.codegen.rows import ERRORS, JUDGED, POSE
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene import Scene, Tube, parse_scene
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.sweep.outcome_table import ENDINGS
+from cosserat_casadi.sweep.row_model import error_numbers
 from cosserat_casadi.sweep.table import Table
 from cosserat_casadi.sweep.variants import Variant, Variants
 from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution
+from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import TubeModels, solve_inputs
 
 ENERGY = "energy"
@@ -29,18 +29,12 @@ ENERGY = "energy"
 TUBE_STABILITY = ("falling_directions", "determinant", "stable")
 """Last columns of a row of results, where they are asked for."""
 
-ENDED = {
-    TubeOutcome.CONVERGED: Outcome.CONVERGED,
-    TubeOutcome.NOT_FOUND: Outcome.LOAD_STALLED,
-    TubeOutcome.UNRESOLVED: Outcome.UNRESOLVED,
-}
-"""How a row ends, in the words of all sweeps."""
 
-
-def tube_results(scene: Scene, *, stability: bool) -> tuple[str, ...]:
-    """Names of the columns of a row of results: how it ended, poses of the tips, energy, stability."""
+def tube_results(scene: Scene, *, estimate_errors: bool = False, stability: bool) -> tuple[str, ...]:
+    """Names of the columns of a row of results: how it ended, poses of the tips, energy, error, stability."""
     poses = [f"{tube.name}.{axis}" for tube in scene.tubes for axis in POSE]
-    return (*JUDGED, *poses, ENERGY, *(TUBE_STABILITY if stability else ()))
+    errors = ERRORS if estimate_errors else ()
+    return (*JUDGED, *poses, ENERGY, *errors, *(TUBE_STABILITY if stability else ()))
 
 
 def tube_variants(scene: Scene, table: Table) -> Variants:
@@ -63,9 +57,9 @@ def tube_variants(scene: Scene, table: Table) -> Variants:
 
 def _unknown_columns(robot: Robot, table: Table) -> Iterator[Problem]:
     for column in table.columns:
-        if column in robot.input_names:
+        if column in robot.columns:
             continue
-        remedy = closest(column, robot.input_names)
+        remedy = closest(column, robot.columns)
         owner, _, field = column.partition(".")
         if owner in robot.names and field.split(".")[0] in Tube.model_fields:
             remedy = "rotations, translations and loads are swept; give it with --set, and sweep once for each value"
@@ -88,10 +82,12 @@ class TubeRows:
     Attributes:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
+        estimate_errors: whether rows tell their estimated error.
     """
 
     scene: str
     stability: bool = False
+    estimate_errors: bool = False
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs).
@@ -99,14 +95,15 @@ class TubeRows:
         From straight tubes each: what a row gives does not depend on those before.
         """
         models = _models(self.scene)
-        width = len(tube_results(parse_scene(self.scene), stability=self.stability))
+        scene = parse_scene(self.scene)
+        width = len(tube_results(scene, estimate_errors=self.estimate_errors, stability=self.stability))
         rows = [self._row(solve_inputs(models, row), width) for row in inputs]
         return np.array(rows).reshape(len(inputs), width)
 
     def _row(self, solution: TubeSolution, width: int) -> FloatArray:
         """A solution as a row of results; of what did not converge nothing but how it ended."""
         row = np.full(width, np.nan)
-        ending = ENDINGS.index(ENDED[solution.outcome])
+        ending = ENDINGS.index(solution.outcome)
         row[: len(JUDGED)] = (ending, solution.iterations, solution.residual_norm)
         if not solution.converged:
             return row
@@ -114,6 +111,8 @@ class TubeRows:
         for tip in solution.tips.values():
             numbers += [*tip.position, *tip.quaternion]
         numbers.append(solution.energy)
+        if self.estimate_errors:
+            numbers += error_numbers(solution.error_estimate)
         if self.stability:
             judged = solution.stability
             # Loads without an energy leave falling directions and stability without a meaning.

@@ -116,6 +116,25 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
     return _without_loads(TubeModel(robot, model.steps), at)
 
 
+def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
+    """The equilibrium of :func:`solve_tubes`; the stable one of least energy where it is not stable and there is one.
+
+    Args:
+        scene: a scene with tubes.
+        values: as in :func:`solve_tubes`.
+
+    Raises:
+        SceneError: as :func:`all_equilibria`, and where the loads have no energy.
+    """
+    if not robot_of(scene).has_energy:
+        problem = "the loads have no energy, which would tell what is stable"
+        raise SceneError(Problem("--stable", problem, "leave it out"))
+    solution = solve_tubes(scene, values)
+    if solution.stable:
+        return solution
+    return next(iter(all_equilibria(scene, values).stable), solution)
+
+
 def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
     """The equilibria that those without loads lead to."""
     robot = model.robot
@@ -229,7 +248,7 @@ class _Pair:
 
     def read(self, angle: float) -> _Reading:
         """The drives where the tips are at an angle."""
-        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs, 1.0)
+        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs)
         missed = float(residual[1] - residual[0])
         slope = float(jacobian[1, 1] - jacobian[0, 1])
         return _Reading(angle, missed, slope)
@@ -237,7 +256,7 @@ class _Pair:
     def tips(self, angle: float) -> FloatArray:
         """Angles at both tips, turned together until the first drive is met."""
         together = np.array([0.0, angle])
-        residual = np.ravel(self.model.residual(together, self.inputs, 1.0).full())
+        residual = np.ravel(self.model.residual(together, self.inputs).full())
         return np.asarray(together - residual[0])
 
 
@@ -320,7 +339,7 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
             end = solution_near(model, inputs, start)
             if end.converged and all(np.abs(end.x - known).max() > SAME for known in found):
                 found.append(end.x)
-        determinants = (float(np.linalg.det(model.jacobian(x, inputs, 1.0)[0].full())) for x in found)
+        determinants = (float(np.linalg.det(model.jacobian(x, inputs)[0].full())) for x in found)
         if len(found) == before and _degree(determinants) == 1:
             return _Search(found, settled=True)
     return _Search(found, settled=False)
@@ -331,6 +350,6 @@ def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[Float
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
     for between in itertools.product(angles, repeat=model.size - 1):
         tips = np.array([0.0, *between])
-        missed = np.ravel(model.residual(tips, inputs, 1.0).full())
+        missed = np.ravel(model.residual(tips, inputs).full())
         tips -= missed[0]
         yield tips - TURN * np.round((missed - missed[0]) / TURN)

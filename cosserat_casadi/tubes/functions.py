@@ -10,12 +10,16 @@ import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
+from typing import Self
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
@@ -29,12 +33,16 @@ NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
 
 
+PATH = ("x", "inputs", "load_factor")
+"""Arguments of the functions on the way from straight tubes, load factor 0, to those of the scene, 1."""
+
+
 class TubeFunctions(ABC):
     """A robot of concentric tubes with a number of steps.
 
-    Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, the inputs (rotation
-    and translation of each tube, then those of the loads), and the load factor, on all curvatures, which is 1 but on
-    the way from straight tubes.
+    Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
+    rotation and the translation of each tube, then the loads. Those of a path have the names and arguments that they
+    have in :class:`cosserat_casadi.Model`; the load factor multiplies all curvatures, so that 0 is straight tubes.
 
     Attributes:
         robot: the tubes.
@@ -46,10 +54,24 @@ class TubeFunctions(ABC):
         self.robot = robot
         self.steps = steps
 
+    def __reduce__(self) -> tuple[type[Self], tuple[Robot, int]]:
+        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        return type(self), (self.robot, self.steps)
+
     @property
     def size(self) -> int:
         """Number of tubes."""
         return self.robot.size
+
+    @property
+    def scene(self) -> Scene:
+        """The scene this is a model of."""
+        return self.robot.scene
+
+    @property
+    def inputs(self) -> InputLayout:
+        """Names, order and default values of the inputs."""
+        return self.robot.layout
 
     # What a model says
 
@@ -104,34 +126,48 @@ class TubeFunctions(ABC):
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ what is zero in equilibrium: see the model; angles in rad."""
+        """(x, inputs) ↦ what is zero in equilibrium: see the model; angles in rad."""
         return self._function("residual", {"residual": self._residual})
 
     @cached_property
     def jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivative of the residual with x, square, and the residual."""
+        """(x, inputs) ↦ derivative of the residual with x, square, and the residual."""
         return self._function("jacobian", {"jacobian": self._jacobian, "residual": self._residual})
 
     @cached_property
     def input_jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivative of the residual with the inputs, a column each."""
+        """(x, inputs) ↦ derivative of the residual with the inputs, a column each."""
         _, inputs, _ = self._arguments
         return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
-    def input_rate(self) -> ca.Function:
-        """(x, inputs, load_factor, change) ↦ change of the residual with a change of the inputs, a column."""
-        _, inputs, _ = self._arguments
-        change = ca.MX.sym("change", inputs.size1())
-        rate = ca.jtimes(self._residual, inputs, change)
-        names = ["x", "inputs", "load_factor", "change"]
-        return ca.Function("input_rate", [*self._arguments, change], [rate], names, ["input_rate"])
+    def path_residual(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ residual of tubes whose curvatures are those of the scene times the factor."""
+        return ca.Function("path_residual", [*self._arguments], [self._residual], [*PATH], ["residual"])
 
     @cached_property
-    def load_rate(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivative of the residual with the load factor, a column."""
-        _, _, load_factor = self._arguments
-        return self._function("load_rate", {"load_rate": ca.jacobian(self._residual, load_factor)})
+    def path_jacobian(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ derivative of that residual with x."""
+        return ca.Function("path_jacobian", [*self._arguments], [self._jacobian], [*PATH], ["jacobian"])
+
+    @cached_property
+    def path_rate(self) -> ca.Function:
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of that residual at fixed x."""
+        _, inputs, load_factor = self._arguments
+        rates = ca.MX.sym("inputs_rate", inputs.size1()), ca.MX.sym("load_factor_rate")
+        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates))
+        names = [*PATH, "inputs_rate", "load_factor_rate"]
+        return ca.Function("path_rate", [*self._arguments, *rates], [rate], names, ["residual_rate"])
+
+    @property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a step: angles and numbers of a quaternion alike."""
+        return np.ones(self.unknowns)
+
+    @property
+    def is_assembly(self) -> bool:
+        """Whether the Jacobian is sparse: it never is."""
+        return False
 
     @cached_property
     def equilibrium(self) -> ca.Function:
@@ -142,7 +178,7 @@ class TubeFunctions(ABC):
         number, nothing was found: whoever calls it has to look.
         """
         x, inputs, _ = self._arguments
-        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs, 1.0)])
+        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs)])
         options = {"abstol": NEWTON_TOLERANCE, "max_iter": NEWTON_STEPS}
         found = ca.rootfinder("newton", "fast_newton", missed, options)(x, inputs)
         return ca.Function(
@@ -155,7 +191,7 @@ class TubeFunctions(ABC):
 
     @cached_property
     def energy(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ elastic energy of what stands out, and of torsion in the housing, J.
+        """(x, inputs) ↦ elastic energy of what stands out, and of torsion in the housing, J.
 
         Less the work of the loads, where all of them have an energy: see :attr:`Robot.has_energy`.
         """
@@ -166,19 +202,19 @@ class TubeFunctions(ABC):
 
     @cached_property
     def tips(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ positions, 3×n, m, and quaternions, 4×n, of the tubes' tips, in base axes."""
+        """(x, inputs) ↦ positions, 3×n, m, and quaternions, 4×n, of the tubes' tips, in base axes."""
         position = ca.horzcat(*[tip.position for tip in self._tips])
         quaternion = ca.horzcat(*[tip.quaternion for tip in self._tips])
         return self._function("tips", {"position": position, "quaternion": quaternion})
 
     @cached_property
     def tip_jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
+        """(x, inputs) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
 
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
         follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments)
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments[:2])
         following = -ca.solve(jacobian, by_inputs)
         changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
@@ -191,7 +227,7 @@ class TubeFunctions(ABC):
 
     @cached_property
     def sensitivity(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ derivatives of residual and tips, from one integration with all changes.
+        """(x, inputs) ↦ derivatives of residual and tips, from one integration with all changes.
 
         Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
         axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
@@ -263,7 +299,7 @@ class TubeFunctions(ABC):
 
     @cached_property
     def stations(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ the robot at all ends of steps from the plate to its tip, a column each.
+        """(x, inputs) ↦ the robot at all ends of steps from the plate to its tip, a column each.
 
         Distances from the plate along the centre line, 1×k, m; positions, 3×k, m, and quaternions, 4×k, of the frame
         that does not turn about the centre line, in base axes; angles of the tubes against it, n×k, rad; torques in
@@ -413,14 +449,10 @@ class TubeFunctions(ABC):
         return [self._tip_pose(index, ends[-1], _selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
 
     def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
-        """A function of unknowns, inputs and load factor."""
-        return ca.Function(
-            name,
-            [*self._arguments],
-            list(outputs.values()),
-            ["x", "inputs", "load_factor"],
-            list(outputs),
-        )
+        """A function of unknowns and inputs, of tubes with the curvatures of the scene."""
+        x, inputs, load_factor = self._arguments
+        results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
+        return ca.Function(name, [x, inputs], results, ["x", "inputs"], list(outputs))
 
 
 def _reversed(row: ca.MX) -> ca.MX:

@@ -67,17 +67,17 @@ class LoadedTubeModel(TubeFunctions):
             angles: at the tips, shape (n,), rad.
             inputs: of the robot.
         """
-        _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs, 1.0)
+        _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
         """How the tubes and the tangent turn along the robot; all loads have an energy."""
-        stations, along, of_steps = self.variations(x, inputs, 1.0)
+        stations, along, of_steps = self.variations(x, inputs)
         return of_loaded(self.size, stations.full(), along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ stations and how they change, of loads that have an energy.
+        """(x, inputs) ↦ stations and how they change, of loads that have an energy.
 
         Stacked states at the ends of all steps from the tip to the plate, (2 n + 12)×k; their changes, stacked as those
         of `LoadedTangent`, with the angles at the tips and a turn of the frame there, (2 n + 9)×((n + 3) k); and, for

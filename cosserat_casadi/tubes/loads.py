@@ -11,7 +11,6 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.section import annulus
-from cosserat_casadi.scene.inputs import AXES
 
 COMPONENTS = 3
 """Numbers of the input of a load: each is a vector."""
@@ -23,8 +22,6 @@ class TubeLoad:
 
     Attributes:
         name: of the input, such as "push.force".
-        unit: of the input.
-        value: in the scene, shape (3,).
         shares: of each tube, shape (n,): 1 of a wrench on it; mass per length of one that is weighed, kg/m.
         is_moment: whether it is a moment, and not a force.
         spread: whether it acts per length from the plate to the tip, and not at the tip.
@@ -33,8 +30,6 @@ class TubeLoad:
     """
 
     name: str
-    unit: str
-    value: FloatArray
     shares: FloatArray
     is_moment: bool = False
     spread: bool = False
@@ -45,11 +40,6 @@ class TubeLoad:
     def has_energy(self) -> bool:
         """Whether its work is that of a potential: a force that keeps its direction."""
         return not self.is_moment and not self.follower
-
-    @property
-    def entries(self) -> list[str]:
-        """Names of its numbers, such as "push.force.x"."""
-        return [f"{self.name}.{axis}" for axis in AXES[COMPONENTS]]
 
 
 def loads_of(scene: scenes.Scene) -> tuple[TubeLoad, ...]:
@@ -64,9 +54,7 @@ def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[Tu
     """The inputs of one load: the magnitudes that the scene gives."""
     if isinstance(load, scenes.Gravity):
         masses = [linear_density(tube) if load.acts_on_rod(tube.name) else 0.0 for tube in tubes]
-        value = np.array(load.acceleration)
-        unit = load.inputs["acceleration"].unit
-        yield TubeLoad(f"{load.name}.acceleration", unit, value, np.array(masses), spread=True)
+        yield TubeLoad(f"{load.name}.acceleration", np.array(masses), spread=True)
         return
     # The rules of the scene admit no other kinds beside tubes.
     assert isinstance(load, scenes.TipWrench | scenes.PointWrench | scenes.DistributedWrench)
@@ -75,12 +63,10 @@ def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[Tu
     if isinstance(load, scenes.PointWrench):
         length = sum(tube.straight + tube.curved for tube in tubes if tube.name == load.rod)
         from_tip = (1.0 - load.at) * length
-    for field, declared in load.inputs.items():
+    for field in load.inputs:
         if field in load.model_fields_set:
             yield TubeLoad(
                 name=f"{load.name}.{field}",
-                unit=declared.unit,
-                value=np.array(getattr(load, field), dtype=float),
                 shares=shares,
                 is_moment=field == "moment",
                 spread=isinstance(load, scenes.DistributedWrench),

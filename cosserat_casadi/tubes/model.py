@@ -29,12 +29,12 @@ class TubeModel(TubeFunctions):
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
         """How the angles and torques change along the robot."""
-        along, of_steps = self.variations(x, inputs, 1.0)
+        along, of_steps = self.variations(x, inputs)
         return of_angles(self.size, along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ how the angles and torques at all ends of steps change.
+        """(x, inputs) ↦ how the angles and torques at all ends of steps change.
 
         With the angles at the tips, (2 n k)×n, column after column of the stations from the tip to the plate; and, for
         each step, the angles at its end with the torques at its start, n×(n (k − 1)).

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
-from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
+from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.solution import TubeSolution, tip_error
@@ -125,10 +125,11 @@ class TubePath:
 def follow_tubes(
     scene: scenes.Scene,
     name: str,
-    to: float,
+    to: npt.ArrayLike,
     values: Values = None,
     *,
     first: TubeSolution | None = None,
+    settings: ArcSettings | None = None,
     progress: Progress | None = None,
 ) -> TubePath:
     """Follow the equilibrium of concentric tubes while one input moves from its value to another.
@@ -139,6 +140,7 @@ def follow_tubes(
         to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
         first: an equilibrium of the same tubes and loads to begin at instead, such as one of another path.
+        settings: limits; by default those of a rotation and a load, or those of a translation.
         progress: receives the largest share of the way.
 
     Raises:
@@ -146,15 +148,18 @@ def follow_tubes(
             to begin at is of another robot, or stands beside values.
     """
     robot = robot_of(scene)
+    if np.size(to) != 1:
+        remedy = "name one number of a load, such as push.force.z"
+        raise SceneError(Problem(name, f"must be one number, got {np.size(to)}", remedy))
     if first is not None:
         _check_first(robot, first, values)
         values = first.inputs
     start = robot.packed(values)
     index = robot.input_index(name)
-    end = robot.packed({**dict(zip(robot.input_names, start, strict=True)), name: to})
+    end = robot.packed({**dict(zip(robot.columns, start, strict=True)), name: to})
     if end[index] == start[index]:
-        raise SceneError(Problem(name, f"is {to:g} where the path begins", "give another value to go to"))
-    way = _Way(robot, name, start, end, first)
+        raise SceneError(Problem(name, f"is {end[index]:g} where the path begins", "give another value to go to"))
+    way = _Way(robot, name, start, end, first, settings)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)
@@ -182,9 +187,9 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
     """
     if values is not None:
         raise SceneError(Problem("first", "stands beside values", "its inputs are where the path begins"))
-    if first.robot.input_names != robot.input_names:
+    if first.robot.columns != robot.columns:
         problem = "is of tubes or loads with other names"
-        raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.input_names)}"))
+        raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.columns)}"))
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
@@ -210,6 +215,7 @@ class _Way:
         start: inputs at factor 0.
         end: inputs at factor 1.
         at_start: an equilibrium to begin at; None for that of a solve.
+        limits: of the path; None for those of the kind of the input.
     """
 
     robot: Robot
@@ -217,11 +223,13 @@ class _Way:
     start: FloatArray
     end: FloatArray
     at_start: TubeSolution | None
+    limits: ArcSettings | None
 
     @property
     def unit(self) -> str:
         """Unit of the input."""
-        return self.robot.input_units[self.robot.input_index(self.name)]
+        index = self.robot.input_index(self.name)
+        return next(entry.unit for entry, span in self.robot.layout if index < span.stop)
 
     def inputs(self, factor: float) -> FloatArray:
         """All inputs at a factor."""
@@ -240,17 +248,9 @@ class _Way:
             first = solution_near(model, self.start, self.at_start.x)
         if not first.converged:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
-        change = self.end - self.start
-        path = Path(
-            residual=lambda x, t: np.ravel(model.residual(x, self.inputs(t), 1.0).full()),
-            jacobian=lambda x, t: model.jacobian(x, self.inputs(t), 1.0)[0].full(),
-            rate=lambda x, t: np.ravel(model.input_rate(x, self.inputs(t), 1.0, change).full()),
-            start=first.x,
-        )
-        settings = TURNING
-        if self.unit == "m":
-            settings = SLIDING
-        traced = trace(Curve(path, DETERMINANT, settings), progress=progress)
+        path = input_path(model, first.x, self.start, self.end)
+        usual = SLIDING if self.unit == "m" else TURNING
+        traced = trace(Curve(path, DETERMINANT, self.limits or usual), progress=progress)
         return self._path(model, traced)
 
     def _path(self, model: TubeFunctions, traced: Trace) -> TubePath:
@@ -262,7 +262,7 @@ class _Way:
             position = int(np.searchsorted(lengths, event.point.length, side="right"))
             events.append(self._event(model, event, position, factors, solutions))
         return TubePath(
-            title=self.robot.title,
+            title=self.robot.scene.title,
             name=self.name,
             unit=self.unit,
             outcome=traced.outcome or PathOutcome.MAX_STEPS,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeVar
 
 import casadi as ca
@@ -14,18 +15,14 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad, loads_of
 
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)
-
-FIELDS = ("rotation", "translation")
-"""Inputs of each tube, in the order of the inputs."""
-
-UNITS = ("rad", "m")
-"""Their units."""
 
 Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """Inputs as they are given: by name, all in order, or None for those of the scene."""
@@ -39,7 +36,7 @@ class Robot:
     """Tubes as arrays with one entry a tube, in the order of the scene.
 
     Attributes:
-        title: of the scene.
+        scene: where the tubes are from.
         names: of the tubes.
         bending: EI, shape (n,), N m².
         torsion: GJ, shape (n,), N m².
@@ -47,12 +44,10 @@ class Robot:
         straight: length of the straight part, shape (n,), m.
         curved: length of the curved part behind it, shape (n,), m.
         loads: what acts on the tubes, m inputs of three numbers.
-        inputs: rotation and translation of each tube in the scene, then the loads, shape (2 n + 3 m,), rad, m and the
-            units of the loads.
-        tolerance: wanted pose error of the tips, distances relative to the length that stands out.
+        layout: the inputs: rotation and translation of each tube, then the loads, 2 n + 3 m numbers.
     """
 
-    title: str
+    scene: scenes.Scene
     names: tuple[str, ...]
     bending: FloatArray
     torsion: FloatArray
@@ -60,8 +55,22 @@ class Robot:
     straight: FloatArray
     curved: FloatArray
     loads: tuple[TubeLoad, ...]
-    inputs: FloatArray
-    tolerance: float
+    layout: InputLayout
+
+    @cached_property
+    def inputs(self) -> FloatArray:
+        """The inputs of the scene, shape (2 n + 3 m,), rad, m and the units of the loads."""
+        return self.layout.pack()
+
+    @cached_property
+    def columns(self) -> dict[str, int]:
+        """Index of each number in the inputs: ``tube.rotation``, ``tube.translation``, then ``load.field.x``."""
+        return column_indices(self.layout)
+
+    @property
+    def tolerance(self) -> float:
+        """Wanted pose error of the tips, distances relative to the length that stands out."""
+        return self.scene.accuracy.tolerance
 
     @property
     def size(self) -> int:
@@ -72,22 +81,6 @@ class Robot:
     def length(self) -> FloatArray:
         """Lengths of the tubes, shape (n,), m."""
         return self.straight + self.curved
-
-    @property
-    def input_names(self) -> tuple[str, ...]:
-        """Names of the entries of the inputs: ``tube.rotation``, ``tube.translation``, then ``load.field.x``."""
-        names = [f"{name}.{field}" for name in self.names for field in FIELDS]
-        for load in self.loads:
-            names += load.entries
-        return tuple(names)
-
-    @property
-    def input_units(self) -> tuple[str, ...]:
-        """Units of the entries of the inputs."""
-        units = list(UNITS * self.size)
-        for load in self.loads:
-            units += [load.unit] * COMPONENTS
-        return tuple(units)
 
     @property
     def has_energy(self) -> bool:
@@ -104,13 +97,13 @@ class Robot:
 
     def load_start(self, index: int) -> int:
         """Where the numbers of a load begin in the inputs."""
-        return 2 * self.size + COMPONENTS * index
+        return int(self.layout.slices[self.loads[index].name].start)
 
-    def with_loads(self, inputs: FloatArray, factor: float) -> FloatArray:
-        """The inputs with all loads times a factor."""
-        scaled = inputs.copy()
-        scaled[2 * self.size :] *= factor
-        return scaled
+    def without_loads(self, inputs: FloatArray) -> FloatArray:
+        """The inputs with all loads zero."""
+        unloaded = inputs.copy()
+        unloaded[2 * self.size :] = 0.0
+        return unloaded
 
     def input_index(self, name: str) -> int:
         """Place of an input in the inputs.
@@ -118,9 +111,9 @@ class Robot:
         Raises:
             SceneError: there is no such input.
         """
-        if name not in self.input_names:
-            raise SceneError(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
-        return self.input_names.index(name)
+        if name not in self.columns:
+            raise SceneError(Problem(name, "is no input of the tubes", closest(name, self.columns)))
+        return self.columns[name]
 
     def packed(self, values: Values = None) -> FloatArray:
         """The inputs, shape (2 n + 3 m,).
@@ -137,10 +130,9 @@ class Robot:
         if isinstance(values, Mapping):
             inputs = self._named(values)
         else:
-            inputs = np.array(values, dtype=float)
-            if inputs.shape != self.inputs.shape:
-                problem = f"must have {self.inputs.size} entries, got the shape {inputs.shape}"
-                raise SceneError(Problem("inputs", problem, ", ".join(self.input_names)))
+            inputs = np.array(values, dtype=float).ravel()
+            # Refused where it has too few or too many numbers.
+            self.layout.split(inputs)
         problems = [*self._out_of_range(inputs)]
         if problems:
             raise SceneError(*problems)
@@ -149,34 +141,23 @@ class Robot:
     def _named(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
         inputs = self.inputs.copy()
         problems = []
+        spans = {name: slice(index, index + 1) for name, index in self.columns.items()} | self.layout.slices
         for name, value in values.items():
             numbers = np.asarray(value, dtype=float)
-            place = self._place(name)
-            if place is None:
-                problems.append(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
-            elif numbers.size != place.stop - place.start:
-                wanted = {1: "a number", COMPONENTS: "three numbers"}[place.stop - place.start]
+            if name not in spans:
+                problems.append(Problem(name, "is no input of the tubes", closest(name, self.columns)))
+            elif numbers.size != inputs[spans[name]].size:
+                wanted = {1: "a number", COMPONENTS: "three numbers"}[inputs[spans[name]].size]
                 problems.append(Problem(name, f"must be {wanted}, got the shape {numbers.shape}"))
             else:
-                inputs[place] = numbers.ravel()
+                inputs[spans[name]] = numbers.ravel()
         if problems:
             raise SceneError(*problems)
         return inputs
 
-    def _place(self, name: str) -> slice | None:
-        """Which entries of the inputs a name means; None where there are none."""
-        if name in self.input_names:
-            index = self.input_names.index(name)
-            return slice(index, index + 1)
-        for index, load in enumerate(self.loads):
-            if load.name == name:
-                start = self.load_start(index)
-                return slice(start, start + COMPONENTS)
-        return None
-
     def _out_of_range(self, inputs: FloatArray) -> list[Problem]:
         problems = []
-        for name, value in zip(self.input_names, inputs, strict=True):
+        for name, value in zip(self.columns, inputs, strict=True):
             if not np.isfinite(value):
                 problems.append(Problem(name, f"must be finite, got {value}"))
         for name, translation, length in zip(self.names, self.translations(inputs), self.length, strict=True):
@@ -198,20 +179,16 @@ def robot_of(scene: scenes.Scene) -> Robot:
     if not scene.tubes:
         raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve_scene"))
     stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
-    loads = loads_of(scene)
-    inputs = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
-    inputs += [value for load in loads for value in load.value]
     return Robot(
-        title=scene.title,
+        scene=scene,
         names=tuple(tube.name for tube in scene.tubes),
         bending=stiffness[:, 0],
         torsion=stiffness[:, 1],
         curvature=np.array([tube.curvature for tube in scene.tubes]),
         straight=np.array([tube.straight for tube in scene.tubes]),
         curved=np.array([tube.curved for tube in scene.tubes]),
-        loads=loads,
-        inputs=np.array(inputs, dtype=float),
-        tolerance=scene.accuracy.tolerance,
+        loads=loads_of(scene),
+        layout=input_layout(scene),
     )
 
 

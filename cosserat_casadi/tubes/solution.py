@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from functools import cached_property
 
 import numpy as np
@@ -12,26 +11,11 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stability import Stability, stability_of
-
-
-class TubeOutcome(Enum):
-    """Every way a solve of tubes can end. Only CONVERGED carries a result to build on."""
-
-    CONVERGED = "Equilibrium found: the tubes meet the rotations of their drives."
-    NOT_FOUND = (
-        "No equilibrium found: the way from straight tubes to those of the scene could not be followed to its end; "
-        "the equilibria of these inputs may be found one by one."
-    )
-    UNRESOLVED = "An equilibrium was found, but its error is above the tolerance: allow a larger one."
-
-    @property
-    def label(self) -> str:
-        """The word of the result file."""
-        return self.name.lower()
 
 
 @dataclass(frozen=True)
@@ -72,7 +56,7 @@ class TubeSolution:
     model: TubeFunctions
     inputs: FloatArray
     x: FloatArray
-    outcome: TubeOutcome
+    outcome: Outcome
     residual_norm: float
     error_estimate: float | None
     iterations: int = 0
@@ -85,7 +69,12 @@ class TubeSolution:
     @property
     def converged(self) -> bool:
         """Whether this is an equilibrium within tolerance."""
-        return self.outcome is TubeOutcome.CONVERGED
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def within_tolerance(self) -> bool:
+        """Whether the estimated error is within the scene's tolerance."""
+        return self.error_estimate is not None and self.error_estimate <= self.robot.tolerance
 
     @property
     def message(self) -> str:
@@ -113,12 +102,12 @@ class TubeSolution:
 
         The work counts where all loads have an energy.
         """
-        return float(self.model.energy(self.x, self.inputs, 1.0))
+        return float(self.model.energy(self.x, self.inputs))
 
     @cached_property
     def shape(self) -> Shape:
         """The robot at the ends of all steps."""
-        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs, 1.0)
+        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs)
         return Shape(
             distance=np.ravel(distance.full()),
             position=position.full().T,
@@ -130,7 +119,7 @@ class TubeSolution:
     @cached_property
     def tips(self) -> dict[str, NumericPose]:
         """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
-        position, quaternion = self.model.tips(self.x, self.inputs, 1.0)
+        position, quaternion = self.model.tips(self.x, self.inputs)
         return {
             name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
             for index, name in enumerate(self.robot.names)
@@ -152,7 +141,7 @@ class TubeSolution:
     @cached_property
     def tip_jacobian(self) -> FloatArray:
         """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
-        jacobian = self.model.tip_jacobian(self.x, self.inputs, 1.0).full()
+        jacobian = self.model.tip_jacobian(self.x, self.inputs).full()
         return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
 
 

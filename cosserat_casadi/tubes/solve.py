@@ -7,18 +7,19 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.continuation import ContinuationResult, Path, PathPoint, follow
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.paths.trace import PathOutcome, trace
+from cosserat_casadi.numerics.trace import PathOutcome, trace
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
+from cosserat_casadi.tubes.solution import TubeSolution, tip_error
 
 FEWEST_STEPS = 2
 """Steps of a piece that the search begins with."""
@@ -96,10 +97,10 @@ def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
     """A solution with the estimate of its error, and its outcome by that."""
-    outcome = solution.outcome
-    if solution.converged and (error is None or error > solution.robot.tolerance):
-        outcome = TubeOutcome.UNRESOLVED
-    return replace(solution, outcome=outcome, error_estimate=error)
+    estimated = replace(solution, error_estimate=error)
+    if estimated.converged and not estimated.within_tolerance:
+        return replace(estimated, outcome=Outcome.UNRESOLVED)
+    return estimated
 
 
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
@@ -108,9 +109,9 @@ def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
         curved = solve_at(model.unloaded, inputs)
         return loaded_from(model, inputs, curved)
     path = Path(
-        residual=lambda x, t: np.ravel(model.residual(x, inputs, t).full()),
-        jacobian=lambda x, t: model.jacobian(x, inputs, t)[0].full(),
-        rate=lambda x, t: np.ravel(model.load_rate(x, inputs, t).full()),
+        residual=lambda x, t: column(model.path_residual(x, inputs, t)),
+        jacobian=lambda x, t: model.path_jacobian(x, inputs, t).full(),
+        rate=lambda x, t: column(model.path_rate(x, inputs, t, np.zeros_like(inputs), 1.0)),
         # Straight tubes do not twist.
         start=model.robot.rotations(inputs).copy(),
     )
@@ -146,13 +147,7 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
     start = model.begin(curved.x, inputs)
     if not curved.converged:
         return solution_at(model, inputs, start, found=False)
-    change = inputs - model.robot.with_loads(inputs, 0.0)
-    path = Path(
-        residual=lambda x, t: np.ravel(model.residual(x, model.robot.with_loads(inputs, t), 1.0).full()),
-        jacobian=lambda x, t: model.jacobian(x, model.robot.with_loads(inputs, t), 1.0)[0].full(),
-        rate=lambda x, t: np.ravel(model.input_rate(x, model.robot.with_loads(inputs, t), 1.0, change).full()),
-        start=start,
-    )
+    path = input_path(model, start, model.robot.without_loads(inputs), inputs)
     end = _followed(path)
     iterations = curved.iterations + end.iterations
     if end.outcome is Outcome.CONVERGED:
@@ -167,8 +162,8 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
     """The equilibrium of a model that Newton's method leads to from a start."""
     equations = Equations(
-        residual=lambda x: np.ravel(model.residual(x, inputs, 1.0).full()),
-        jacobian=lambda x: model.jacobian(x, inputs, 1.0)[0].full(),
+        residual=lambda x: column(model.residual(x, inputs)),
+        jacobian=lambda x: model.jacobian(x, inputs)[0].full(),
     )
     end = newton(equations, start, NewtonSettings())
     return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
@@ -186,9 +181,9 @@ def solution_at(
         found: whether they are an equilibrium.
         iterations: Newton steps of the search.
     """
-    outcome = TubeOutcome.NOT_FOUND
+    outcome = Outcome.LOAD_STALLED
     if found:
-        outcome = TubeOutcome.CONVERGED
-    residual = model.residual(x, inputs, 1.0).full()
+        outcome = Outcome.CONVERGED
+    residual = model.residual(x, inputs).full()
     missed = float(np.abs(residual).max())
     return TubeSolution(model, inputs, x, outcome, missed, None, iterations)

@@ -59,7 +59,7 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Sta
         x: its unknowns.
         inputs: its inputs.
     """
-    jacobian = model.jacobian(x, inputs, 1.0)[0].full()
+    jacobian = model.jacobian(x, inputs)[0].full()
     singular = np.linalg.svd(jacobian, compute_uv=False)
     falling = None
     if model.robot.has_energy:

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.load import load
 from cosserat_casadi.control.inverse import search
 from cosserat_casadi.control.inverse_result import with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
@@ -155,7 +156,7 @@ class Session:
         values = model.inputs.unpack(given)
         accuracy = model.scene.accuracy
         finer = accuracy.model_copy(update={"tolerance": REFINED_SHARE * accuracy.tolerance})
-        chosen = solve_scene(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
+        chosen = solve_rods(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
         refined = build(model.scene, chosen)
         coarse = replace(self.first, inputs=given, x=near)
         found = solve(refined, values, start=prolong(coarse, refined))
@@ -301,6 +302,7 @@ def opened(solution: Solution, progress: Progress | None = None) -> Session | Co
         # The compiled library lies in the cache: the sources are not needed any more.
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)
         library = load(sources, progress=progress)
+    assert isinstance(library, Compiled)
     return Session(solution, library)
 
 

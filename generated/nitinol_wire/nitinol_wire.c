@@ -219,7 +219,7 @@ const char *nitinol_wire_status_text(nitinol_wire_status status) {
     case NITINOL_WIRE_LOAD_STALLED:
       return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
     case NITINOL_WIRE_UNRESOLVED:
-      return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
+      return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case NITINOL_WIRE_NOT_IN_EQUILIBRIUM:
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case NITINOL_WIRE_LOST_TRACK:

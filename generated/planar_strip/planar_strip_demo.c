@@ -29,6 +29,12 @@ static double now_us(void) {
 #endif
 }
 
+/* A number of the JSON text; null where it is not finite. */
+static void print_number(double value) {
+  if (isfinite(value)) printf("%.17g", value);
+  else printf("null");
+}
+
 static int usage(const char *problem, const char *word) {
   fprintf(stderr, "%s: %s\nusage: planar_strip_demo [--repeat N] [%d input values: push.force push.moment]\n", problem, word, INPUTS);
   return 2;
@@ -39,12 +45,6 @@ static double parse(const char *word, int *sound) {
   const double value = strtod(word, &end);
   *sound = end != word && *end == 0;
   return value;
-}
-
-/* A number of the JSON text; null where it is not finite. */
-static void print_number(double value) {
-  if (isfinite(value)) printf("%.17g", value);
-  else printf("null");
 }
 
 static void print_field(const char *word, double value) {

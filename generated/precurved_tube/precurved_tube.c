@@ -220,7 +220,7 @@ const char *precurved_tube_status_text(precurved_tube_status status) {
     case PRECURVED_TUBE_LOAD_STALLED:
       return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
     case PRECURVED_TUBE_UNRESOLVED:
-      return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
+      return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case PRECURVED_TUBE_NOT_IN_EQUILIBRIUM:
       return "The unknowns are no equilibrium for these inputs: solve first.";
     case PRECURVED_TUBE_LOST_TRACK:

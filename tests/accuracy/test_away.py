@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from cosserat_casadi import build, discretise, scene_from_dict, solve, solve_scene
-from cosserat_casadi.accuracy.choose import choose, freedom
+from cosserat_casadi.accuracy.choose import choose
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene import Scene
 
@@ -65,30 +67,52 @@ def test_beyond_the_ranges_an_answer_says_that_it_is_beyond_the_tolerance() -> N
     assert "is above the tolerance" in answer.message
 
 
-def test_a_platform_is_not_locked() -> None:
-    """Two modes of bending and one of torsion leave no freedom, whatever the load: they are not chosen."""
+def platform(**accuracy: Any) -> Scene:
+    """A plate on six clamped legs of one length, which lean together in pairs, and which a force may push."""
     legs = []
     joints = []
     for k in range(6):
-        at = 2 * np.pi * (k // 2) / 3 + (k % 2) * 0.4
-        base = [0.08 * np.cos(at), 0.08 * np.sin(at), 0.0]
+        side = 2 * (k % 2) - 1
+        corner = 2 * np.pi * (k // 2) / 3
+        base, top = corner + 0.2 * side, corner + 0.84 * side
         legs.append(
             {
                 "name": f"leg{k}",
                 "length": 0.25,
                 "strain": "kirchhoff",
                 "stiffness": {"bending_x": 0.1, "bending_y": 0.1, "torsion": 0.08},
-                "base": {"position": base},
+                "base": {"position": [0.08 * np.cos(base), 0.08 * np.sin(base), 0.0]},
             }
         )
-        joints.append({"rod": f"leg{k}", "body": "platform", "kind": "fixed", "position": base})
+        position = [0.05 * np.cos(top), 0.05 * np.sin(top), 0.0]
+        joints.append({"rod": f"leg{k}", "body": "platform", "kind": "fixed", "position": position})
     load = {"name": "load", "kind": "body_wrench", "body": "platform", "force": [0, 0, 0]}
-    tables = {"schema": 1, "accuracy": {"tolerance": 1e-2}, "rods": legs, "joints": joints, "loads": [load]}
-    platform = scene_from_dict({**tables, "bodies": [{"name": "platform", "mass": 0.1}]})
-    assert freedom(build(platform, discretise(platform, [2, 2, 1], 4))) == 0
-    choice = choose(platform, {"load.force": (-0.5, 0.5)}, samples=4)
+    tables = {"schema": 1, "accuracy": accuracy, "rods": legs, "joints": joints, "loads": [load]}
+    return scene_from_dict({**tables, "bodies": [{"name": "platform", "mass": 0.1}]})
+
+
+@pytest.mark.slow
+def test_a_platform_is_not_locked() -> None:
+    """Two modes of bending and one of torsion leave no freedom, whatever the load: they are not chosen."""
+    free = platform(tolerance=1e-2)
+    assert degrees_of_freedom(build(free, discretise(free, [2, 2, 1], 4))) == 0
+    choice = choose(free, {"load.force": (-0.5, 0.5)}, samples=1)
     assert choice.met
-    assert freedom(choice.model) > 0
+    assert has_freedom(choice.model)
+    assert not choice.locked
     pushed = solve(choice.model, {"load.force": [0.5, 0.0, 0.0]}).body().position[0]
     resting = solve(choice.model, {"load.force": [0.0, 0.0, 0.0]}).body().position[0]
-    assert pushed[0] - resting[0] > 1e-4
+    assert pushed[0] - resting[0] > 1e-5
+
+
+def test_a_platform_on_fixed_modes_is_told_to_be_locked() -> None:
+    """With eighteen degrees of freedom too, none of which moves the plate; with two more in bending it moves."""
+    for modes, freedom, locked in (([3, 3, 2], 18, True), ([4, 4, 2], 30, False)):
+        model = build(platform(modes=modes, nodes=8))
+        assert degrees_of_freedom(model) == freedom
+        answer = solve(model)
+        assert answer.converged
+        assert ("kinematically locked" in answer.message) is locked
+        assert locked_inputs(answer) == (("load.force",) if locked else ())
+        moved = solve(model, {"load.force": [0.2, 0.0, 0.0]}).body().position[0, 0] - answer.body().position[0, 0]
+        assert bool(moved < 1e-6) is locked

@@ -7,11 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene
-from cosserat_casadi.accuracy.choose import Choice, choose, freedom
+from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.ranges import Origin, input_ranges
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
-from tests.scenes import STIFFNESS, WEIGHT, push, scene
+from tests.scenes import STIFFNESS, WEIGHT, push, rod, scene
 
 
 def ends(ranged: object) -> dict[str, tuple[float, float, Origin]]:
@@ -24,14 +25,27 @@ def ends(ranged: object) -> dict[str, tuple[float, float, Origin]]:
 
 
 def test_a_force_reaches_as_far_as_it_turns_a_clamped_rod_by_a_radian() -> None:
-    """F = 2 EI/ℓ² across; a thrust turns nothing by itself and takes the scale of its neighbours."""
+    """F = 2 EI/ℓ² in every direction, by the softest one; a thrust turns nothing by itself."""
     found = ends(scene(push(force=[0.0, 0.0, 0.0])))
-    about_y = 2 * STIFFNESS["bending_y"] / 0.8**2
-    about_x = 2 * STIFFNESS["bending_x"] / 0.8**2
-    for column, force in (("push.force.x", about_y), ("push.force.y", about_x), ("push.force.z", about_x)):
+    assert STIFFNESS["bending_x"] < STIFFNESS["bending_y"]
+    force = 2 * STIFFNESS["bending_x"] / 0.8**2
+    for column in ("push.force.x", "push.force.y", "push.force.z"):
         low, high, origin = found[column]
         assert_allclose([low, high], [-force, force], rtol=1e-9, atol=0)
         assert origin is Origin.TURN
+
+
+def test_in_a_loop_a_force_bends_the_softest_rod_by_a_radian() -> None:
+    """No load turns the rods of an unloaded loop, whose joints close along the load path."""
+    legs = [rod(name="a"), rod(name="b", base={"position": [0.3, 0, 0]}, length=1.0)]
+    joints = [
+        {"rod": name, "body": "plate", "kind": "fixed", "position": [x, 0, 0]} for name, x in (("a", 0), ("b", 0.3))
+    ]
+    load = {"name": "load", "kind": "body_wrench", "body": "plate", "force": [0, 0, 0]}
+    found = ends(scene(load, rods=legs, joints=joints, bodies=[{"name": "plate"}], inputs=["load.force", "a.length"]))
+    energy_unit = build(scene(rods=[rod(name="b", length=1.0)])).discrete.rods["b"].energy_unit
+    assert_allclose(found["load.force.x"][:2], [-2 * energy_unit, 2 * energy_unit], rtol=1e-9, atol=0)
+    assert_allclose(found["a.length"][:2], [0.72, 0.88], rtol=1e-12, atol=0)
 
 
 def test_tensions_begin_at_zero_and_gravity_keeps_its_size() -> None:
@@ -109,6 +123,12 @@ def test_the_scene_says_what_was_chosen_for_which_ranges(chosen: Choice) -> None
     assert verified.model.discretisation == chosen.model.discretisation
 
 
+def test_beyond_its_ranges_a_choice_says_what_to_do(chosen: Choice) -> None:
+    answer = solve(chosen.model, {"push.force": [9.0, 9.0, 0.0]})
+    assert answer.within_tolerance is False
+    assert "the modes were chosen for other inputs: choose them for the range of these inputs" in answer.message
+
+
 def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
     """No discretisation with half as many unknowns keeps the tolerance at a corner."""
     half = chosen.model.size // 2
@@ -119,6 +139,24 @@ def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
             modes = (first, second, half - first - second)
             coarse = solve(build(chosen.scene, discretise(chosen.scene, modes, 16, "magnus8")), corner)
             assert not coarse.converged or pose_distance(coarse, fine) > 1e-3
+
+
+def test_ranges_of_parameters_are_taken_as_those_of_inputs() -> None:
+    """A rod that may be three times as soft, and loaded by an input: right at the corners, against finer modes."""
+    bending = "rod.stiffness.bending_y"
+    soft = scene(push(force=[0.1, 0.0, 0.0]), strain="planar", parameters=[bending], accuracy={"tolerance": 1e-6})
+    choice = choose(soft, {bending: (0.5, 1.5), "push.force.x": (-1.0, 1.0), "push.force.z": (-1.0, 0.5)}, samples=4)
+    assert choice.met
+    assert f"{bending}=0.5:1.5" in choice.scene.accuracy.chosen_for
+    fine = build(soft, discretise(soft, 12, 28, "magnus8"))
+    for stiffness in (0.5, 1.5):
+        force = {"push.force": [1.0, 0.0, -1.0]}
+        found = solve(choice.model, force, parameters={bending: stiffness})
+        exact = solve(fine, force, parameters={bending: stiffness}, estimate_error=False)
+        assert pose_distance(found, exact) <= 1e-6
+    # Without a range a parameter keeps its value, and a stiff rod bends less.
+    stiff = choose(soft, {"push.force.x": (-1.0, 1.0), "push.force.z": (-1.0, 0.5)}, samples=4)
+    assert stiff.model.size < choice.model.size
 
 
 def test_points_without_equilibrium_are_told() -> None:
@@ -141,5 +179,5 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
     held = scene(
         push(), supports=[{"rod": "rod", "kind": "clamped", "position": [0.1, 0, 0.7], "quaternion": [1, 0, 0, 0]}]
     )
-    assert freedom(build(held, discretise(held, 2, 6))) == 0
-    assert freedom(build(held, discretise(held, 3, 8))) == 3
+    assert degrees_of_freedom(build(held, discretise(held, 2, 6))) == 0
+    assert degrees_of_freedom(build(held, discretise(held, 3, 8))) == 3

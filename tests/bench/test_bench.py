@@ -192,8 +192,8 @@ def test_a_motion_is_priced_beside_statics() -> None:
     model = model_of("planar")
     statics = price(model)
     motion = price_of_motion(model)
-    assert statics.residual < motion.inverse_dynamics < motion.jacobian
-    assert statics.jacobian < motion.jacobian
+    assert statics.residual.number < motion.inverse_dynamics.number < motion.jacobian.number
+    assert statics.jacobian.number < motion.jacobian.number
     (cost,) = motion_costs(model)
     times = cost.times
     assert cost.price == motion
@@ -205,7 +205,7 @@ def test_a_motion_is_priced_beside_statics() -> None:
     assert "not compiled" in printed
     assert "of which damping" not in printed
     for count in (statics.residual, statics.jacobian, motion.inverse_dynamics, motion.jacobian):
-        assert f"{count:,}" in printed
+        assert str(count) in printed
 
 
 def test_damping_has_rows_of_its_own() -> None:
@@ -218,8 +218,8 @@ def test_damping_has_rows_of_its_own() -> None:
     print_motion_times(console, model.size, price(model), whole, undamped)
     rows = [line.split("│") for line in console.file.getvalue().splitlines() if "of which damping" in line]
     shown = [int(row[2].replace(",", "")) for row in rows]
-    residual = whole.price.inverse_dynamics - undamped.price.inverse_dynamics
-    jacobian = whole.price.jacobian - undamped.price.jacobian
+    residual = (whole.price.inverse_dynamics - undamped.price.inverse_dynamics).number
+    jacobian = (whole.price.jacobian - undamped.price.jacobian).number
     assert shown == [residual, jacobian]
     assert residual > 0
     assert jacobian > 0
@@ -250,7 +250,8 @@ def test_each_kind_of_damping_has_its_price() -> None:
     bare = without_damping(damped)
     still = price_of_motion(build(bare, moving=True))
     moving = price_of_motion(build(damped, moving=True))
-    assert still.inverse_dynamics < moving.inverse_dynamics
+    assert still.inverse_dynamics.number < moving.inverse_dynamics.number
     for without in ({"rods": bare.rods}, {"obstacles": bare.obstacles}):
         half = damped.model_copy(update={**without, "parameters": bare.parameters})
-        assert price_of_motion(build(half, moving=True)).inverse_dynamics > still.inverse_dynamics
+        between = price_of_motion(build(half, moving=True))
+        assert between.inverse_dynamics.number > still.inverse_dynamics.number

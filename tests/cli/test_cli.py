@@ -339,7 +339,7 @@ def test_tune_fixes_a_discretisation_for_ranges(wire: Path) -> None:
     options = ("--tolerance", "1e-3", "--range", "push.force.x=-0.1:0.2")
     done = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "points of the ranges are within 0.001" in done.stdout
+    assert "load cases are within 0.001" in done.stdout
     tuned = read_scene(wire / "tuned.toml")
     assert tuned.accuracy.chosen_for is not None
     assert "push.force.x=-0.1:0.2" in tuned.accuracy.chosen_for
@@ -664,12 +664,31 @@ def test_an_export_says_for_which_ranges_its_modes_were_chosen(wire: Path) -> No
     assert set(asked) <= set(verified["ranges"])
     assert verified["error_estimate"] <= 1e-3
     assert verified["without_equilibrium"] == 0
+    assert verified["within_tolerance"] is True
     readme = (wire / "c" / "README.md").read_text()
     assert f"was verified by {verified['solves']} solves over" in readme
+    header = " ".join((wire / "c" / "wire.h").read_text().split())
+    assert f"was verified by {verified['solves']} solves over" in header
     assert "judged at the scene's own inputs" not in readme
     kept = read_scene(wire / "c" / "scene.toml")
     assert kept.accuracy.chosen_for is not None
     assert list(kept.accuracy.chosen_for) == verified["ranges"]
+
+
+def test_an_export_that_misses_the_tolerance_is_written_and_says_so(wire: Path) -> None:
+    """Of modes that the scene fixes: exit code 3 as of ``solve``, a sentence, and words in header, README, manifest."""
+    fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=6")
+    few = ("--no-error-estimate", "--range", "push.force.x=-2:2")
+    done = cosserat("export", "wire.toml", "--output", "c", *fixed, "--set", "accuracy.tolerance=1e-6", *few, cwd=wire)
+    assert done.returncode == 3, done.stdout + done.stderr
+    said = " ".join(done.stderr.split())
+    assert "does not keep the tolerance all over the ranges: leave modes, nodes and rotation out" in said
+    verified = json.loads((wire / "c" / "manifest.json").read_text())["verified"]
+    assert verified["within_tolerance"] is False
+    assert verified["error_estimate"] > 1e-6
+    for file in ("README.md", "wire.h"):
+        assert "The tolerance is not kept there." in " ".join((wire / "c" / file).read_text().split())
+    assert read_scene(wire / "c" / "scene.toml").accuracy.chosen_for is None
 
 
 def test_an_export_refuses_ranges_and_writes_nothing(wire: Path) -> None:

@@ -47,7 +47,10 @@ def test_what_is_felt_is_written(folder: Path, capsys: pytest.CaptureFixture[str
     assert len(data["checked"]) == 3
     assert data["within_tolerance"] is True
     assert figure.stat().st_size > 0
-    assert "found: 6 rows" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "found: 6 rows" in out
+    assert "3 rows solved again on finer modes: estimated error at most" in out
+    assert "within the tolerance of 0.1." in out
     table = folder / "felt.csv"
     assert estimate(folder, "--output", str(table)) == 0
     rows = list(csv.DictReader(table.read_text().splitlines()))

@@ -124,7 +124,7 @@ class Exported:
     def compiled(self) -> Compiled:
         """The solver in this process, without the derivatives, which take the compiler longest."""
         library = self.link([], "-shared", *QUICK)
-        return Compiled(library, self.manifest, self.names)
+        return Compiled(library, self.manifest)
 
     @cached_property
     def manifest(self) -> dict[str, Any]:

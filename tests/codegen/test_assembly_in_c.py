@@ -24,7 +24,7 @@ def compiled(model: Model, folder: Path, name: str, library: Path) -> Compiled:
     """The solver of an exported folder without the derivatives."""
     gcc("-shared", *QUICK, folder / f"{name}.c", folder / f"{name}_kernels.c", "-lm", "-o", library)
     described = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
-    return Compiled(library, described, scene_names(name, model.scene))
+    return Compiled(library, described)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosserat_casadi import ExportError, build, discretise, export, load, load_in_contact, read_scene, solve
+from cosserat_casadi import CompiledContact, ExportError, build, discretise, export, load, read_scene, solve
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import (
     BAR,
@@ -199,12 +199,11 @@ def test_refused_uses(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_load_names_the_other_function(bar: ContactLibrary) -> None:
-    """A folder in exact contact is loaded by a function of its own, and any other folder is not."""
-    with pytest.raises(ExportError, match="load it with load_in_contact"):
-        load(bar.folder)
-    with pytest.raises(ExportError, match="load any other with load"):
-        load_in_contact(Path(__file__).parents[2] / "generated" / "nitinol_wire")
+def test_load_knows_the_folder_by_its_manifest(bar: ContactLibrary, tmp_path: Path) -> None:
+    assert isinstance(load(bar.folder), CompiledContact)
+    (tmp_path / "manifest.json").write_text('{"name": "bar", "inputs": [], "files": [], "arrangements": 3}')
+    with pytest.raises(ExportError, match="is not the manifest of an exported folder"):
+        load(tmp_path)
 
 
 @pytest.mark.slow
@@ -226,7 +225,7 @@ def test_a_rod_that_slides_aside_over_a_bar(tmp_path: Path) -> None:
     """The example, in space: driven in a loop, as Python finds it."""
     wanted = read_scene("examples/rod_over_bar.toml", ["accuracy.modes=5"])
     model = build(wanted)
-    library = load_in_contact(export(model, tmp_path / "bar", load_cases=np.array([down(1.4), down(0.05)])))
+    library = load(export(model, tmp_path / "bar", load_cases=np.array([down(1.4), down(0.05)])))
     found = library.solve()
     for force in np.linspace(1.0, 1.4, 5):
         found = library.track(down(force), found)

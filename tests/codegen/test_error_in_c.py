@@ -17,7 +17,7 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium import answer_error
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.outcome import Outcome
-from tests.conftest import CASES
+from tests.conftest import CASES, ROOT
 from tests.scenes import push, scene
 
 ROOM = 1 << 20
@@ -84,6 +84,15 @@ def test_a_turn_of_a_control_loop_estimates_nothing(in_c: Compiled) -> None:
     )
     assert OUTCOMES[status] is Outcome.CONVERGED
     assert info.error_estimate < 0
+
+
+def test_missing_modes_that_bounce_off_a_wall_are_told(tmp_path: Path) -> None:
+    read = read_scene(ROOT / "examples" / "reach_past_bar.toml", ["accuracy.tolerance=2e-3"])
+    compiled = load(export(build(read, discretise(read, 1, 2, "magnus6")), tmp_path / "robot"))
+    pressed = compiled.solve({"flexor.tension": 11.3, "robot.base.position": [0.0, 0.0, -0.0703]})
+    assert pressed.converged
+    assert pressed.error_estimate == answer_error.UNKNOWN
+    assert pressed.within_tolerance is False
 
 
 def test_parameters_move_the_estimate(tmp_path: Path) -> None:

@@ -17,7 +17,6 @@ from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
-from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
 from tests.commands import cosserat
@@ -70,7 +69,7 @@ def library(model, unpacked, tmp_path_factory):
     folder = export(model, tmp_path_factory.mktemp("folder") / "finger", "finger", dynamics=True)
     described = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     binary = next((Path(unpacked) / "binaries").glob("*/finger.*"))
-    return Compiled(binary, described, model_names("finger", model, dynamics=True))
+    return Compiled(binary, described)
 
 
 @pytest.fixture(scope="module")

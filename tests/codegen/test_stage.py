@@ -165,3 +165,21 @@ def test_a_model_without_scalar_form_is_refused() -> None:
         compiled_stage(build(wanted, discretise(wanted, 2, 4, "permuted")))
     with pytest.raises(ExportError, match="no name for a C library"):
         compiled_stage(wire(), "a stage")
+
+
+def test_each_section_adds_few_instructions_to_the_jacobian(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They share the variations of the rod; automatic differentiation takes 77 instructions for a section of it."""
+    monkeypatch.setattr(stage_module, "STRAIGHT", 0)
+    lengths = []
+    for count in (1, 9):
+        abscissae = np.linspace(0.1, 1.0, count).tolist()
+        _, slopes, *_ = stage_functions(finger(), "finger", False, {"rod": abscissae})
+        lengths.append(slopes.n_instructions())
+    assert lengths[1] - lengths[0] < 8 * 20
+
+
+def test_progress_tells_of_what_is_written_and_compiled() -> None:
+    told: list[tuple[str, int, int]] = []
+    compiled_stage(wire(), "told_stage", progress=lambda *report: told.append(report))
+    assert told[:4] == [("Writing told_stage in C", done, 4) for done in range(4)]
+    assert told[4:] == [("Compiling told_stage", done, 4) for done in range(5)]

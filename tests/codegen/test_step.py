@@ -321,3 +321,39 @@ def test_units_of_the_residual(motion_library: MotionLibrary) -> None:
     assert described["residual_units"] == units.tolist()
     assert described["differential"] == made.model.discrete.unknowns.differential.tolist()
     assert described["order"] == 3
+
+
+@pytest.mark.parametrize("family", ["kirchhoff", "given length"])
+def test_several_steps_are_steps_one_by_one(motion_library: MotionLibrary, family: str) -> None:
+    """To the last bit, with inputs that move: states, inputs and rates."""
+    made = motion_library(family)
+    compiled = made.compiled
+    start = start_of(made.model)
+    driven = accelerated(made.model, 1e-3, 1)
+    inputs, rate, acceleration = driven.inputs[0].copy(), driven.rates[0].copy(), driven.accelerations[0]
+    several, end, end_rate = compiled.steps(start, 1e-3, 3, inputs, rate, acceleration, memory=compiled.step_memory())
+    memory = compiled.step_memory()
+    state = start
+    for _ in range(3):
+        taken = compiled.step(state, 1e-3, inputs, rate, acceleration, memory=memory)
+        state = taken.state
+        gained = 1e-3 * acceleration
+        inputs = inputs + 1e-3 * (rate + gained / 2.0)
+        rate = rate + gained
+    assert several.done
+    for name in ("x", "v", "a"):
+        assert_allclose(getattr(several.state, name), getattr(state, name), rtol=0, atol=0)
+    assert_allclose(end, inputs, rtol=0, atol=0)
+    assert_allclose(end_rate, rate, rtol=0, atol=0)
+
+
+def test_several_steps_end_at_one_that_is_not_taken(motion_library: MotionLibrary) -> None:
+    made = motion_library("planar")
+    start = start_of(made.model)
+    inputs = made.model.pack()
+    refused, end, _ = made.compiled.steps(start, 1.0, 3, inputs, options=StepOptions(iterations=1, parts=1))
+    assert not refused.done
+    assert_allclose(refused.state.x, start.x, rtol=0, atol=0)
+    assert_allclose(end, inputs, rtol=0, atol=0)
+    with pytest.raises(ValueError, match="at least 1"):
+        made.compiled.steps(start, 1e-3, 0, inputs)

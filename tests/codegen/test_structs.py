@@ -66,8 +66,8 @@ def test_every_outcome_is_a_status_in_the_order_of_python(library: Library) -> N
     header = (made.folder / "planar.h").read_text()
     enumerators = re.findall(r"^  PLANAR_(\w+) += (\d+),? +/\* (.*) \*/$", header, re.M)
     assert enumerators == [(o.name, str(i), o.value) for i, o in enumerate(OUTCOMES)]
-    # C does not look for contact: its outcome comes after all others.
-    assert tuple(Outcome) == (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
+    # Those of contact, and of concentric tubes, come after all others.
+    assert tuple(Outcome) == (*OUTCOMES, Outcome.CONTACT_UNSETTLED, Outcome.OUT_OF_RANGE)
     words = status_words(made.names)
     for outcome in OUTCOMES:
         assert f"case PLANAR_{outcome.name}:" in words["label_cases"]

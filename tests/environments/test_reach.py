@@ -130,6 +130,28 @@ def test_same_seed_gives_the_same_episode(environment):
     assert_array_equal(episodes[0], episodes[1])
 
 
+def test_a_period_evaluates_the_tip_once_and_takes_its_arguments_apart_once(environment, monkeypatch):
+    """Ten steps in C are ten calls of one function: their arguments take longer in Python than the steps in C."""
+    environment.reset(seed=1)
+    counted = {"tip": 0, "arguments": 0}
+    tip = environment._seen
+    packed = environment.library._packed
+
+    def seen(*arguments):
+        counted["tip"] += 1
+        return tip(*arguments)
+
+    def pack(state):
+        counted["arguments"] += 1
+        return packed(state)
+
+    monkeypatch.setattr(environment, "_seen", seen)
+    monkeypatch.setattr(type(environment.library), "_packed", lambda self, state: pack(state))
+    environment.step(FORWARD)
+    assert environment._steps == 10
+    assert counted == {"tip": 1, "arguments": 1}
+
+
 def test_random_targets_differ_and_are_in_reach(environment):
     targets = []
     for seed in range(5):

@@ -206,17 +206,19 @@ def test_minima_are_weighed_by_the_mass_around_them() -> None:
             cost=np.array([cost]),
             unknowns=np.array([[place]]),
             information=np.array([[[1 / deviation**2]]]),
+            gradient=np.zeros((1, 1)),
+            residuals=np.zeros((1, 0)),
             x=np.zeros((1, 1)),
         )
         for deviation, place, cost in zip(deviations, places, costs, strict=True)
     ]
     for order in ([0, 1, 2, 3], [3, 2, 1, 0]):
-        best, second = best_of([runs[k] for k in order])
+        best, second = best_of([runs[k] for k in order], own=1)
         assert best.cost[0] == 1.0
         assert second.values[0, 0] == 0.7
         assert second.cost[0] == 1.5
         assert_allclose(second.share[0], 0.1 / (0.1 + 0.2 * np.exp(-0.5)), rtol=1e-12, atol=0)
-    _, none_found = best_of([runs[3], runs[3]])
+    _, none_found = best_of([runs[3], runs[3]], own=1)
     assert np.isnan(none_found.share[0])
 
 

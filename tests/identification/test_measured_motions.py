@@ -178,6 +178,9 @@ def test_steps_that_are_given_are_kept_and_their_error_is_told(model: Model, pat
     assert found.step_error is not None
     assert found.step_error > STEP_ERROR
     assert any("give [simulation] a shorter step" in warning for warning in found.warnings)
+    # The equilibrium that a motion starts from says nothing of the motion.
+    assert found.error_estimate is None
+    assert found.within_tolerance is None
 
 
 def test_times_beyond_the_simulation_are_refused(model: Model) -> None:

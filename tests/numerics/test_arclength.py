@@ -13,7 +13,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor, Plan
 from cosserat_casadi.numerics.branches import crossing_direction
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, bracketed_zero
-from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
+from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
 
 EIGENVALUES = Monitor(lambda _y, jacobian, _: np.linalg.eigvalsh((jacobian + jacobian.T) / 2), feels_limits=True)
 MONITORS = pytest.mark.parametrize("monitor", [EIGENVALUES, DETERMINANT], ids=["eigenvalues", "determinant"])

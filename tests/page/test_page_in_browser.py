@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, solve
-from cosserat_casadi.page.page import LARGEST, chosen_for, export_page
+from cosserat_casadi.page.page import LARGEST, export_page
 from tests.browser import browser
 from tests.page.pages_made import strip, wasm_compiler
 
@@ -122,20 +122,50 @@ def test_an_unstable_equilibrium_is_said_in_words(page: Any) -> None:
     assert page.get_attribute("#status", "class") == "warn"
 
 
-def test_inputs_that_modes_were_not_chosen_for_are_said(page: Any, solution: Solution) -> None:
-    own = solution.inputs.tolist()
-    asked = solution.model.scene.accuracy.model_copy(update={"tolerance": 1.0})
-    asked.model_fields_set.add("tolerance")
-    judged = solve(build(solution.model.scene.model_copy(update={"accuracy": asked}), solution.model.discretisation))
-    facts = {"layout": [{"first": 0, "rows": 1, "columns": 1}], "chosenFor": chosen_for(judged)}
-    answer = "([facts, inputs]) => new WasmRobot(facts, null).accuracy(inputs)"
-    assert page.evaluate(answer, [facts, own])["within"] is True
-    away = page.evaluate(answer, [facts, [own[0] + 1.0, *own[1:]]])
+def test_the_estimated_error_is_that_of_solve_beside_the_tolerance(page: Any, solution: Solution) -> None:
+    """Within it at the scene's own inputs, above it where the rod is bent by far."""
+    strong = solution.model.pack({"push.force": [4.0, 0.0, -3.0]})
+    bent = solve(solution.model, strong).error_estimate
+    answers = page.evaluate(
+        """async ([asked, own, strong]) => {
+        const facts = { ...JSON.parse(document.getElementById("facts").textContent), ...asked };
+        const robot = await openRobot(facts);
+        await robot.reset(Float64Array.from(own));
+        const home = await robot.accuracy();
+        await robot.move(Float64Array.from(strong));
+        const away = { ...(await robot.accuracy()), error: robot.library.error_estimate() };
+        robot.facts = { ...facts, tolerance: null };
+        return [home, away, await robot.accuracy()]; }""",
+        [{"tolerance": 1e-5, "remedy": "choose them anew."}, solution.inputs.tolist(), strong.tolist()],
+    )
+    home, away, unasked = answers
+    assert home["within"] is True
+    assert home["text"] == "Estimated error 1e-6 of the length, asked 1e-5."
     assert away["within"] is False
-    assert "chosen for other inputs" in away["text"]
+    assert_allclose(away["error"], bent, rtol=1e-4, atol=0)
+    assert away["text"] == "Estimated error 8e-5 of the length, asked 1e-5; choose them anew."
     # Of modes that the scene fixes without a tolerance nothing is asked.
-    assert chosen_for(solution) is None
-    assert page.evaluate(answer, [{**facts, "chosenFor": None}, own])["within"] is None
+    assert unasked == {"within": None, "text": "", "refines": False}
+
+
+def test_the_words_turn_amber_above_the_tolerance_and_green_again(window: Any, file: Path, tmp_path: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert '"tolerance": null' in text
+    asked = tmp_path / "asked.html"
+    asked.write_text(text.replace('"tolerance": null', '"tolerance": 2e-5'), encoding="utf-8")
+    opened = window.new_page()
+    opened.goto(asked.as_uri())
+    says = "(words) => window.robot && window.robot.status.includes(words)"
+    opened.wait_for_function(says, arg="of the length, asked 2e-5.", timeout=PATIENCE)
+    assert opened.get_attribute("#status", "class") == "good"
+    opened.evaluate("window.robot.setInput('push.force', [4, 0, -3])")
+    opened.wait_for_function(says, arg="stable, beyond the tolerance", timeout=PATIENCE)
+    assert opened.get_attribute("#status", "class") == "warn"
+    assert "of the length, asked 2e-5; the scene fixes its modes" in opened.inner_text("#status")
+    opened.evaluate("window.robot.reset()")
+    opened.wait_for_function(says, arg="of the length, asked 2e-5.", timeout=PATIENCE)
+    assert opened.get_attribute("#status", "class") == "good"
+    opened.close()
 
 
 def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None:

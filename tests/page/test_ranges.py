@@ -1,11 +1,13 @@
-"""Ranges of sliders: bounds where the scene has them, else what suits the input."""
+"""Sliders go over the ranges that modes are chosen for."""
 
 from __future__ import annotations
+
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.page.ranges import Slider, sliders
 from tests.page.pages_made import finger
-from tests.scenes import push, rod
+from tests.scenes import STIFFNESS, push, rod
 
 
 def by_name(made: list[Slider]) -> dict[str, Slider]:
@@ -18,11 +20,12 @@ def test_bounds_of_the_scene_are_the_ends() -> None:
     assert (x.value, x.least, x.most, x.unit, x.index) == (0.3, -3.0, 4.0, "N", 0)
 
 
-def test_without_bounds_an_input_reaches_twice_its_size() -> None:
+def test_without_bounds_the_ends_are_what_modes_are_chosen_for() -> None:
+    """A tendon does not push; gravity keeps its size."""
     made = by_name(sliders(build(finger())))
-    # Of a vector the largest entry tells the size of all; a tendon does not push.
-    assert (made["weight.acceleration x"].least, made["weight.acceleration x"].most) == (-3.0, 3.0)
-    assert (made["front.tension"].least, made["front.tension"].most) == (0.0, 3.0)
+    assert (made["weight.acceleration x"].least, made["weight.acceleration x"].most) == (-1.5, 1.5)
+    tendon = made["front.tension"]
+    assert_allclose([tendon.least, tendon.most], [0.0, 1.5 + STIFFNESS["bending_y"] / (0.02 * 0.8)], rtol=1e-9, atol=0)
 
 
 def scene_with(inputs: list[str], **changes: object) -> dict[str, object]:
@@ -35,20 +38,30 @@ def scene_with(inputs: list[str], **changes: object) -> dict[str, object]:
     }
 
 
-def test_inputs_that_are_zero_take_their_size_from_the_rod() -> None:
-    made = by_name(sliders(build(scene_from_dict(scene_with(["push.force", "push.moment"])))))
-    # EI = 0.7 N m² (torsion is the softest), ℓ = 0.8 m: EI/ℓ² and EI/ℓ, twice of which is the end.
-    assert made["push.force y"].most == 2 * 0.7 / 0.8**2
-    assert made["push.moment y"].least == -2 * (0.7 / 0.8**2) * 0.8
+def test_ends_are_those_of_a_choice_and_what_keeps_its_value_there_can_be_moved() -> None:
+    """Modes that were chosen for one input alone: the slider of another one goes as far as its scale."""
+    accuracy = {"tolerance": 1e-3, "modes": 3, "chosen_for": ["push.force.x=-0.5:0.25"]}
+    made = by_name(sliders(build(scene_from_dict(scene_with(["push.force"], accuracy=accuracy)))))
+    assert (made["push.force x"].least, made["push.force x"].most) == (-0.5, 0.25)
+    force = 2 * STIFFNESS["bending_x"] / 0.8**2
+    assert_allclose([made["push.force y"].least, made["push.force y"].most], [-force, force], rtol=1e-9, atol=0)
 
 
 def test_geometry_moves_about_the_scene_s_own() -> None:
-    made = by_name(
-        sliders(build(scene_from_dict(scene_with(["rod.length", "rod.base.position", "rod.base.quaternion"]))))
+    """Lengths and bases by a tenth; a base turns into every direction where it alone holds the rod, else it tilts."""
+    inputs = ["rod.length", "rod.base.position", "rod.base.quaternion"]
+    made = by_name(sliders(build(scene_from_dict(scene_with(inputs)))))
+    for name, ends in (
+        ("rod.length", (0.72, 0.88)),
+        ("rod.base.position x", (-0.08, 0.08)),
+        ("rod.base.quaternion w", (-1.0, 1.0)),
+    ):
+        assert_allclose([made[name].least, made[name].most], ends, rtol=1e-12, atol=0)
+    pinned = [{"rod": "rod", "kind": "pinned", "position": [0.1, 0, 0.7]}]
+    made = by_name(sliders(build(scene_from_dict(scene_with(inputs, supports=pinned)))))
+    assert_allclose(
+        [made["rod.base.quaternion x"].least, made["rod.base.quaternion x"].most], [-0.1, 0.1], rtol=1e-12, atol=0
     )
-    assert (made["rod.length"].least, made["rod.length"].most) == (0.4, 1.2000000000000002)
-    assert (made["rod.base.position x"].least, made["rod.base.position x"].most) == (-0.2, 0.2)
-    assert (made["rod.base.quaternion w"].least, made["rod.base.quaternion w"].most) == (-1.0, 1.0)
 
 
 def test_one_bound_is_kept_and_the_scene_s_value_is_on_the_slider() -> None:

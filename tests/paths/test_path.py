@@ -12,7 +12,7 @@ from scipy.special import ellipe, ellipk
 
 from cosserat_casadi import Model, SceneError, build, discretise, follow_path, follow_scene_path, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
-from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.numerics.trace import PathOutcome
 from tests.pose_errors import distance_between
 from tests.scenes import HOOK, push, rod, scene
 

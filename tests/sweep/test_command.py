@@ -6,12 +6,13 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from cosserat_casadi import SceneError, Solution, solve_scene, sweep_scene
+from cosserat_casadi import SceneError, Solution, solve, solve_scene, sweep_scene
 from cosserat_casadi.cli.main import INTERRUPTED, REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import rod, scene
@@ -83,19 +84,22 @@ def test_an_interrupt_that_is_lost_stops_the_command(
 ) -> None:
     """As CasADi loses what is raised while it looks at its arguments."""
 
-    def lose(*given: Any, **more: Any) -> Solution:
-        try:
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(1.0)
-        except KeyboardInterrupt:
-            lost.append(True)
-        return solve_scene(*given, **more)
+    def losing(solver: Callable[..., Solution]) -> Callable[..., Solution]:
+        def lose(*given: Any, **more: Any) -> Solution:
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(1.0)
+            except KeyboardInterrupt:
+                lost.append(True)
+            return solver(*given, **more)
+
+        return lose
 
     lost: list[bool] = []
     # What this process has received is no signal to the commands of other tests.
     monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
-    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
-    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve", losing(solve))
+    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", losing(solve_scene))
     words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])
     before = signal.getsignal(signal.SIGINT)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, parse_scene, solve, sweep_scene, tune
+from cosserat_casadi import build, choose, parse_scene, solve, sweep_scene
 from cosserat_casadi.codegen.rows import row_library, row_results
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweep.arguments import COMPILED_FROM
@@ -99,6 +99,7 @@ def test_a_row_whose_contacts_are_not_found_says_so(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.slow
 def test_modes_for_many_cases_in_contact() -> None:
-    tuned = tune(parse_scene(SCENE), [{"push.force": [0, 0, push]} for push in PUSHES], tolerance=1e-5)
-    assert tuned.met
-    assert [len(solution.contacts) for solution in tuned.solutions] == [0, 1, 1, 1]
+    cases = [{"push.force": [0, 0, push]} for push in PUSHES]
+    choice = choose(parse_scene(SCENE), tolerance=1e-5, cases=cases)
+    assert choice.met
+    assert [len(solve(choice.model, case).contacts) for case in cases] == [0, 1, 1, 1]

@@ -1,4 +1,4 @@
-"""Sweeps of concentric tubes: rows against `solve_tubes`, how they end, stability, refusals."""
+"""Sweeps of concentric tubes: rows against `solve_scene`, how they end, stability, refusals."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
+    Outcome,
     SceneError,
-    TubeOutcome,
     parse_scene,
     read_scene,
     read_sweep,
-    solve_tubes,
+    solve_scene,
     sweep_scene,
 )
 from cosserat_casadi.scene.writing import scene_text
@@ -44,7 +44,7 @@ def test_rows_are_what_solve_finds() -> None:
     assert swept.holds
     assert swept.posed == ["outer", "inner"]
     for row, (turn, reach) in enumerate(zip(turns, reaches, strict=True)):
-        solution = solve_tubes(SCENE, {"inner.rotation": turn, "inner.translation": reach})
+        solution = solve_scene(SCENE, {"inner.rotation": turn, "inner.translation": reach})
         for tube in swept.posed:
             assert_allclose(swept.positions(tube)[row], solution.tip(tube).position, rtol=0, atol=1e-15)
             quaternion = [swept[f"{tube}.{part}"][row] for part in ("qw", "qx", "qy", "qz")]
@@ -62,7 +62,7 @@ def test_rows_are_what_solve_finds() -> None:
 def test_loads_are_swept_and_moments_leave_stability_open() -> None:
     scene = parse_scene(scene_text(SCENE) + MOMENT)
     swept = sweep_scene(scene, {"twist.moment.z": [0.0, 2e-3]}, cores=1, stability=True)
-    expected = solve_tubes(scene, {"twist.moment": [0.0, 0.0, 2e-3]})
+    expected = solve_scene(scene, {"twist.moment": [0.0, 0.0, 2e-3]})
     assert_allclose(swept.positions("inner")[1], expected.tip("inner").position, rtol=0, atol=1e-15)
     assert np.isnan(swept["stable"]).all()
     assert np.isnan(swept["falling_directions"]).all()
@@ -70,11 +70,11 @@ def test_loads_are_swept_and_moments_leave_stability_open() -> None:
 
 
 @pytest.mark.parametrize(
-    ("outcome", "label"), [(TubeOutcome.NOT_FOUND, "load_stalled"), (TubeOutcome.UNRESOLVED, "unresolved")]
+    ("outcome", "label"), [(Outcome.LOAD_STALLED, "load_stalled"), (Outcome.UNRESOLVED, "unresolved")]
 )
-def test_what_did_not_converge_has_no_poses(outcome: TubeOutcome, label: str) -> None:
+def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> None:
     names = tube_results(SCENE, stability=True)
-    solution = replace(solve_tubes(SCENE), outcome=outcome)
+    solution = replace(solve_scene(SCENE), outcome=outcome)
     row = TubeRows(scene_text(SCENE), stability=True)._row(solution, len(names))
     assert LABELS[int(row[0])] == label
     assert np.isfinite(row[:3]).all()

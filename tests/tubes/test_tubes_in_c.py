@@ -13,22 +13,21 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import (
     CompiledTubes,
     ExportError,
+    Outcome,
     Scene,
     TubeSolution,
-    TubeStatus,
-    export_tubes,
-    follow_tubes,
+    export,
+    follow_scene_path,
     load,
-    load_tubes,
     parse_scene,
     read_scene,
-    solve_tubes,
+    solve_scene,
 )
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
-from cosserat_casadi.codegen.tubes.status import STATUSES
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
@@ -43,9 +42,11 @@ class Robot:
 
     def __init__(self, scene: Scene, folder: Path) -> None:
         self.scene = scene
-        self.solution = solve_tubes(scene)
-        self.folder = export_tubes(scene, self.solution, folder, "robot")
-        self.compiled: CompiledTubes = load_tubes(folder)
+        self.solution = solve_scene(scene)
+        self.folder = export(self.solution.model, folder, "robot", error_estimate=self.solution.error_estimate)
+        compiled = load(folder)
+        assert isinstance(compiled, CompiledTubes)
+        self.compiled = compiled
 
     def in_python(self, found: CompiledTubesSolution) -> TubeSolution:
         """The equilibrium in Python that one in C is near to."""
@@ -99,7 +100,7 @@ def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
     found = robot.compiled.solve(robot.inputs(seed))
     agrees(robot, found)
     # Without loads both come from straight tubes in the same way.
-    expected = solve_tubes(robot.scene, found.inputs)
+    expected = solve_scene(robot.scene, found.inputs)
     assert_allclose(found.tips["inner"][:3], expected.tip("inner").position, rtol=0, atol=1e-6)
 
 
@@ -115,7 +116,7 @@ def test_batch_vs_single_solves(robot: Robot) -> None:
     converged = compiled._function("solve_batch")(len(rows), *arguments)
     assert converged == sum(one.converged for one in singles) == 5
     for own, info, single in zip(x, infos, singles, strict=True):
-        assert info.status == STATUSES.index(single.status)
+        assert info.status == TUBE_OUTCOMES.index(single.outcome)
         assert info.determinant == single.determinant
         if single.converged:
             assert_allclose(own, single.x, rtol=0, atol=0)
@@ -134,9 +135,9 @@ def test_loaded_equilibria_are_those_of_python(loaded_robot: Robot, seed: int) -
 
 @pytest.mark.slow
 def test_a_loaded_robot_in_c_snaps_where_it_does_in_python(loaded_robot: Robot) -> None:
-    snap = follow_tubes(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
+    snap = follow_scene_path(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(loaded_robot, 0.01)
-    assert lost.status is TubeStatus.LOST_TRACK
+    assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
     assert lost.inputs[2] - last.inputs[2] < 0.011
 
@@ -171,9 +172,9 @@ def turned(robot: Robot, step: float) -> tuple[CompiledTubesSolution, CompiledTu
 
 @pytest.mark.parametrize("step", [0.003, 0.05, 0.4])
 def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
-    snap = follow_tubes(robot.scene, "inner.rotation", 9.0).events[0].value
+    snap = follow_scene_path(robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(robot, step)
-    assert lost.status is TubeStatus.LOST_TRACK
+    assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
     assert lost.inputs[2] - last.inputs[2] < 1.001 * step
     assert last.determinant > 0.0
@@ -183,7 +184,7 @@ def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
     back[2] -= step
     agrees(robot, robot.compiled.track(back, last))
     beyond = robot.compiled.follow(last, lost.inputs)
-    assert beyond.status is TubeStatus.LOAD_STALLED
+    assert beyond.outcome is Outcome.LOAD_STALLED
     assert beyond.load_factor < 1.0
     # From straight tubes there is another equilibrium at the same inputs.
     agrees(robot, robot.compiled.solve(lost.inputs))
@@ -215,7 +216,7 @@ def test_the_work_of_a_turn_is_bounded(robot: Robot) -> None:
     found = robot.compiled.solve()
     far = found.inputs + np.array([0.0, 0.05, 1.5, -0.1])
     short = robot.compiled.track(far, found, max_iterations=2, max_continuation_steps=1)
-    assert short.status is TubeStatus.LOST_TRACK
+    assert short.outcome is Outcome.LOST_TRACK
     assert short.iterations <= 4
     assert_allclose(short.x, found.x, rtol=0, atol=0)
 
@@ -225,18 +226,18 @@ def test_translations_out_of_range_are_refused(robot: Robot, translation: float)
     found = robot.compiled.solve()
     inputs = found.inputs.copy()
     inputs[3] = translation
-    assert robot.compiled.solve(inputs).status is TubeStatus.OUT_OF_RANGE
-    assert robot.compiled.follow(found, inputs).status is TubeStatus.OUT_OF_RANGE
+    assert robot.compiled.solve(inputs).outcome is Outcome.OUT_OF_RANGE
+    assert robot.compiled.follow(found, inputs).outcome is Outcome.OUT_OF_RANGE
     turn = robot.compiled.track(inputs, found)
-    assert turn.status is TubeStatus.OUT_OF_RANGE
+    assert turn.outcome is Outcome.OUT_OF_RANGE
     assert not turn.tips
     assert_allclose(turn.x, found.x, rtol=0, atol=0)
 
 
 def test_other_inputs_without_an_equilibrium(robot: Robot) -> None:
-    assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).status is TubeStatus.OUT_OF_RANGE
-    assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).status is TubeStatus.NOT_FINITE
-    assert robot.compiled.solve([0.1, np.nan, 0.0, 0.2]).status is not TubeStatus.CONVERGED
+    assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).outcome is Outcome.OUT_OF_RANGE
+    assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).outcome is Outcome.NOT_FINITE
+    assert robot.compiled.solve([0.1, np.nan, 0.0, 0.2]).outcome is not Outcome.CONVERGED
     found = robot.compiled.solve()
     elsewhere = CompiledTubesSolution(**{**vars(found), "inputs": found.inputs + np.array([0.0, 0.0, 0.3, 0.0])})
     assert robot.compiled.sensitivity(elsewhere) is None
@@ -261,7 +262,7 @@ def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, 
     found = robot.compiled.solve([0.0, 0.13, turn, reach])
     assert_allclose(found.x, turned_there.x, rtol=0, atol=1e-8)
     assert found.determinant > 0.0
-    in_python = solve_tubes(robot.scene, inputs)
+    in_python = solve_scene(robot.scene, inputs)
     assert in_python.stable
     assert_allclose(in_python.x - in_python.robot.rotations(in_python.inputs), found.x, rtol=0, atol=1e-5)
 
@@ -301,11 +302,12 @@ def test_the_demo_prints_what_python_finds(robot: Robot, tmp_path: Path) -> None
 
 def test_refusals(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no name for a C library"):
-        export_tubes(robot.scene, robot.solution, tmp_path / "folder", "a b")
-    with pytest.raises(ExportError, match="is not the manifest of concentric tubes"):
-        load_tubes(EXAMPLES.parent / "generated" / "nitinol_wire")
-    with pytest.raises(ExportError):
-        load(robot.folder)
+        export(robot.solution.model, tmp_path / "folder", "a b")
+    with pytest.raises(ExportError, match=r"--batches: is for rods(?s:.*)--period: is for rods"):
+        export(robot.solution.model, tmp_path / "folder", batches=True, period=1e-3)
+    (tmp_path / "manifest.json").write_text('{"name": "robot", "inputs": [], "files": [], "tubes": 3, "unknowns": 2}')
+    with pytest.raises(ExportError, match="is not the manifest of an exported folder"):
+        load(tmp_path)
     with pytest.raises(ValueError, match="both max_iterations"):
         robot.compiled.track(robot.compiled.defaults, robot.compiled.solve(), max_iterations=3)
 

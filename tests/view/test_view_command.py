@@ -9,9 +9,11 @@ import socket
 import subprocess
 import sys
 import urllib.request
+from pathlib import Path
 
 import pytest
 
+from tests.cli.test_locking import LOCKED
 from tests.conftest import ROOT
 
 PROGRAM = [sys.executable, "-u", "-c", "from cosserat_casadi.cli.main import main; main()", "view"]
@@ -23,20 +25,42 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
         try:
             assert running.stdout is not None
-            line = running.stdout.readline()
-            address = re.search(r"http://127\.0\.0\.1:\d+/[-\w]+/", line)
-            assert address is not None, line
+            said = ""
+            address = None
+            while address is None:
+                line = running.stdout.readline()
+                assert line, said
+                said += line
+                address = re.search(r"http://127\.0\.0\.1:\d+/[-\w]+/", line)
             with urllib.request.urlopen(address[0], timeout=30) as answer:
                 page = answer.read().decode()
             running.send_signal(signal.SIGINT)
             rest, _ = running.communicate(timeout=30)
         finally:
             running.kill()
+    # The modes are those of the sliders, not of the scene's own inputs.
+    assert re.search(r"All \d+ load cases are within 1e-06", said)
+    assert "turns a rod by about a radian" in said
     assert "<title>Plastic strip" in page
     assert "class ServerRobot" in page
     assert "WebAssembly" not in page
     assert "Ended." in rest
     assert running.returncode == 130
+
+
+def test_locked_modes_are_told_before_the_page_is_served(tmp_path: Path) -> None:
+    scene = tmp_path / "held.toml"
+    scene.write_text(LOCKED)
+    command = [*PROGRAM, str(scene), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            assert running.stdout is not None
+            assert "The robot is at" in running.stdout.readline()
+            running.send_signal(signal.SIGINT)
+            _, errors = running.communicate(timeout=30)
+        finally:
+            running.kill()
+    assert "kinematically locked" in " ".join(errors.split())
 
 
 @pytest.mark.parametrize(

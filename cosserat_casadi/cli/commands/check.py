@@ -11,18 +11,21 @@ from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
-from cosserat_casadi.cli.reports.model import print_check, print_ranges
+from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
+from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, locking_note
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import build
-from cosserat_casadi.model.price import is_damped, price, without_damping
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
+from cosserat_casadi.tubes.robot import robot_of
 
 
 def check(
@@ -39,7 +42,7 @@ def check(
     if checked_scene.tubes:
         if timed:
             raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
-        check_tube_scene(checked_scene)
+        print_tubes_check(Console(), robot_of(checked_scene))
         return
     if timed:
         # A compiler that is missing is reported before anything is printed.
@@ -48,12 +51,31 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    print_check(Console(), build(checked_scene), varying)
-    print_ranges(Console(), input_ranges(checked_scene))
+    with progress_bar() as bar:
+        show_count = count_reporter(bar, "Building the model")
+        model = build(checked_scene)
+        of_effects = prices_of_effects(checked_scene, show_count)
+        show_count("Counting the operations of residual and Jacobian", 0, 0)
+        cost = price(model)
+        show_count("Choosing the ranges of inputs", 0, 0)
+        ranges = input_ranges(checked_scene)
+        show_count("Looking for constraints that lock", 0, 0)
+        locking = _locking_note(checked_scene, model)
+    print_check(Console(), model, varying, cost, of_effects)
+    print_ranges(Console(), ranges)
+    print_locking(Console(), locking)
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
+
+
+def _locking_note(scene: Scene, model: Model) -> str:
+    """A sentence where constraints lock modes that the scene fixes, which an equilibrium tells."""
+    held = degrees_of_freedom(model) is not None and not scene.touches_exactly
+    if not held or not scene.accuracy.fixed:
+        return ""
+    return locking_note(solve(model, estimate_error=False))
 
 
 def _print_times(scene: Scene) -> None:

@@ -21,6 +21,8 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.estimation import Estimate, estimate_scene
 from cosserat_casadi.files import check_writable, write_atomically
@@ -93,4 +95,18 @@ def _print(console: Console, found: Estimate, title: str | None) -> None:
     for k, label in enumerate(found.labels):
         numbers = (values[:, k].min(), values[:, k].max(), sorted(deviations[:, k])[len(deviations) // 2])
         table.add_row(escape(label), found.units[k], *(f"{number:.4g}" for number in numbers))
+    if found.shared is not None:
+        shared = found.shared
+        for label, unit, value, sigma in zip(shared.labels, shared.units, shared.values, shared.sigma, strict=True):
+            table.add_row(escape(label), unit, f"{value:.4g}", f"{value:.4g}", f"{sigma:.4g}")
     console.print(table)
+    if found.checked:
+        print_plain(console, _checked_sentence(found), soft_wrap=True)
+
+
+def _checked_sentence(found: Estimate) -> str:
+    """The largest error of the rows that were solved again, beside the tolerance."""
+    # Of a row without an equilibrium on finer modes it is not known.
+    largest = max(UNKNOWN if error is None else error for _, error in found.checked)
+    error = error_words(largest, found.within_tolerance, found.model.scene.accuracy.tolerance)
+    return f"{counted(len(found.checked), 'row')} solved again on finer modes: estimated error at most {error}."

@@ -11,15 +11,14 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.accuracy.choose import with_choice
+from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.cli.commands.cases import load_cases
-from cosserat_casadi.cli.commands.choosing import choose_with_progress
-from cosserat_casadi.cli.commands.solving import solve_with_progress
-from cosserat_casadi.cli.commands.tubes import export_tube_scene
+from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.model import print_choice, print_export
+from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
+from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
@@ -27,7 +26,9 @@ from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
-from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.codegen.tubes.sources import check_tubes
+from cosserat_casadi.equilibrium.locking import locking_sentence
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -35,7 +36,9 @@ from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.solve import solve_tubes
 
 
 def export(
@@ -84,7 +87,10 @@ def export(
     ] = True,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources, a page for a browser, or an FMU.
+
+    Exit codes: 0 written; 2 refused; 3 not solved and nothing written, or written with an error above the tolerance
+    somewhere in the ranges, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
     is one file that other simulators step.
@@ -105,7 +111,6 @@ def export(
             "--stability": stability,
             "--batches": batches,
             "--over": over is not None,
-            "--range": bool(ranges),
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
@@ -132,9 +137,9 @@ def export(
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
-        _refuse_for_tubes(unknown)
+        check_tubes(unknown)
         assert output is not None
-        export_tube_scene(exported_scene, output, name)
+        _export_tubes(exported_scene, output, name)
         return
     check_period(exported_scene, period)
     cases = None
@@ -165,18 +170,13 @@ def export(
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     solved_scene = exported_scene.held() if moves else exported_scene
-    choice = None
+    solution, choice = solve_for_ranges(solved_scene, asked_ranges)
     verified = None
-    if exported_scene.touches_exactly:
-        solution = solve_with_progress(solved_scene)
-    else:
-        choice = choose_with_progress(solved_scene, asked_ranges)
+    if choice is not None:
         verified = choice.verified
-        solution = solve(choice.model)
-        exported_scene = with_choice(exported_scene, choice.model.discretisation, choice.ranges)
-    if not solution.converged:
-        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
-        raise typer.Exit(NOT_FOUND)
+        chosen_for = choice.ranges.described if choice.met else ()
+        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, chosen_for)
+    _check_solved(solution)
     console = Console()
     model = solution.model
     if moves or exported_scene.parameters:
@@ -198,8 +198,6 @@ def export(
             estimate_errors=estimate_errors,
         )
         print_export(console, solution, output)
-        if choice is not None:
-            print_choice(console, choice)
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, fmu, name, error_estimate=estimate, verified=verified)
@@ -208,6 +206,28 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
+    if choice is not None:
+        print_choice(console, choice)
+        print_locking(Console(stderr=True), locking_sentence(choice.locked))
+        if choice.within_tolerance is False:
+            print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
+            raise typer.Exit(NOT_FOUND)
+
+
+def _check_solved(solution: Solution | TubeSolution) -> None:
+    """Write nothing where there is no equilibrium, and say why."""
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+
+
+def _export_tubes(scene: Scene, output: Path, name: str) -> None:
+    """Write concentric tubes with the steps that the scene's own inputs need."""
+    scene_names(name, scene)
+    solution = solve_tubes(scene)
+    _check_solved(solution)
+    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    print_tubes_export(Console(), solution, output)
 
 
 def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
@@ -223,16 +243,5 @@ def _refuse_without_sources(options: Mapping[str, bool]) -> None:
     """Refuse options that only sources in C know: page and FMU hold what they hold."""
     remedy = "name a folder for them with --output, or leave it out"
     problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
-    if problems:
-        raise ExportError(*problems)
-
-
-def _refuse_for_tubes(options: Mapping[str, bool]) -> None:
-    """Refuse options that are for rods."""
-    problems = [
-        Problem(option, "is for rods, and the scene has concentric tubes", "leave it out")
-        for option, given in options.items()
-        if given
-    ]
     if problems:
         raise ExportError(*problems)

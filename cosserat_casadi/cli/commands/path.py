@@ -10,7 +10,6 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from cosserat_casadi.cli.commands.tubes import Outputs, follow_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -23,6 +22,7 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.path import print_path
+from cosserat_casadi.cli.reports.tubes import print_tube_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.loads.load import coefficients
@@ -33,6 +33,7 @@ from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.results.path_file import path_table, path_text
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.tubes.path import TubePath
 from cosserat_casadi.tubes.robot import robot_of
 
 
@@ -60,13 +61,6 @@ def path(
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot, "--csv": table}, scene, settings)
     checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
-    if checked_scene.tubes:
-        if branch:
-            problem = "is for rods: a path of tubes goes straight on"
-            raise SceneError(Problem("--branch", problem, "leave it out"))
-        follow_tube_scene(checked_scene, name, value, Outputs(output, plot, table))
-        return
-
     # The branch that follow_scene_path leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0
     with solve_display("Following the path") as display:
@@ -85,7 +79,11 @@ def path(
         write_atomically(table, path_table(followed).encode())
     if plot is not None:
         _draw(followed, plot)
-    print_path(Console(), followed, given_files(output, table, plot))
+    written = given_files(output, table, plot)
+    if isinstance(followed, TubePath):
+        print_tube_path(Console(), followed, written)
+    else:
+        print_path(Console(), followed, written)
     if not followed.converged:
         raise typer.Exit(NOT_FOUND)
 
@@ -165,8 +163,12 @@ def _array(value: object) -> FloatArray:
     return np.array([value], dtype=float)
 
 
-def _draw(followed: EquilibriumPath, file: Path) -> None:
+def _draw(followed: EquilibriumPath | TubePath, file: Path) -> None:
     # Imported here, because matplotlib is an extra and takes long to load.
     from cosserat_casadi.plots.path_plot import save_path_plot
+    from cosserat_casadi.plots.tubes_plot import save_tube_path_plot
 
-    save_path_plot(followed, file)
+    if isinstance(followed, TubePath):
+        save_tube_path_plot(followed, file)
+    else:
+        save_path_plot(followed, file)

@@ -20,9 +20,10 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically, write_whole
-from cosserat_casadi.results.solution_file import result_text
+from cosserat_casadi.files import write_whole
+from cosserat_casadi.results.solution_file import Solved, result_text, write_result
 from cosserat_casadi.scene import read_scene, with_exact_contact
 
 
@@ -67,27 +68,18 @@ def solve(
             read = with_exact_contact(read)
     if problems:
         raise SceneError(*problems)
-    if read.tubes:
+    if every:
         # Imported here, because no scene of rods needs the modules of tubes.
-        from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
+        from cosserat_casadi.tubes.equilibria import all_equilibria
 
-        outputs = Outputs(output, plot, as_json=as_json)
-        if every:
-            solve_all_of_tubes(read, outputs)
-        else:
-            solve_tube_scene(read, outputs, stable=stable)
+        equilibria = all_equilibria(read)
+        # Without an equilibrium there is nothing to draw.
+        _give(equilibria, output, plot if equilibria.solutions else None, as_json=as_json)
+        if not equilibria.complete:
+            raise typer.Exit(NOT_FOUND)
         return
     solution = solve_with_progress(read, stable=stable)
-    if output is not None:
-        write_atomically(output, result_text(solution).encode())
-    if plot is not None:
-        draw_solution(solution, plot)
-    if as_json:
-        # JSON is UTF-8, whatever the terminal knows.
-        text = result_text(solution)
-        write_whole(binary_output(), text.encode())
-    else:
-        print_solution(Console(), solution, given_files(output, plot))
+    _give(solution, output, plot, as_json=as_json)
     # On standard error, so that --json stays pure; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_unstable(Console(stderr=True))
@@ -97,3 +89,21 @@ def solve(
     missed = solution.within_tolerance is False
     if not found or missed:
         raise typer.Exit(NOT_FOUND)
+
+
+def _give(solution: Solved, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
+    """Write, draw and print what was found."""
+    if output is not None:
+        write_result(solution, output)
+    if plot is not None:
+        draw_solution(solution, plot)
+    written = given_files(output, plot)
+    if as_json:
+        # JSON is UTF-8, whatever the terminal knows.
+        write_whole(binary_output(), result_text(solution).encode())
+    elif isinstance(solution, Solution):
+        print_solution(Console(), solution, written)
+    else:
+        from cosserat_casadi.cli.reports.tubes import print_tubes
+
+        print_tubes(Console(), solution, written)

@@ -20,7 +20,7 @@ from cosserat_casadi.cli.options import (
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sobol import print_sobol
-from cosserat_casadi.cli.reports.sweep import print_stopped_sweep, print_sweep
+from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
@@ -28,7 +28,8 @@ from cosserat_casadi.results.sobol_file import sobol_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweep.outcome_file import record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
+from cosserat_casadi.sweep.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweep.shards import Shard
 from cosserat_casadi.sweep.sobol import sobol_indices
 from cosserat_casadi.sweep.table import Table, read_table
 
@@ -47,6 +48,12 @@ def sweep(
     stability: Annotated[
         bool, typer.Option("--stability", help="Say of every row whether its equilibrium is stable.")
     ] = False,
+    estimate_errors: Annotated[
+        bool,
+        typer.Option(
+            "--error-estimate/--no-error-estimate", help="Estimate the error of every row, or leave the columns out."
+        ),
+    ] = True,
     sobol: Annotated[
         Path | None,
         typer.Option(help="Draw the random columns for sensitivity indices, and write those here: .json."),
@@ -57,12 +64,16 @@ def sweep(
     colour: Annotated[
         str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
     ] = None,
+    shard: Annotated[
+        str | None, typer.Option(metavar="K/N", help="Solve the K-th of N parts of the rows, for --merge.")
+    ] = None,
+    merge: Annotated[bool, typer.Option("--merge", help="Write the results from the shards beside --output.")] = False,
     settings: Settings = None,
 ) -> None:
     """Solve a scene for every row of a grid or a table of inputs and parameters.
 
     What a stopped or killed run has done is not done again. Exit codes: 0 every row has its outcome, 2 refused,
-    3 the tolerance is missed on rows that were checked, or no row has an equilibrium, 130 interrupted.
+    3 rows miss the tolerance, or no row has an equilibrium, 130 interrupted.
     """
     problems: list[Problem] = []
     with collect_problems(problems):
@@ -74,7 +85,9 @@ def sweep(
         check_inputs_stay(outputs, scene, settings, over)
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
-    plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, sobol is not None, problems)
+    part = _check_shard(shard, merge, plot, problems)
+    asked = {"stability": stability, "estimate_errors": estimate_errors}
+    plan = _check_table(scene, tuple(settings or ()), over, output, samples, asked, sobol is not None, problems)
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -83,10 +96,18 @@ def sweep(
     finished_before = plan.finished
     try:
         with sweep_display() as show_count:
-            swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
+            if part is not None:
+                rows = run_shard(plan, part, scheduler=scheduler, cores=cores, progress=show_count)
+            elif merge:
+                swept = merge_shards(plan, progress=show_count)
+            else:
+                swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
     except KeyboardInterrupt:
-        print_stopped_sweep(Console(stderr=True), plan)
+        print_stopped_sweep(Console(stderr=True), plan.part if part is None else part.file(output))
         raise StoppedError from None
+    if part is not None:
+        print_shard(Console(), part, rows, output)
+        return
 
     if sobol is not None:
         print_sweep(Console(), swept, output, None, finished=finished_before)
@@ -100,17 +121,30 @@ def sweep(
         raise typer.Exit(NOT_FOUND)
 
 
+def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: list[Problem]) -> Shard | None:
+    """The shard that is asked for, if one is."""
+    if shard is None:
+        return None
+    if merge:
+        problems.append(Problem("--merge", "is for all shards together", "leave it out beside --shard"))
+    if plot is not None:
+        problems.append(Problem("--plot", "is of all rows", "give it with --merge"))
+    with collect_problems(problems):
+        return Shard.read(shard)
+    return None
+
+
 def _check_table(
     scene_file: Path,
     settings: tuple[str, ...],
     over: Path,
     output: Path,
     samples: int,
-    stability: bool,
+    asked: dict[str, bool],
     sobol: bool,
     problems: list[Problem],
 ) -> Plan | None:
-    """The sweep that is asked for; None where the scene, the table or the output is refused."""
+    """The sweep that is asked for, with columns that are; None where the scene, the table or the output is refused."""
     scene: Scene | None = None
     table: Table | None = None
     with collect_problems(problems):
@@ -122,7 +156,7 @@ def _check_table(
         problems.extend(output_problems(output, None))
         return None
     with collect_problems(problems):
-        return plan_sweep(scene, table, output, samples, stability=stability)
+        return plan_sweep(scene, table, output, samples, **asked)
     return None
 
 

@@ -8,20 +8,17 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.accuracy.choose import SAMPLES, Choice
-from cosserat_casadi.accuracy.tune import Tuning, unfixed
-from cosserat_casadi.accuracy.tune import tune as tune_scene
+from cosserat_casadi.accuracy.choose import SAMPLES
+from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
-from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.discretisation import discretisation_table
-from cosserat_casadi.cli.reports.model import print_choice, print_tuning
+from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import CaseLayout, case_layout, ends_by_column, read_load_cases
-from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.model.load_cases import case_layout, ends_by_column, read_load_cases
+from cosserat_casadi.scene import read_scene
 from cosserat_casadi.scene.writing import scene_text
 
 
@@ -44,27 +41,18 @@ def tune(
     layout = case_layout(tuned_scene)
     check_file(output, "--output", ".toml")
     check_inputs_stay({"--output": output}, scene, settings, over)
-    tuning: Tuning | Choice
-    if over is None:
-        asked = ends_by_column(ranges or [], layout)
-        free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
-        tuning = choose_with_progress(free, asked, samples)
-        Console().print(discretisation_table(tuning.model))
-        print_choice(Console(), tuning)
-    elif ranges:
+    if over is not None and ranges:
         raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
+    free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
+    if over is None:
+        choice = choose_with_progress(free, ends_by_column(ranges or [], layout), samples)
     else:
-        cases = read_load_cases(over, layout)
-        tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
-        print_tuning(Console(), tuning, layout, cases)
+        cases = [layout.unpack(case) for case in read_load_cases(over, layout)]
+        choice = choose_with_progress(free, cases=cases)
+    Console().print(discretisation_table(choice.model))
+    print_choice(Console(), choice)
     # A scene that misses the tolerance is not written: it would be taken for one that meets it.
-    if not tuning.met:
+    if not choice.met:
         raise typer.Exit(NOT_FOUND)
-    write_atomically(output, scene_text(tuning.scene).encode())
+    write_atomically(output, scene_text(choice.scene).encode())
     Console().print(f"wrote {output}", highlight=False)
-
-
-def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: CaseLayout) -> Tuning:
-    values = [layout.unpack(case) for case in cases]
-    with count_display("Tuning") as show_count:
-        return tune_scene(scene, values, tolerance, show_count)

@@ -8,13 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.commands.choosing import solve_for_ranges
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_plain
+from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.scene import read_scene
 
 
@@ -26,6 +29,9 @@ def view(
 ) -> None:
     """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
 
+    Modes and nodes are chosen so that the tolerance is met wherever the sliders go, whose ends are the scene's [ranges]
+    or [[bounds]], or of the scale of the input.
+
     Only this machine reaches the page, and only who knows its address. Exit codes: 2 refused, 3 not solved, 130 ended.
     """
     # Imported here, because motions and inverse problems are needed by few commands.
@@ -36,13 +42,21 @@ def view(
     viewed_scene = read_scene(scene, tuple(settings or ()))
     if is_compiled(viewed_scene):
         find_compiler()
-    solution = solve_with_progress(viewed_scene)
+    choice = None
+    if viewed_scene.accuracy.fixed:
+        # What the scene fixes need not be verified beforehand: every answer tells its error.
+        solution = solve_rods_with_progress(viewed_scene)
+        print_locking(Console(stderr=True), locking_note(solution))
+    else:
+        solution, choice = solve_for_ranges(viewed_scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
     with progress_bar() as bar:
         session = opened(solution, count_reporter(bar, "Writing the model in C"))
     console = Console()
+    if choice is not None:
+        print_choice(console, choice)
     with RobotServer(session, port) as server:
         print_plain(console, f"The robot is at {server.address} until you press Ctrl-C.")
         if browser:

@@ -12,6 +12,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.spelling import counted
@@ -32,6 +33,10 @@ def print_identification(console: Console, found: Identification, written: Seque
     if found.rows:
         print_plain(console, _residuals(found))
         print_plain(console, escape("; ".join(discretisation_sentences(found.model))))
+    if found.error_estimate is not None:
+        tolerance = found.model.scene.accuracy.tolerance
+        error = error_words(found.error_estimate, found.within_tolerance, tolerance)
+        print_plain(console, f"estimated error of the model at most {error} ({escape(str(found.error_case))})")
     print_written(console, written)
 
 

@@ -9,8 +9,10 @@ from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.cli.reports.format import print_plain, print_written
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
+from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.results.inverse_table import MET
 from cosserat_casadi.spelling import counted
 
@@ -25,7 +27,7 @@ def print_inverse_table(
     outcomes: Sequence[str],
     output: Path,
 ) -> None:
-    """Print how many rows are met, and of the others the line, the outcome and why."""
+    """Print how many rows are met, and of the others the line, the outcome and why; then the largest error."""
     failed = [row for row, outcome in enumerate(outcomes) if outcome != MET]
     rows = counted(len(outcomes), "row")
     if not failed:
@@ -37,4 +39,27 @@ def print_inverse_table(
         print_plain(console, f"line {targets.lines[row]}: {outcomes[row]}. {message}", soft_wrap=True)
     if len(failed) > MOST_TOLD:
         print_plain(console, f"… and {len(failed) - MOST_TOLD} more; {escape(str(output))} names the outcome of each.")
+    sentence = _error_sentence(targets, found)
+    if sentence is not None:
+        print_plain(console, sentence, soft_wrap=True)
     print_written(console, [output])
+
+
+def _error_sentence(targets: TargetTable, found: Sequence[Inverse]) -> str | None:
+    """The largest estimated error of the rows that are equilibria, and how many are above the tolerance, if any."""
+    errors = {
+        row: inverse.solution.error_estimate
+        for row, inverse in enumerate(found)
+        if inverse.solution.converged and inverse.solution.error_estimate is not None
+    }
+    if not errors:
+        return None
+    worst = max(errors, key=lambda row: errors[row])
+    solution = found[worst].solution
+    tolerance = solution.model.scene.accuracy.tolerance
+    error = error_words(errors[worst], solution.within_tolerance, tolerance)
+    missed = sum(found[row].solution.within_tolerance is False for row in errors)
+    sentence = f"Estimated error at most {error} (line {targets.lines[worst]})"
+    if missed:
+        return f"{sentence}, as in {counted(missed, 'row')}: {remedy(solution)}"
+    return f"{sentence}."

@@ -11,7 +11,6 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
-from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
 from cosserat_casadi.equilibrium.contact.state import without_contacts
@@ -19,18 +18,32 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.load_cases import CaseLayout
-from cosserat_casadi.model.price import price, price_of_load, price_of_obstacle
+from cosserat_casadi.model.operations import Count
+from cosserat_casadi.model.price import Price
 from cosserat_casadi.scene.varying import VaryingValue
 
 
-def print_check(console: Console, model: Model, varying: Sequence[VaryingValue]) -> None:
-    """Print what a valid scene holds, what in it varies along the rods, and what its model costs."""
+def print_check(
+    console: Console,
+    model: Model,
+    varying: Sequence[VaryingValue],
+    cost: Price,
+    of_effects: Mapping[str, Count],
+) -> None:
+    """Print what a valid scene holds, what in it varies along the rods, and what its model costs.
+
+    Args:
+        console: where to print.
+        model: the model of the scene.
+        varying: values that vary along a rod.
+        cost: operations of the model's functions.
+        of_effects: operations that each load, actuator and obstacle with a width adds to the residual, by name.
+    """
     scene = model.scene
     print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
-    if scene.causes or any(obstacle.is_smooth for obstacle in scene.obstacles):
-        console.print(_load_table(model))
+    if of_effects:
+        console.print(_load_table(model, of_effects))
     _print_varying(console, varying)
     _print_parameters(console, model)
     if scene.supports:
@@ -38,7 +51,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
-    _print_price(console, model)
+    _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
         print_plain(console, "Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
     if scene.accuracy.modes is None:
@@ -69,37 +82,42 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
-def print_tuning(console: Console, tuning: Tuning, layout: CaseLayout, cases: FloatArray) -> None:
-    """Print the discretisation that was chosen, and the load case that is worst on it."""
-    worst = tuning.solutions[tuning.worst]
-    console.print(discretisation_table(worst.model))
-    print_plain(console, _tuning_verdict(tuning, len(cases)))
-    ranges = tuning.scene.accuracy.chosen_for
-    if ranges:
-        print_plain(console, "It holds for " + ", ".join(map(escape, ranges)))
-
-    point = _point(layout.unpack(cases[tuning.worst]))
-    ending = worst.message
-    if worst.error_estimate is not None:
-        ending = f"estimated error {worst.error_estimate:.1e}"
-    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(point)}: {ending}")
-
-
 def print_choice(console: Console, choice: Choice) -> None:
     """Print what a discretisation was chosen for, and the point that is worst on it."""
     tolerance = choice.scene.accuracy.tolerance
     if choice.met:
-        print_plain(console, f"[bold green]All {choice.solves} points of the ranges are within {tolerance:g}.[/]")
+        print_plain(console, f"[bold green]All {choice.solves} load cases are within {tolerance:g}.[/]")
+    elif choice.within_tolerance is None:
+        print_plain(console, "The scene fixes modes and asks for no tolerance.")
     else:
-        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every point of the ranges.[/]")
+        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
     print_ranges(console, choice.ranges)
     if choice.without_equilibrium:
         count = len(choice.without_equilibrium)
         point = escape(_point(choice.without_equilibrium[0]))
-        print_plain(console, f"[bold yellow]No equilibrium was found at {count} points[/], such as {point}")
+        print_plain(console, f"[bold yellow]No equilibrium was found at {count} load cases[/], such as {point}")
     if choice.error_estimate is not None:
         error = f"estimated error {choice.error_estimate:.1e}"
-        print_plain(console, f"Worst point: {escape(_point(choice.worst))}: {error}")
+        print_plain(console, f"Worst case: {escape(_point(choice.worst))}: {error}")
+
+
+def print_missed(console: Console, *, fixed: bool) -> None:
+    """Print that what was written does not keep the tolerance, and what to do.
+
+    Args:
+        console: of standard error.
+        fixed: whether the scene fixes modes, nodes or rotation.
+    """
+    remedy = "narrow the ranges, or ask for a larger tolerance"
+    if fixed:
+        remedy = "leave modes, nodes and rotation out of the scene, and they are chosen"
+    print_plain(console, f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
+
+
+def print_locking(console: Console, sentence: str) -> None:
+    """Print that modes are locked, where they are."""
+    if sentence:
+        print_plain(console, f"[bold red]{escape(sentence)}[/]")
 
 
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
@@ -115,16 +133,6 @@ def _point(values: Mapping[str, FloatArray]) -> str:
     """Inputs and parameters in words."""
     # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
     return ", ".join(f"{name} = {value.T.squeeze().tolist()}" for name, value in values.items())
-
-
-def _tuning_verdict(tuning: Tuning, count: int) -> str:
-    tolerance = tuning.scene.accuracy.tolerance
-    failed = [solution for solution in tuning.solutions if not solution.converged]
-    if failed:
-        return f"[bold red]{len(failed)} of {count} load cases did not converge.[/]"
-    if tuning.met:
-        return f"[bold green]All {count} load cases are within {tolerance:g}.[/]"
-    return f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]"
 
 
 def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
@@ -169,31 +177,27 @@ def _with_unit(number: float, unit: str) -> str:
     return f"{number:.6g} {unit}"
 
 
-def _print_price(console: Console, model: Model) -> None:
-    # Expanding the functions into scalar operations takes seconds for a large scene.
-    with console.status("Counting operations"):
-        cost = price(model)
+def _print_price(console: Console, model: Model, cost: Price) -> None:
     igm = "IGM"
     if len(model.igm) > 1:
         igm = f"IGM of all {len(model.igm)} rods"
     print_plain(
         console,
-        f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm:,}, residual {cost.residual:,}, "
-        f"residual and Jacobian {cost.jacobian:,}.",
+        f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm}, residual {cost.residual}, "
+        f"residual and Jacobian {cost.jacobian}.",
     )
 
 
-def _load_table(model: Model) -> Table:
+def _load_table(model: Model, of_effects: Mapping[str, Count]) -> Table:
     table = table_of("load or actuator", "kind", "free inputs")
     table.add_column("adds to the residual", justify="right")
     for cause in model.scene.causes:
         prefix = f"{cause.name}."
         fields = [name.removeprefix(prefix) for name in model.inputs.names if name.startswith(prefix)]
         free_inputs = ", ".join(fields) or "none"
-        cost = price_of_load(model.scene, cause.name)
-        table.add_row(escape(cause.name), cause.kind, free_inputs, f"{cost:,} operations")
+        table.add_row(escape(cause.name), cause.kind, free_inputs, f"{of_effects[cause.name]} operations")
     for obstacle in model.scene.obstacles:
         if obstacle.is_smooth:
-            cost = price_of_obstacle(model.scene, obstacle.name)
-            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost:,} operations")
+            cost = of_effects[obstacle.name]
+            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost} operations")
     return table

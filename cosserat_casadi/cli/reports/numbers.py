@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.maths.typing import FloatArray
 
 ROUNDING = 1e-14
@@ -20,3 +21,15 @@ def digits(vector: FloatArray) -> list[str]:
     # What is left of a cancellation would look like a result.
     rounded = np.where(magnitudes <= ROUNDING * largest, 0.0, vector)
     return [f"{entry:.6g}" for entry in rounded]
+
+
+def error_words(error: float, within: bool | None, tolerance: float) -> str:
+    """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
+    words = f"{error:.1e} of the length"
+    if error == UNKNOWN:
+        words = "not known"
+    if within is None:
+        return words
+    if within:
+        return f"{words}, within the tolerance of {tolerance:g}"
+    return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"

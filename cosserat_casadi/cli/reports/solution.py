@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
-from cosserat_casadi.cli.reports.numbers import digits
+from cosserat_casadi.cli.reports.numbers import digits, error_words
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.spelling import counted
@@ -164,13 +164,20 @@ def _actuator_table(solution: Solution) -> Table:
 def _merit_sentence(solution: Solution, work: str) -> str:
     """How good the solution is, what it took to find it, and what it was found on."""
     parts = [f"residual {solution.residual_norm:.1e}", work]
-    if solution.error_estimate is not None:
-        parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
-    if solution.shape_error_estimate is not None:
-        parts.append(f"over the whole shape {solution.shape_error_estimate:.1e}")
-    if solution.wrench_error_estimate is not None:
-        parts.append(f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative")
-    parts += discretisation_sentences(solution.model)
+    parts += _errors(solution)
+    parts += [escape(sentence) for sentence in discretisation_sentences(solution.model)]
     if solution.converged:
         parts.append(STABILITY[solution.stable])
-    return escape("; ".join(parts))
+    return "; ".join(parts)
+
+
+def _errors(solution: Solution) -> Iterator[str]:
+    """Estimated errors with markup: that which the tolerance binds beside it, the others alone."""
+    accuracy = solution.model.scene.accuracy
+    estimates = (("tip error", solution.error_estimate), ("error over the whole shape", solution.shape_error_estimate))
+    for number, (what, error) in enumerate(estimates):
+        if error is not None:
+            within = solution.within_tolerance if number == accuracy.shape else None
+            yield f"estimated {what} {error_words(error, within, accuracy.tolerance)}"
+    if solution.wrench_error_estimate is not None:
+        yield f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative"

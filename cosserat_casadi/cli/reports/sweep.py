@@ -15,8 +15,8 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweep.outcome_file import STABLE, record_file
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import Plan
+from cosserat_casadi.sweep.outcome_table import ERROR, Sweep
+from cosserat_casadi.sweep.shards import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
 """Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
@@ -41,7 +41,8 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     else:
         chosen = _choice_sentence(record["chosen"], tolerance)
     print_plain(console, chosen, soft_wrap=True)
-    for sentence in (*_check_sentences(record["checked"], tolerance), *_stability_sentences(sweep)):
+    checked = _check_sentences(record["checked"], tolerance)
+    for sentence in (*_error_sentences(sweep), *checked, *_stability_sentences(sweep)):
         print_plain(console, sentence, soft_wrap=True)
 
     written: list[Path] = []
@@ -54,13 +55,19 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     print_written(console, written, soft_wrap=True)
 
 
-def print_stopped_sweep(console: Console, plan: Plan) -> None:
-    """Print what a stopped sweep left."""
-    part = plan.part
+def print_stopped_sweep(console: Console, part: Path | None) -> None:
+    """Print what a stopped sweep left in the file of what is done."""
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
     print_plain(console, f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
+
+
+def print_shard(console: Console, shard: Shard, rows: int, output: Path) -> None:
+    """Print that a shard is done, and how all become one file."""
+    file = escape(str(shard.file(output)))
+    sentence = f"Shard {shard}: {counted(rows, 'row')} kept in {file}. When all are done, --merge writes the results."
+    print_plain(console, sentence)
 
 
 def _outcome_table(sweep: Sweep) -> Table:
@@ -89,6 +96,38 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
     if chosen["converged"] < count:
         sentence += f", {chosen['converged']} of which have an equilibrium"
     return f"{sentence}: estimated error {estimate:.1e}, {_within(estimate, tolerance)} {tolerance:g}."
+
+
+def _error_sentences(sweep: Sweep) -> Iterator[str]:
+    """How many converged rows miss the tolerance, and what to do; nothing where no row has an estimate."""
+    if ERROR not in sweep.found:
+        return
+    errors = sweep[ERROR][sweep.converged]
+    known = errors[np.isfinite(errors)]
+    if not known.size:
+        return
+    tolerance = sweep.record["tolerance"]
+    largest = float(known.max())
+    missed = int(sweep.missed.sum())
+    # Counted from 1, as a user counts.
+    worst = 1 + int(np.nanargmax(np.where(sweep.converged, sweep[ERROR], np.nan)))
+    error = f"Estimated error of {counted(len(known), 'converged row')} at most {largest:.1e} (row {worst})"
+    if not sweep.tolerance_binds:
+        yield f"{error}; the scene fixes what they are computed with, and asks for no tolerance."
+    elif not missed:
+        yield f"{error}, within {tolerance:g}."
+    else:
+        yield f"{error}: [bold red]{counted(missed, 'row')} above the tolerance of {tolerance:g}.[/] {_remedy(sweep)}"
+
+
+def _remedy(sweep: Sweep) -> str:
+    """What brings rows above the tolerance below it."""
+    if sweep.record["chosen"]["discretisation"] is None:
+        return (
+            "The scene fixes its modes, nodes or rotation: leave them out, or choose them for the ranges of the table "
+            "with cosserat tune."
+        )
+    return "Choose modes on more rows with --samples, or for the ranges of the table with cosserat tune."
 
 
 def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterator[str]:

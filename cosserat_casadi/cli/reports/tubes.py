@@ -19,9 +19,18 @@ from cosserat_casadi.tubes.solution import TubeSolution
 from cosserat_casadi.tubes.solve import FEWEST_STEPS, model_of
 
 
-def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path]) -> None:
-    """Print the outcome, the tubes, the figures of merit, and the files that were written."""
-    _print_message(console, solution.robot.title, solution.message, good=solution.converged)
+def print_tubes(console: Console, solution: TubeSolution | TubeEquilibria, written: Sequence[Path]) -> None:
+    """Print an equilibrium, or all at the same inputs, and the files that were written."""
+    if isinstance(solution, TubeSolution):
+        _print_equilibrium(console, solution)
+    else:
+        _print_equilibria(console, solution)
+    print_written(console, written)
+
+
+def _print_equilibrium(console: Console, solution: TubeSolution) -> None:
+    """Print the outcome, the tubes, and the figures of merit."""
+    _print_message(console, solution.robot.scene.title, solution.message, good=solution.converged)
     table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
     for index, (name, tip) in enumerate(solution.tips.items()):
         rotation, translation = solution.inputs[2 * index : 2 * index + 2]
@@ -37,23 +46,12 @@ def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path
         f"energy {solution.energy:.6g} J",
     ]
     print_plain(console, "; ".join(parts))
-    print_written(console, written)
-
-
-def print_tubes_unstable(console: Console) -> None:
-    """Warn of an unstable equilibrium, and say what to do about it."""
-    print_plain(
-        console,
-        "[bold yellow]Warning:[/] this equilibrium is not stable: a real robot leaves it. "
-        "Add --stable for the stable one of least energy, or --all for all equilibria.",
-        soft_wrap=True,
-    )
 
 
 def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
     """Print what was written, at what accuracy, and how to try it."""
     robot = solution.robot
-    print_plain(console, title_line(robot.title))
+    print_plain(console, title_line(robot.scene.title))
     sizes = f"{solution.model.unknowns} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
     print_plain(
         console, f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}."
@@ -61,9 +59,9 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
-def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
-    """Print all equilibria at the same inputs, and the files that were written."""
-    _print_message(console, equilibria.robot.title, equilibria.message, good=equilibria.complete)
+def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
+    """Print how the search ended, and a line for each equilibrium."""
+    _print_message(console, equilibria.robot.scene.title, equilibria.message, good=equilibria.complete)
     table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", "tip position, m")
     for number, solution in enumerate(equilibria.solutions, 1):
         table.add_row(
@@ -80,7 +78,6 @@ def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequ
     if count == 1:
         noun = "equilibrium"
     print_plain(console, f"{count} {noun}, {len(equilibria.stable)} of them stable")
-    print_written(console, written)
 
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
@@ -97,14 +94,14 @@ def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -
 
 def print_tubes_check(console: Console, robot: Robot) -> None:
     """Print what a valid scene of tubes holds."""
-    print_plain(console, f"{title_line(robot.title)}: the scene is valid.")
+    print_plain(console, f"{title_line(robot.scene.title)}: the scene is valid.")
     table = table_of("tube", "EI, N m²", "GJ, N m²", "curvature, 1/m", "straight, m", "curved, m")
     for index, name in enumerate(robot.names):
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
     unknowns = model_of(robot, FEWEST_STEPS).unknowns
-    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.input_names)}")
+    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 
 def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:

@@ -139,15 +139,3 @@ solver_status tubes_track(const real *inputs, real *x, solver_memory *memory, co
   if (info) *info = found;
   return end;
 }
-
-void tubes_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {
-  solver_residual(x, inputs, residual, work);
-}
-
-void tubes_residual_jacobian(const real *x, const real *inputs, real *jacobian, real *residual, solver_workspace *work) {
-  solver_residual_jacobian(x, inputs, jacobian, residual, work);
-}
-
-void tubes_input_jacobian(const real *x, const real *inputs, real *d_residual_d_inputs, solver_workspace *work) {
-  solver_input_jacobian(x, inputs, d_residual_d_inputs, work);
-}

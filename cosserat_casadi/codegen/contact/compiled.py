@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import Info
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
-from cosserat_casadi.codegen.contact.sources import VERBATIM
+from cosserat_casadi.codegen.compiled_results import CompiledAnswer, Info, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
-from cosserat_casadi.codegen.library import FOURS
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, check_folder, input_count, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
@@ -61,47 +55,27 @@ class ContactInC(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True)
-class CompiledContactSolution:
+@dataclass(frozen=True, kw_only=True)
+class CompiledContactSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
-        outcome: how it ended.
         arrangement: number of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
-        iterations: Newton steps.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual.
-        load_factor: share of the way of the inputs that was done.
         tries: arrangements that were solved.
         parts: parts of the way of the inputs.
         derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
         state: what the next call begins with.
     """
 
-    outcome: Outcome
     arrangement: int
     tips: Mapping[str, FloatArray]
     contacts: tuple[Contact, ...]
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     tries: int
     parts: int
     derivatives: Mapping[str, FloatArray] | None
     state: bytes = field(repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs, in contacts that hold."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def message(self) -> str:
-        """A sentence that says how it ended."""
-        return self.outcome.value
 
 
 @dataclass(frozen=True)
@@ -112,6 +86,18 @@ class CompiledContact(LoadedLibrary):
         library: the shared object.
         manifest: what the folder says of itself.
     """
+
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of exact contact is there."""
+        names = [*described["rods"], *described["obstacles"]]
+        contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
+        return contacts and all(isinstance(name, str) for name in names)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Number of the arrangements by its macro."""
+        return {"ARRANGEMENTS": len(described[ARRANGEMENTS])}
 
     @property
     def rods(self) -> list[str]:
@@ -128,7 +114,7 @@ class CompiledContact(LoadedLibrary):
         state = self._room()
         self._function("start")(state)
         info = ContactInfo(load_factor=1.0)
-        return self._answer(Outcome.CONVERGED, state, info, solved=True)
+        return self._answer(state, info, solved=True)
 
     def solve(
         self, inputs: ArgumentValues = None, start: CompiledContactSolution | None = None
@@ -149,7 +135,7 @@ class CompiledContact(LoadedLibrary):
         info = ContactInfo()
         status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
-        return self._answer(outcome, state, info, solved=outcome in SOLVED)
+        return self._answer(state, info, solved=outcome in SOLVED)
 
     def track(
         self,
@@ -181,7 +167,7 @@ class CompiledContact(LoadedLibrary):
         outcome = CONTACT_OUTCOMES[status]
         # After any other end the state is that of the turn before, for its inputs.
         solved = outcome is Outcome.CONVERGED
-        return self._answer(outcome, state, info, columns if solved else None, solved=solved)
+        return self._answer(state, info, columns if solved else None, solved=solved)
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -191,7 +177,6 @@ class CompiledContact(LoadedLibrary):
 
     def _answer(
         self,
-        outcome: Outcome,
         state: Any,
         info: ContactInfo,
         derivatives: FloatArray | None = None,
@@ -199,14 +184,10 @@ class CompiledContact(LoadedLibrary):
         solved: bool,
     ) -> CompiledContactSolution:
         return CompiledContactSolution(
-            outcome=outcome,
+            **answer_words(info, CONTACT_OUTCOMES),
             arrangement=self._arrangement_of(state),
             tips=self._tips(state) if solved else {},
             contacts=self._contacts(state) if solved else (),
-            iterations=info.iterations,
-            jacobians=info.jacobians,
-            residual_norm=info.residual_norm,
-            load_factor=info.load_factor,
             tries=info.tries,
             parts=info.parts,
             derivatives=None if derivatives is None else by_tip(self.rods, derivatives),
@@ -251,40 +232,3 @@ class CompiledContact(LoadedLibrary):
             raise ValueError("the start is a solution of another library")
         ctypes.memmove(state, solution.state, len(solution.state))
         return state
-
-
-def load_in_contact(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> CompiledContact:
-    """Compile an exported folder of a scene in exact contact, once, and load it.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export`.
-        compiler: C compiler, as for :func:`cosserat_casadi.load`.
-        progress: told what is compiled, likewise.
-
-    Raises:
-        ExportError: the folder is not one of a scene in exact contact, another version has written it, its files do
-            not belong together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if not is_sound(described, _has_contacts):
-        problem = "is not the manifest of a scene in exact contact"
-        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
-    sizes = {"INPUTS": input_count(described), "ARRANGEMENTS": len(described[ARRANGEMENTS])}
-    check_folder(folder, described, sizes)
-    name = described["name"]
-    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
-    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [
-        folder / file for file in described["files"] if file in {*VERBATIM, *FOURS, f"{name}_kernels_in_fours.h"}
-    ]
-    return CompiledContact(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
-
-
-def _has_contacts(described: Any) -> bool:
-    """Whether what is read of a manifest of exact contact is there."""
-    names = [*described["rods"], *described["obstacles"]]
-    contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
-    return contacts and all(isinstance(name, str) for name in names)

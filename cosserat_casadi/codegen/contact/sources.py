@@ -14,11 +14,11 @@ from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernels import kernel_sources
-from cosserat_casadi.codegen.library import comment, input_words, version_words
+from cosserat_casadi.codegen.library import PLAIN_BUILD, comment, input_words, version_words
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
-from cosserat_casadi.codegen.status import contact_status_words
+from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
 from cosserat_casadi.model.build import Model, build
@@ -94,7 +94,7 @@ def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: fl
         f"{name}.c": render("contact_library.c.in", words),
         f"{name}_config.h": render("contact_config.h.in", words),
         f"{name}_demo.c": render("contact_demo.c.in", words),
-        "CMakeLists.txt": render("solver_cmake.in", words),
+        "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("contact_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
@@ -114,7 +114,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
     inputs = chosen.layout.size
     return {
         "name": names.name,
-        "included": "contact.c",
+        **PLAIN_BUILD,
         "MACRO": names.macro,
         "title": comment(chosen.scene.title or names.name),
         "version": version("cosserat-casadi"),
@@ -152,7 +152,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "default_iterations": TRACK_ITERATIONS,
         "default_parts": TRACK_PARTS,
         **_limits(chosen),
-        **contact_status_words(names),
+        **status_words(names, CONTACT_OUTCOMES, "CONTACT"),
     }
 
 

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import ctypes
-import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import AnswerInfo
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.compiled_results import AnswerInfo, CompiledAnswer, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
-from cosserat_casadi.codegen.manifest import MANIFEST, check_folder, input_count, is_sound, read_manifest
+from cosserat_casadi.codegen.manifest import TUBES
 from cosserat_casadi.codegen.plain import pointer, vector
-from cosserat_casadi.codegen.tubes.sources import KIND, VERBATIM
-from cosserat_casadi.codegen.tubes.status import STATUSES, TubeStatus
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 
-SOLVED = (TubeStatus.CONVERGED, TubeStatus.UNRESOLVED)
+SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
 """Ends after which x is a solution for the inputs, if of the discrete equations alone."""
 
 
@@ -40,46 +36,26 @@ class TubeOptions(ctypes.Structure):
     _fields_ = (("max_iterations", ctypes.c_int), ("max_continuation_steps", ctypes.c_int))
 
 
-@dataclass(frozen=True)
-class CompiledTubesSolution:
+@dataclass(frozen=True, kw_only=True)
+class CompiledTubesSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
-        status: how it ended.
         inputs: that it is of, shape (m,).
         x: unknowns: by how much the tip of each tube is turned against its drive, rad; under loads the quaternion of
             the frame at the tip of the robot less 1 0 0 0 behind them.
         tips: position and quaternion of the tip of each tube, shape (7,); none without a solution.
         determinant: 1 of tubes that do not twist, 0 where the robot snaps, negative where it cannot stay.
-        iterations: Newton steps.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
-        load_factor: share of the way that x has come; 1 where it converged.
         derivatives: of the tip of each tube with the inputs, shape (7, m), where they were asked for.
         memory: what the next turn begins with.
     """
 
-    status: TubeStatus
     inputs: FloatArray
     x: FloatArray
     tips: Mapping[str, FloatArray]
     determinant: float
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
     derivatives: Mapping[str, FloatArray] | None = None
     memory: bytes = field(default=b"", repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs."""
-        return self.status is TubeStatus.CONVERGED
-
-    @property
-    def message(self) -> str:
-        """A sentence that says how it ended."""
-        return self.status.value
 
 
 @dataclass(frozen=True)
@@ -91,10 +67,22 @@ class CompiledTubes(LoadedLibrary):
         manifest: what the folder says of itself.
     """
 
+    @staticmethod
+    def is_sound(described: Any) -> bool:
+        """Whether what is read of a manifest of concentric tubes is there."""
+        tubes = described[TUBES]
+        names = isinstance(tubes, list) and all(isinstance(tube, str) for tube in tubes)
+        return names and isinstance(described["unknowns"], int)
+
+    @staticmethod
+    def sizes(described: Mapping[str, Any]) -> dict[str, int]:
+        """Number of the unknowns by its macro."""
+        return {"UNKNOWNS": described["unknowns"]}
+
     @property
     def tubes(self) -> list[str]:
         """Names of the tubes, in order."""
-        return list(self.manifest[KIND])
+        return list(self.manifest[TUBES])
 
     @property
     def unknowns(self) -> int:
@@ -115,10 +103,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        status = self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        end = STATUSES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("solve", pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def follow(self, start: CompiledTubesSolution, inputs: ArgumentValues) -> CompiledTubesSolution:
         """Equilibrium on the branch of another, along the straight line between the inputs of both.
@@ -133,11 +119,8 @@ class CompiledTubes(LoadedLibrary):
         """
         given = self.inputs.stacked(inputs)
         x = self._start(start)
-        info = TubeInfo()
-        arguments = (pointer(start.inputs), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
-        status = self._function("follow")(*arguments)
-        end = STATUSES[status]
-        return self._answer(end, given, x, info, solved=end in SOLVED)
+        info = self._ended("follow", pointer(start.inputs), pointer(given), pointer(x))
+        return self._answer(given, x, info)
 
     def track(
         self,
@@ -167,14 +150,11 @@ class CompiledTubes(LoadedLibrary):
         memory = ctypes.create_string_buffer(start.memory, self._function("memory_size")())
         columns = np.zeros((len(self.tubes), given.size, POSE_SIZE))
         wanted = pointer(columns) if derivatives else None
-        info = TubeInfo()
-        status = self._function("track")(
-            pointer(given), pointer(x), memory, options, None, wanted, self._workspace(), ctypes.byref(info)
-        )
-        end = STATUSES[status]
-        found = by_tip(self.tubes, columns) if derivatives and end is TubeStatus.CONVERGED else None
-        solved = end is TubeStatus.CONVERGED
-        return self._answer(end, given, x, info, solved=solved, derivatives=found, memory=memory.raw)
+        info = self._ended("track", pointer(given), pointer(x), memory, options, None, wanted)
+        # After any other end x is that of the turn before, for its inputs.
+        solved = TUBE_OUTCOMES[info.status] is Outcome.CONVERGED
+        found = by_tip(self.tubes, columns) if derivatives and solved else None
+        return self._answer(given, x, info, solved=(Outcome.CONVERGED,), derivatives=found, memory=memory.raw)
 
     def sensitivity(self, solution: CompiledTubesSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
@@ -194,60 +174,25 @@ class CompiledTubes(LoadedLibrary):
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
         return np.zeros(self.unknowns) if start is None else start.x.copy()
 
+    def _ended(self, word: str, *arguments: Any) -> TubeInfo:
+        """How a call of a function of the solver ended."""
+        info = TubeInfo()
+        self._function(word)(*arguments, self._workspace(), ctypes.byref(info))
+        return info
+
     def _answer(
-        self, status: TubeStatus, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: bool, **more: Any
+        self, inputs: FloatArray, x: FloatArray, info: TubeInfo, *, solved: Sequence[Outcome] = SOLVED, **more: Any
     ) -> CompiledTubesSolution:
         tips: dict[str, FloatArray] = {}
-        if solved:
+        if TUBE_OUTCOMES[info.status] in solved:
             poses = np.zeros((len(self.tubes), POSE_SIZE))
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            status=status,
+            **answer_words(info, TUBE_OUTCOMES),
             inputs=inputs,
             x=x,
             tips=tips,
             determinant=info.determinant,
-            iterations=info.iterations,
-            jacobians=info.jacobians,
-            residual_norm=info.residual_norm,
-            load_factor=info.load_factor,
             **more,
         )
-
-
-def load_tubes(
-    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
-) -> CompiledTubes:
-    """Compile an exported folder of concentric tubes, once, and load it.
-
-    Args:
-        directory: a folder written by :func:`cosserat_casadi.export_tubes`.
-        compiler: C compiler, as for :func:`cosserat_casadi.load`.
-        progress: told what is compiled, likewise.
-
-    Raises:
-        ExportError: the folder is not one of concentric tubes, another version has written it, its files do not belong
-            together, there is no compiler, or it fails.
-    """
-    folder = Path(directory)
-    described = read_manifest(folder)
-    if not is_sound(described, _has_tubes):
-        problem = "is not the manifest of concentric tubes"
-        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
-    check_folder(folder, described, {"INPUTS": input_count(described), "UNKNOWNS": described["unknowns"]})
-    name = described["name"]
-    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
-    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [folder / file for file in VERBATIM]
-    return CompiledTubes(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
-
-
-def _has_tubes(described: Any) -> bool:
-    """Whether what is read of a manifest of concentric tubes is there."""
-    tubes = described[KIND]
-    return (
-        isinstance(tubes, list)
-        and isinstance(described["unknowns"], int)
-        and all(isinstance(tube, str) for tube in tubes)
-    )

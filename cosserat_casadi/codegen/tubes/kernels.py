@@ -41,19 +41,19 @@ class TubeKernels:
         y, inputs, t = self._arguments
         change = ca.MX.sym("inputs_rate", inputs.size1())
         t_rate = ca.MX.sym("t_rate")
-        residual = self._at(self.model.residual, t)
-        jacobian, _ = self.model.jacobian(*self._given(t))
+        at = self._given(t)
+        residual = self.model.path_residual(*at)
+        jacobian = self.model.path_jacobian(*at)
         rate = ca.jtimes(residual, ca.vertcat(inputs, t), ca.vertcat(change, t_rate))
-        one = ca.MX(1.0)
         solution = {"y": y, "inputs": inputs}
         state = {**solution, "t": t}
         return [
             self._function("residual", state, [residual]),
             self._function("jacobian", state, [jacobian]),
             self._function("rate", {**state, "inputs_rate": change, "t_rate": t_rate}, [rate]),
-            self._function("resolution_index", solution, [self._resolution_index(one)]),
-            self._function("poses", solution, [ca.vertcat(*self.model.tips(*self._given(one)))]),
-            self._function("sensitivity", solution, self._sensitivity(one)),
+            self._function("resolution_index", solution, [self._resolution_index()]),
+            self._function("poses", solution, [ca.vertcat(*self.model.tips(self._x, inputs))]),
+            self._function("sensitivity", solution, self._sensitivity()),
         ]
 
     @cached_property
@@ -62,31 +62,34 @@ class TubeKernels:
         return ca.MX.sym("y", self.model.unknowns), ca.MX.sym("inputs", self.model.robot.inputs.size), ca.MX.sym("t")
 
     def _given(self, t: ca.MX) -> tuple[Matrix, Matrix, Matrix]:
-        """Unknowns, inputs and load factor of the model."""
-        y, inputs, _ = self._arguments
+        """Unknowns, inputs and load factor of the model at a place on the way."""
+        _, inputs, _ = self._arguments
         robot = self.model.robot
-        frame = ca.DM([1, 0, 0, 0])[: self.model.unknowns - robot.size]
-        x = y + ca.vertcat(robot.rotations(inputs), frame)
+        x = self._x
         if not robot.loads:
             return x, inputs, t
         of_loads = ca.fmax(2 * t - 1, 0)
         drives, loads = inputs[: 2 * robot.size], inputs[2 * robot.size :]
         return x, ca.vertcat(drives, of_loads * loads), ca.fmin(2 * t, 1)
 
-    def _at(self, function: ca.Function, t: ca.MX) -> Matrix:
-        result: Matrix = function(*self._given(t))
-        return result
+    @property
+    def _x(self) -> Matrix:
+        """Unknowns of the model."""
+        y, inputs, _ = self._arguments
+        robot = self.model.robot
+        frame = ca.DM([1, 0, 0, 0])[: self.model.unknowns - robot.size]
+        return y + ca.vertcat(robot.rotations(inputs), frame)
 
-    def _resolution_index(self, t: ca.MX) -> Matrix:
+    def _resolution_index(self) -> Matrix:
         """What the robot with half of the steps misses, relative to what it may: above 1 they are too few."""
         coarse = model_of(self.model.robot, self.model.steps // 2)
-        missed = self._at(coarse.residual, t)
+        missed = coarse.residual(self._x, self._arguments[1])
         index: Matrix = ca.norm_inf(missed) / (RESOLVED * self.model.robot.tolerance)
         return index
 
-    def _sensitivity(self, t: ca.MX) -> list[Matrix]:
+    def _sensitivity(self) -> list[Matrix]:
         """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both."""
-        jacobian, by_inputs, _, poses_by_x, poses_by_inputs = self.model.sensitivity(*self._given(t))
+        jacobian, by_inputs, _, poses_by_x, poses_by_inputs = self.model.sensitivity(self._x, self._arguments[1])
         # At the same twist a tip turns with its drive.
         size = self.model.size
         turning = ca.DM(self.model.unknowns, self.model.robot.inputs.size)

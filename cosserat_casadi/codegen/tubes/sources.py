@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
-import re
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -15,32 +13,29 @@ import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
-from cosserat_casadi.codegen.export import check_export
-from cosserat_casadi.codegen.folder import write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import (
+    PLAIN_BUILD,
     SHARED,
     comment,
     solver_constants,
     version_words,
     words_of_inputs,
 )
-from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA
+from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
-from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
-from cosserat_casadi.codegen.status import tube_status_words
+from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
-from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.tubes.loads import COMPONENTS
-from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.robot import Robot
 
 NEAR = 0.3
 """Twist, rad, by which a turn may change the tubes at once; farther on the way is followed."""
@@ -57,79 +52,59 @@ OTHERS = ("solver_sensitivity.c", "solver_recover.c")
 VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
-KIND = "tubes"
-"""Key of the manifest that a folder of tubes has alone."""
 
-
-def export_tubes(
-    scene: Scene, solution: TubeSolution, directory: str | os.PathLike[str], name: str | None = None
-) -> Path:
-    """Write concentric tubes as a folder of C99 sources: equations, derivatives, solver, demo, build file, README.
+def check_tubes(asked: Mapping[str, bool]) -> None:
+    """Refuse what C does not have of concentric tubes.
 
     Args:
-        scene: with the tubes.
-        solution: an equilibrium of them; its steps are those of the library.
-        directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
-        name: what every symbol begins with, a C identifier.
-
-    Returns:
-        the folder.
+        asked: whether what an option stands for is asked for, by the option.
 
     Raises:
-        ExportError: the name or the folder is refused, or the solution is no equilibrium within tolerance; nothing was
-            written.
+        ExportError: with every option.
     """
-    folder = Path(directory)
-    chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
-    stale = check_export(folder, chosen)
-    if not solution.converged:
-        raise ExportError(Problem("tubes", f"are not solved: {solution.message}", "export where they are"))
-    write_folder(folder, tube_files(scene, solution, check_tube_names(chosen, scene)), stale)
-    return folder
+    problem = "is for rods, and the scene has concentric tubes"
+    problems = [Problem(option, problem, "leave it out") for option, wanted in asked.items() if wanted]
+    if problems:
+        raise ExportError(*problems)
 
 
-def check_tube_names(name: str, scene: Scene) -> Names:
-    """What the library of tubes and what is in it are called.
+def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) -> dict[str, str]:
+    """Text of every file of a folder by name; the manifest, which lists the others, is last.
+
+    Args:
+        model: the robot with its steps.
+        name: the library.
+        error_estimate: of the tips at the scene's own inputs, for manifest and README; None where it is not known.
 
     Raises:
         ExportError: the name is none for a library, or two inputs would have one name in C.
     """
-    robot = robot_of(scene)
-    return library_names(name, (), tuple(entry["name"] for entry in input_entries(robot)))
-
-
-def tube_files(scene: Scene, solution: TubeSolution, names: Names) -> dict[str, str]:
-    """Text of every file of a folder by name; the manifest, which lists the others, is last.
-
-    Args:
-        scene: with the tubes.
-        solution: an equilibrium of them.
-        names: what things are called.
-    """
-    kernels = TubeKernels(solution.model, f"{names.name}_k").all()
+    names = scene_names(name, model.scene)
+    kernels = TubeKernels(model, f"{name}_k").all()
     generated = kernel_sources(kernels, names)
-    words = _words(solution, names, generated)
-    name = names.name
+    words = _words(model, names, generated, error_estimate)
     files = {
         f"{name}.h": render("tubes.h.in", words),
         f"{name}.c": render("tubes_library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("tubes_demo.c.in", words),
-        "CMakeLists.txt": render("solver_cmake.in", words),
+        "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("tubes_readme.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
-        "scene.toml": scene_text(scene),
+        "scene.toml": scene_text(model.robot.scene),
     }
-    described = _manifest(solution, names)
+    described = _manifest(model, names, error_estimate)
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files
 
 
-def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> dict[str, Any]:
-    robot = solution.robot
-    size = solution.model.unknowns
+def _words(
+    model: TubeFunctions, names: Names, generated: dict[str, str], error_estimate: float | None
+) -> dict[str, Any]:
+    robot = model.robot
+    size = model.unknowns
     basics: dict[str, Any] = {
         "name": names.name,
         "MACRO": names.macro,
@@ -143,14 +118,15 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         **dense_words(render, basics),
         "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
-        **tube_status_words(names),
-        **words_of_inputs(input_entries(robot), names),
+        **status_words(names, TUBE_OUTCOMES),
+        **words_of_inputs(input_entries(model), names),
         **version_words(),
         "version": version("cosserat-casadi"),
         "casadi_version": ca.CasadiMeta.version(),
-        "title": comment(robot.title or names.name),
-        "included": "tubes_turn.c",
+        "title": comment(robot.scene.title or names.name),
+        **PLAIN_BUILD,
         "inner": "any_",
+        "inner_equations": "",
         "first": 1.0,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
@@ -159,6 +135,8 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         **WITHOUT_ERRORS,
         "further_config": render("tubes_config.h.in", basics),
         "parameter_config": "",
+        "rate_of_parameters": "",
+        "add_rate_of_parameters": "",
         "batch_config": "",
         "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
         "unknowns_under_loads": under_loads if robot.loads else "",
@@ -170,20 +148,19 @@ def _words(solution: TubeSolution, names: Names, generated: dict[str, str]) -> d
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
         "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
-        "accuracy_note": _accuracy_note(solution),
+        "accuracy_note": _accuracy_note(model, error_estimate),
     }
 
 
-def _accuracy_note(solution: TubeSolution) -> str:
-    tolerance = solution.robot.tolerance
+def _accuracy_note(model: TubeFunctions, error_estimate: float | None) -> str:
     estimate = "was not estimated"
-    if solution.error_estimate is not None:
-        estimate = f"is {solution.error_estimate:.1e}"
+    if error_estimate is not None:
+        estimate = f"is {error_estimate:.1e}"
     return (
         "Each piece between ends of tubes, beginnings of curved parts and places of forces has "
-        f"{solution.model.steps} steps. The estimated error of the tips at the scene's own inputs {estimate}; "
-        f"the scene allows {tolerance:g} of the length outside. At other inputs half of the steps are compared with "
-        "all of them: where they differ too much, the status is `UNRESOLVED`."
+        f"{model.steps} steps. The estimated error of the tips at the scene's own inputs {estimate}; "
+        f"the scene allows {model.robot.tolerance:g} of the length outside. At other inputs half of the steps are "
+        "compared with all of them: where they differ too much, the status is `UNRESOLVED`."
     )
 
 
@@ -191,36 +168,18 @@ def _number_macros(names: Names, robot: Robot) -> str:
     return "\n".join(f"#define {names.macro}_TUBE_{tube.upper()} {index}" for index, tube in enumerate(robot.names))
 
 
-def input_entries(robot: Robot) -> list[dict[str, Any]]:
-    """Inputs in the order of their vector, as in the manifest."""
-    entries = []
-    for index, name in enumerate(robot.input_names[: 2 * robot.size]):
-        entries.append(_entry(name, robot.input_units[index], "none", index, robot.inputs[index : index + 1]))
-    for index, load in enumerate(robot.loads):
-        first = robot.load_start(index)
-        axes = "body" if load.follower else "world"
-        entries.append(_entry(load.name, load.unit, axes, first, robot.inputs[first : first + COMPONENTS]))
-    return entries
-
-
-def _entry(name: str, unit: str, axes: str, first: int, value: np.ndarray[Any, Any]) -> dict[str, Any]:
-    shape = [len(value), 1]
-    return {"name": name, "unit": unit, "axes": axes, "first": first, "shape": shape, "value": value.tolist()}
-
-
-def _manifest(solution: TubeSolution, names: Names) -> dict[str, Any]:
+def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) -> dict[str, Any]:
     """What the folder holds, as data."""
-    robot = solution.robot
-    error = solution.error_estimate
+    robot = model.robot
     return {
         "schema": SCHEMA,
         "name": names.name,
-        "title": robot.title,
+        "title": robot.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
-        "inputs": input_entries(robot),
-        KIND: list(robot.names),
-        "unknowns": solution.model.unknowns,
-        "steps": solution.model.steps,
+        "inputs": input_entries(model),
+        TUBES: list(robot.names),
+        "unknowns": model.unknowns,
+        "steps": model.steps,
         "tolerance": robot.tolerance,
-        "error_estimate": None if error is None else float(f"{error:.2g}"),
+        "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
     }

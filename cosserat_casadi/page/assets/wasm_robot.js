@@ -1,6 +1,7 @@
 // The robot solved in this page: the exported C library as WebAssembly, warm-started from where it was.
 
 const CONVERGED = 0;
+const UNKNOWN = 1; // Estimated error, over the length, that stands for one which is not known.
 
 class WasmRobot {
   // packed: the module, compressed by gzip, in base64.
@@ -77,12 +78,21 @@ class WasmRobot {
     return secondVariation((i, j) => entries[i + n * j], allowed);
   }
 
-  // Whether the inputs are those that the modes were chosen for: beyond them the error is not known.
-  async accuracy(inputs) {
-    const within = this.facts.chosenFor && this.facts.chosenFor.every(([least, most], i) => inputs[i] >= least && inputs[i] <= most);
-    const text = within === false ? "The modes were chosen for other inputs, and the error is not known here: solve the scene at these inputs." : "";
-    return { within, text, refines: false };
+  // The estimated error of the equilibrium in words, and whether it is within the tolerance; null where none has a meaning.
+  async accuracy() {
+    const { tolerance } = this.facts;
+    const error = this.atEquilibrium && tolerance !== null ? this.library.error_estimate() : -1;
+    if (error < 0) return { within: null, text: "", refines: false };
+    const within = error <= tolerance;
+    const size = error === UNKNOWN ? "The error is not known" : `Estimated error ${brief(Number(error.toPrecision(1)))} of the length`;
+    const remedy = within ? "." : `; ${this.facts.remedy}`;
+    return { within, text: `${size}, asked ${brief(tolerance)}${remedy}`, refines: false };
   }
+}
+
+// A small number with its power of ten.
+function brief(number) {
+  return number < 0.001 ? number.toExponential() : String(number);
 }
 
 function openRobot(facts) {

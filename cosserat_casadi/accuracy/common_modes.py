@@ -1,0 +1,303 @@
+"""One discretisation for many cases, refined where the estimated error is largest (docs/theory.md, section 10).
+
+It begins with what the first case needs. All cases are solved on it, each with the estimate of its error; where that is
+largest, modes and intervals are added that the answer lacks, until no case is beyond its tolerance. On a richer
+discretisation a case begins at its answer on the last one, so that it stays the same equilibrium and takes two or three
+Newton steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.enough_modes import enough_for, with_more_modes
+from cosserat_casadi.accuracy.fixing import Chosen, on_elements_of, union
+from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.equilibrium.answer_error import watched_error
+from cosserat_casadi.equilibrium.locking import has_freedom, locked_inputs
+from cosserat_casadi.equilibrium.metrics import prolong
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import Start, solve
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.parameters import parameter_layout
+
+WORST = 3
+"""Cases with the largest errors whose lack is made up at once."""
+
+FAR = 3.0
+"""Error over the tolerance that is far beyond it."""
+
+ENOUGH_FAR = 6
+"""Cases far beyond the tolerance after which a discretisation is left, and others are not solved on it."""
+
+AIM = 0.5
+"""Share of the tolerance that is aimed at: a round with a new discretisation costs more than a mode to spare."""
+
+WELL_WITHIN = 0.5
+"""Share of its tolerance within which the error of a case must be so that it is not solved again on more modes."""
+
+MOST_ROUNDS = 12
+"""Discretisations that are tried at most."""
+
+FEW_MODES, FEW_NODES = 2, 6
+"""Modes and intervals to begin with where the first case has no equilibrium."""
+
+Values = Mapping[str, npt.ArrayLike]
+Progress = Callable[[int, int], None]
+"""Told how many of how many solves are done; the total may grow."""
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A scene at some inputs.
+
+    Attributes:
+        scene: whose modes and nodes are to be chosen, unless it fixes them.
+        inputs: by name.
+        parameters: by name; None where the scene has none.
+    """
+
+    scene: scenes.Scene
+    inputs: Values
+    parameters: Values | None = None
+
+
+@dataclass
+class Answers:
+    """Answers of cases on one discretisation.
+
+    Attributes:
+        chosen: discretisation of every rod.
+        solutions: by the number of the case.
+    """
+
+    chosen: Chosen
+    solutions: dict[int, Solution] = field(default_factory=dict)
+    _models: dict[int, Model] = field(default_factory=dict)
+
+    def model_of(self, case: LoadCase) -> Model:
+        """The model of a case; cases of one scene share it."""
+        scene = case.scene
+        # By identity: hashes of scenes cost as much as a solve, and the cases keep the scenes alive.
+        if id(scene) not in self._models:
+            self._models[id(scene)] = build(scene, on_elements_of(scene, self.chosen))
+        return self._models[id(scene)]
+
+
+@dataclass
+class CommonModes:
+    """A search for one discretisation that serves many cases.
+
+    Attributes:
+        cases: in the order in which they were made; at least one.
+        progress: told how many solves are done.
+    """
+
+    cases: list[LoadCase]
+    progress: Progress | None = None
+    _solves: int = 0
+    _last: dict[int, Solution] = field(default_factory=dict)
+    _well_within: dict[int, float] = field(default_factory=dict)
+    _failed: set[int] = field(default_factory=set)
+    _hopeless: set[int] = field(default_factory=set)
+
+    @property
+    def without_equilibrium(self) -> list[int]:
+        """Numbers of the cases for which no equilibrium was found."""
+        return sorted(self._failed | self._hopeless)
+
+    def added(self, cases: Iterable[LoadCase]) -> list[int]:
+        """Add cases; return their numbers."""
+        first = len(self.cases)
+        self.cases += cases
+        return list(range(first, len(self.cases)))
+
+    def error(self, answers: Answers, number: int) -> float:
+        """Estimated error of a case, which is solved where it was not; -inf without an equilibrium.
+
+        That of a case whose error is well within its tolerance on fewer modes is a bound: it is not solved again.
+        """
+        if number not in answers.solutions:
+            if number in self._failed or number in self._hopeless:
+                return -np.inf
+            if number in self._well_within:
+                return self._well_within[number]
+        return _estimate(self._answer(answers, number))
+
+    def worst(self, answers: Answers) -> tuple[int, float]:
+        """Number and error of the case with the largest error, which is solved on this discretisation."""
+        while True:
+            errors = [self.error(answers, number) for number in range(len(self.cases))]
+            number = int(np.argmax(errors))
+            if number in answers.solutions or np.isneginf(errors[number]):
+                return number, errors[number]
+            # A bound from fewer modes: what it is here may be less than that of others.
+            self._answer(answers, number)
+
+    def locked(self, answers: Answers) -> tuple[str, ...]:
+        """Names of the inputs that move nothing in the first case on this discretisation, and would on more modes."""
+        first = self._answer(answers, 0)
+        if not first.converged or first.model.scene.touches_exactly:
+            return ()
+        return locked_inputs(first)
+
+    def refined(self, more: Callable[[Answers], Iterator[list[int]]]) -> Answers:
+        """Answers on a discretisation on which no case is beyond its tolerance; on the last that was tried without.
+
+        Args:
+            more: adds cases, batch after batch, once those before are within the tolerance on a discretisation.
+        """
+        chosen = self._unlocked(self._first())
+        hardest: list[int] = []
+        for _ in range(MOST_ROUNDS):
+            answers = Answers(chosen)
+            beyond = self._first_beyond(answers, hardest, more)
+            if not beyond:
+                beyond = self._beyond(answers, self._regained(answers))
+            if beyond:
+                hardest = list(dict.fromkeys([*beyond[: 2 * WORST], *hardest]))[: 4 * WORST]
+                chosen = self._unlocked(union(self._enough(answers, number) for number in beyond[:WORST]))
+            elif self._lost(chosen) or self.locked(answers):
+                chosen = with_more_modes(chosen)
+            else:
+                break
+        return answers
+
+    def _first_beyond(
+        self, answers: Answers, hardest: list[int], more: Callable[[Answers], Iterator[list[int]]]
+    ) -> list[int]:
+        """Cases beyond the tolerance of the first batch that has any, the worst first."""
+        for batch in (hardest, range(len(self.cases))):
+            beyond = self._beyond(answers, batch)
+            if beyond:
+                return beyond
+        for batch in more(answers):
+            beyond = self._beyond(answers, batch)
+            if beyond:
+                return beyond
+        return []
+
+    def _beyond(self, answers: Answers, numbers: Iterable[int]) -> list[int]:
+        """Cases beyond their tolerance, the worst first; far beyond it a few say enough of what modes are missing."""
+        beyond: dict[int, float] = {}
+        far = 0
+        for number in numbers:
+            excess = self.error(answers, number) / self._tolerance(number)
+            if excess > 1.0:
+                beyond[number] = excess
+            far += excess > FAR
+            if far == ENOUGH_FAR:
+                break
+        return sorted(beyond, key=lambda number: -beyond[number])
+
+    def _tolerance(self, number: int) -> float:
+        return self.cases[number].scene.accuracy.tolerance
+
+    def _enough(self, answers: Answers, number: int) -> Chosen:
+        """What a case needs that is beyond its tolerance."""
+        solution = answers.solutions[number]
+        if solution.model.scene.touches_exactly:
+            # Its elements end at contacts: what it lacks is not what the free rod lacks.
+            return with_more_modes(answers.chosen)
+        return enough_for(solution, AIM * self._tolerance(number))
+
+    def _answer(self, answers: Answers, number: int) -> Solution:
+        """The answer of a case, which is solved where it was not."""
+        if number not in answers.solutions:
+            solution = self._solved(answers, number)
+            answers.solutions[number] = solution
+            if solution.converged:
+                self._failed.discard(number)
+            else:
+                self._failed.add(number)
+            error = _estimate(solution)
+            if 0.0 <= error <= WELL_WITHIN * self._tolerance(number):
+                self._well_within[number] = error
+        return answers.solutions[number]
+
+    def _solved(self, answers: Answers, number: int) -> Solution:
+        case = self.cases[number]
+        model = answers.model_of(case)
+        start = self._start(answers, number, model)
+        solution = self._solved_on(model, case, start)
+        if start is not None and not solution.converged:
+            solution = self._solved_on(model, case)
+        if solution.converged:
+            self._last[number] = solution
+        return solution
+
+    def _start(self, answers: Answers, number: int, model: Model) -> Start:
+        """Where a solve begins: at the case's answer on fewer modes, else at that of the first case, else unloaded."""
+        case = self.cases[number]
+        last = self._last.get(number)
+        if last is not None:
+            return last if case.scene.touches_exactly else prolong(last, model)
+        if number == 0 or case.scene is not self.cases[0].scene or case.parameters is not None:
+            return None
+        # On more modes the first case, which is well within its tolerance, may not have been solved yet.
+        first = self._answer(answers, 0)
+        return first if first.converged else None
+
+    def _solved_on(self, model: Model, case: LoadCase, start: Start = None) -> Solution:
+        self._solves += 1
+        if self.progress is not None:
+            self.progress(self._solves, max(self._solves, 2 * len(self.cases)))
+        accuracy = case.scene.accuracy
+        # Of most scenes the tips alone count, which are estimated with less effort than shapes and wrenches.
+        tips_alone = not accuracy.shape and not case.scene.touches_exactly
+        solution = solve(model, case.inputs, parameters=case.parameters, start=start, estimate_error=not tips_alone)
+        if not tips_alone or not solution.converged:
+            return solution
+        return replace(solution, error_estimate=watched_error(solution))
+
+    def _first(self) -> Chosen:
+        """What the first case needs."""
+        case = self.cases[0]
+        scene = case.scene
+        if case.parameters:
+            scene = parameter_layout(scene).set_in(scene, case.parameters)
+        own = solve_rods(scene, case.inputs)
+        return own.model.discretisation if own.converged else discretise(case.scene, FEW_MODES, FEW_NODES)
+
+    def _unlocked(self, chosen: Chosen) -> Chosen:
+        """A discretisation with at least one degree of freedom more than constraints."""
+        while not has_freedom(Answers(chosen).model_of(self.cases[0])):
+            chosen = with_more_modes(chosen)
+        return chosen
+
+    def _regained(self, answers: Answers) -> list[int]:
+        """Cases that have an equilibrium on these modes and had none on fewer."""
+        failed = [number for number in sorted(self._failed) if number not in answers.solutions]
+        return [number for number in failed if self._answer(answers, number).converged]
+
+    def _lost(self, chosen: Chosen) -> bool:
+        """Whether a case without an equilibrium has one on more modes; what has none there either is given up."""
+        richer = Answers(with_more_modes(with_more_modes(chosen)))
+        lost = []
+        for number in sorted(self._failed):
+            case = self.cases[number]
+            if self._solved_on(richer.model_of(case), case).converged:
+                lost.append(number)
+        self._hopeless |= self._failed.difference(lost)
+        self._failed = set(lost)
+        return bool(lost)
+
+
+def no_more(answers: Answers) -> Iterator[list[int]]:
+    """Add no cases to those that a search begins with."""
+    yield from ()
+
+
+def _estimate(solution: Solution) -> float:
+    """Estimated error, of the shape where the scene asks for that; -inf without an equilibrium."""
+    if not solution.converged:
+        return -np.inf
+    shape = solution.model.scene.accuracy.shape
+    error = solution.shape_error_estimate if shape else solution.error_estimate
+    return float("inf") if error is None or np.isnan(error) else float(error)

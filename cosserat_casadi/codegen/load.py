@@ -1,0 +1,88 @@
+"""An exported folder of any kind, compiled and loaded: its manifest says which kind it is."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.codegen.compiled import Compiled
+from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.contact.compiled import CompiledContact
+from cosserat_casadi.codegen.manifest import (
+    ARRANGEMENTS,
+    EXPORT_FIRST,
+    MANIFEST,
+    TUBES,
+    check_folder,
+    input_count,
+    is_sound,
+    read_manifest,
+)
+from cosserat_casadi.codegen.texts import files_in_c
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubes
+from cosserat_casadi.errors import ExportError, Problem
+
+SCENE = "scene.toml"
+"""File of an exported folder: the scene that it was made from."""
+
+ALWAYS = ("", "_kernels")
+"""Ends of the names of the sources that every folder has."""
+
+ASKED_FOR = ("_derivatives", "_stability", "_lanes")
+"""Ends of the names of the sources that a folder has where they were asked for."""
+
+Loaded = Compiled | CompiledContact | CompiledTubes
+"""An exported folder of rods, of rods in exact contact, or of concentric tubes."""
+
+
+def load(directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None) -> Loaded:
+    """Compile an exported folder, once, and load it.
+
+    The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:
+    the same sources are compiled once, wherever they lie, and an object that some process has loaded is never written
+    over. The environment variable ``COSSERAT_CASADI_CACHE`` names another folder, or with ``off`` none.
+
+    Args:
+        directory: a folder written by :func:`cosserat_casadi.export`.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
+
+    Returns:
+        The library of rods, of rods in exact contact, or of concentric tubes, as the manifest says.
+
+    Raises:
+        ExportError: the folder is not one of an export, another version has written it, its files do not belong
+            together, there is no compiler, or it fails.
+    """
+    folder = Path(directory)
+    described = read_manifest(folder)
+    kind = _kind(described)
+    if not is_sound(described, kind.is_sound):
+        raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", EXPORT_FIRST))
+    check_folder(folder, described, {"INPUTS": input_count(described), **kind.sizes(described)})
+    name = described["name"]
+    asked_for = [end for end in ASKED_FOR if f"{name}{end}.c" in described["files"]]
+    sources = [folder / f"{name}{end}.c" for end in (*ALWAYS, *asked_for)]
+    headers = [folder / f"{name}{end}.h" for end in ("", "_config", "_kernels")]
+    beside = {*files_in_c(), *(f"{name}{end}.h" for end in ("_kernels_in_fours", *asked_for))}
+    headers += [folder / file for file in described["files"] if file in beside]
+    library = shared_object(name, sources, headers, find_compiler(compiler), progress)
+    return kind(library, described, _scene_text(folder))
+
+
+def _kind(described: Any) -> type[Compiled] | type[CompiledContact] | type[CompiledTubes]:
+    """The class of the folder that a manifest, which need not be sound, is of."""
+    if isinstance(described, dict) and ARRANGEMENTS in described:
+        return CompiledContact
+    if isinstance(described, dict) and TUBES in described:
+        return CompiledTubes
+    return Compiled
+
+
+def _scene_text(folder: Path) -> str:
+    """Text of the scene of an exported folder; empty where somebody has taken it away."""
+    try:
+        return (folder / SCENE).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return ""

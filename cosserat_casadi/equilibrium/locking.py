@@ -1,0 +1,123 @@
+"""Kinematic locking: modes on which constraints leave no motion that a load could cause (docs/theory.md, section 10).
+
+Counting degrees of freedom against constraints is not enough: a platform on six legs of three bending modes each has
+eighteen degrees of freedom more than constraints, and all of them leave the platform where it is. So the compliance of
+each load, how far the least push of it moves what is watched, is set beside that on a model with modes added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.numerics.neutral import regular_inverse
+
+LOCKED = 0.01
+"""Share of the compliance on more modes below which a load meets a locked model."""
+
+NONE = 1e-6
+"""Compliance, relative to the largest one of the same input, that counts as none: more modes do not move either."""
+
+STEP = 1e-5
+"""Largest change of an unknown, in its unit, by which compliance is measured."""
+
+
+def degrees_of_freedom(model: Model) -> int | None:
+    """Degrees of freedom less constraints; None without constraints."""
+    unknowns = model.discrete.unknowns
+    constraints = unknowns.count(BlockKind.MULTIPLIER, BlockKind.TENSION)
+    if not constraints:
+        return None
+    # The quaternion of a frame has a number more than its rotation has degrees of freedom.
+    frames = sum(min(block.size, 6) for block, _ in unknowns.of_kind(BlockKind.POSE))
+    return unknowns.count(BlockKind.STRAIN) + frames - constraints
+
+
+def has_freedom(model: Model) -> bool:
+    """Whether there are more degrees of freedom than constraints: without, a model is locked, whatever acts."""
+    count = degrees_of_freedom(model)
+    return count is None or count > 0
+
+
+def locked_inputs(solution: Solution) -> tuple[str, ...]:
+    """Names of the free inputs that move nothing on the modes of a solution, and would on more; lengths are none.
+
+    Args:
+        solution: a converged one.
+    """
+    model = solution.model
+    if degrees_of_freedom(model) is None:
+        return ()
+    richer = model.discrete.richer
+    unknowns = np.zeros(richer.discrete.size)
+    unknowns[richer.known] = solution.x
+    locked = []
+    for (name, own), (_, more) in zip(
+        _compliances(model, solution.x, solution.inputs),
+        _compliances(model.richer, unknowns, solution.inputs),
+        strict=True,
+    ):
+        moves = more > NONE * more.max(initial=0.0)
+        if np.any(moves) and np.all(own[moves] < LOCKED * more[moves]):
+            locked.append(name)
+    return tuple(locked)
+
+
+def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
+    """Largest motion of what is watched over the length, or turn, per unit of each entry of an input, by its name."""
+    residual = column(model.path_residual(x, inputs, 1.0))
+    inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
+    before = _watched(model, x, inputs)
+    for entry, span in model.inputs:
+        if entry.declared.moves:
+            continue
+        compliances = []
+        for k in range(span.start, span.stop):
+            moved = inputs.copy()
+            # The equations are affine in loads.
+            moved[k] += 1.0
+            response = -inverse @ (column(model.path_residual(x, moved, 1.0)) - residual)
+            share = STEP / max(float(np.abs(response).max(initial=0.0)), STEP)
+            motion = _watched(model, x + share * response, inputs) - before
+            compliances.append(float(np.abs(motion).max(initial=0.0)) / share)
+        yield entry.name, np.array(compliances)
+
+
+def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """Positions over lengths, quaternions and lengths of cables, stacked."""
+    return np.concatenate([part.full().ravel() for part in model.watched(x, inputs)])
+
+
+def locking_sentence(locked: Sequence[str]) -> str:
+    """What a user must know of modes that leave these inputs no motion; empty where there is none of them."""
+    if not locked:
+        return ""
+    return (
+        f"The model is kinematically locked: its constraints leave its modes no motion that {', '.join(locked)} could "
+        "cause, and on more modes there is one; leave modes out of the scene, or give more."
+    )
+
+
+def locking_note(solution: Solution) -> str:
+    """The sentence on locking, for modes that the scene fixes: those that were chosen are free to move.
+
+    Empty in exact contact too, whose forces are inputs of another model for every arrangement.
+    """
+    scene = solution.model.scene
+    chosen = scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for
+    if chosen or not solution.converged:
+        return ""
+    return locking_sentence(locked_inputs(solution))
+
+
+def with_locking_note(solution: Solution) -> Solution:
+    """A solution whose message tells where modes that the scene fixes are locked."""
+    note = locking_note(solution)
+    return replace(solution, message=f"{solution.message} {note}") if note else solution

@@ -1,0 +1,117 @@
+"""Whether model, priors and stated noise explain the data of all rows together.
+
+Twice the cost of a row is a sum of squares that has the chi-square distribution of as many degrees of freedom as
+numbers were measured and expected, less those that were found, if all is as stated. So has the sum over rows. What each
+sensor reads is off by as much on one side as on the other. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with
+Applications to Tracking and Navigation*, Wiley 2001, section 5.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.spelling import counted
+
+DOUBTED = 4.0
+"""Deviations of a normal distribution beyond which chance is no explanation: 1 of 30 000 times on one side."""
+
+ROW_DOUBTED = 5.0
+"""The same for a single row: of a million rows none."""
+
+TOLD = 3
+"""Rows, or sensors, that a sentence names."""
+
+
+@dataclass(frozen=True)
+class Consistency:
+    """How well data, priors and model go together.
+
+    Attributes:
+        squares: sum of the squares of all deviations from data and priors.
+        freedom: what it is expected to be.
+        deviations: by how much it is larger, in standard deviations of a normal distribution.
+        row_deviations: the same of each row, shape (cases,); NaN where it was not found, or nothing is left over.
+        bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name.
+    """
+
+    squares: float
+    freedom: int
+    deviations: float
+    row_deviations: FloatArray
+    bias: dict[str, float]
+
+    @property
+    def holds(self) -> bool:
+        """Whether chance explains what is left over."""
+        return self.deviations <= DOUBTED and not self.biased and not np.any(self.outlying)
+
+    @property
+    def biased(self) -> dict[str, float]:
+        """Sensors that are off to one side, the worst first."""
+        worst = sorted(self.bias.items(), key=lambda item: -abs(item[1]))
+        return {name: bias for name, bias in worst if abs(bias) > DOUBTED}
+
+    @property
+    def outlying(self) -> npt.NDArray[np.bool_]:
+        """Rows that stand out by themselves, shape (cases,)."""
+        outlying: npt.NDArray[np.bool_] = np.nan_to_num(self.row_deviations, nan=0.0) > ROW_DOUBTED
+        return outlying
+
+    def sentences(self, cases: Sequence[str]) -> Iterator[str]:
+        """What does not go together, for the user."""
+        if self.deviations > DOUBTED:
+            yield (
+                f"Model and priors do not explain the data to the accuracy that sigma states: the squares of all "
+                f"deviations sum to {self.squares:.4g} where {self.freedom} are expected. Deviations of what was "
+                "found are too small then; give numbers of the scene that are known roughly as unknowns with a prior."
+            )
+        biased = list(self.biased.items())
+        if biased:
+            told = ", ".join(f"{name} by {bias:+.1f}" for name, bias in biased[:TOLD])
+            more = f" and {len(biased) - TOLD} more" if len(biased) > TOLD else ""
+            yield (
+                "Model, or means of priors, are off to one side in all rows together, in deviations of the mean: "
+                f"{told}{more}. No noise does that."
+            )
+        rows = [case for case, outlies in zip(cases, self.outlying, strict=True) if outlies]
+        if rows and len(rows) < len(cases) / 2:
+            names = ", ".join(rows[:TOLD])
+            more = f" and {len(rows) - TOLD} more" if len(rows) > TOLD else ""
+            verb = "stands" if len(rows) == 1 else "stand"
+            yield f"{counted(len(rows), 'row')} {verb} out, which chance does not explain: {names}{more}."
+
+
+def consistency(
+    squares: FloatArray, freedom: npt.NDArray[np.int64], shared: float, residuals: dict[str, FloatArray]
+) -> Consistency:
+    """How well rows go together with a model.
+
+    Args:
+        squares: twice the cost of each row, shape (cases,); NaN where it was not found.
+        freedom: numbers measured and expected in each, less those found, shape (cases,).
+        shared: squared deviations of the numbers that all rows share from their priors; each has one, so that they
+            add no freedom.
+        residuals: by the name of a sensor its deviations in all rows, those not measured left out.
+    """
+    found = np.isfinite(squares)
+    total = float(squares[found].sum()) + shared
+    left = int(freedom[found].sum())
+    bias = {name: float(values.sum() / np.sqrt(len(values))) for name, values in residuals.items() if len(values)}
+    by_row = np.array([chi_square_deviations(*row) for row in zip(squares.tolist(), freedom.tolist(), strict=True)])
+    return Consistency(total, left, chi_square_deviations(total, left), by_row, bias)
+
+
+def chi_square_deviations(squares: float, freedom: int) -> float:
+    """The deviations of a normal distribution that are as likely as a sum of squares; NaN without freedom.
+
+    E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad. Sci. 17, 1931, 684-688.
+    """
+    if freedom < 1 or not np.isfinite(squares):
+        return float("nan")
+    variance = 2 / (9 * freedom)
+    return float(((squares / freedom) ** (1 / 3) - (1 - variance)) / np.sqrt(variance))

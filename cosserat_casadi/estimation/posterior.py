@@ -1,0 +1,99 @@
+"""Mean squared deviations of posteriors that are no normal distributions, by importance sampling.
+
+Around each estimate steps are drawn from a normal distribution, somewhat wider than the covariance of the linearised
+model, and weighted with the posterior there, for which the equilibrium is solved; a second round draws from the mean
+and the covariance that the first has found: O. Cappé, A. Guillin, J. M. Marin, C. P. Robert, *Population Monte Carlo*,
+J. Comput. Graph. Stat. 13, 2004, 907-929. The draws are the same for every row, have mean 0 and covariance 1 exactly,
+and come in pairs z, −z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+
+WIDENED = (1.2, 1.1)
+"""How much wider than the covariance that is known the draws of each round are."""
+
+LEAST_EFFECTIVE = 3.0
+"""Draws that count, for each unknown number, below which a row keeps the covariance of the linearised model."""
+
+Costs = Callable[[FloatArray], FloatArray]
+"""Steps away from the estimates, shape (cases, draws, k) ↦ costs there, shape (cases, draws)."""
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """What draws from the posteriors of rows tell, in the unknowns' units.
+
+    Attributes:
+        covariance: mean products of the deviations from the estimates, shape (cases, k, k).
+        effective: number of equal draws that the weighted ones are worth, shape (cases,).
+    """
+
+    covariance: FloatArray
+    effective: FloatArray
+
+    @property
+    def sound(self) -> npt.NDArray[np.bool_]:
+        """Whether enough draws count for the covariance, shape (cases,)."""
+        is_sound: npt.NDArray[np.bool_] = self.effective >= LEAST_EFFECTIVE * self.covariance.shape[1]
+        return is_sound
+
+
+def sampled(costs: Costs, least: FloatArray, covariance: FloatArray, draws: int) -> Sampled:
+    """Mean squared deviations from estimates by draws around them.
+
+    Args:
+        costs: of steps away from the estimates.
+        least: costs of the estimates, shape (cases,).
+        covariance: of the linearised model, shape (cases, k, k).
+        draws: in each round; four for each unknown where that is more.
+    """
+    cases, k, _ = covariance.shape
+    z = normal_draws(max(draws, 4 * k), k)
+    # In coordinates in which the covariance of the linearised model is 1.
+    to_units = np.linalg.cholesky(covariance)
+    mean = np.zeros((cases, k))
+    spread = np.broadcast_to(np.eye(k), covariance.shape)
+    effective = np.zeros(cases)
+    for wider in WIDENED:
+        factors = wider * np.linalg.cholesky(spread)
+        steps = mean[:, None] + np.einsum("cij,sj->csi", factors, z)
+        differences = costs(np.einsum("cij,csj->csi", to_units, steps)) - least[:, None]
+        log_weights = np.sum(z**2, axis=1) / 2 - differences
+        weights = np.exp(log_weights - log_weights.max(axis=1, keepdims=True))
+        weights /= weights.sum(axis=1, keepdims=True)
+        effective = 1 / np.sum(weights**2, axis=1)
+        mean = np.einsum("cs,csi->ci", weights, steps)
+        apart = steps - mean[:, None]
+        # A few draws span no ellipsoid: a trace of the linearised model's keeps the next round from being flat.
+        spread = np.einsum("cs,csi,csj->cij", weights, apart, apart) + 1e-6 * np.eye(k)
+    about_estimate = spread + mean[:, :, None] * mean[:, None, :]
+    return Sampled(to_units @ about_estimate @ np.swapaxes(to_units, 1, 2), effective)
+
+
+def normal_draws(count: int, k: int) -> FloatArray:
+    """Numbers of a normal distribution in pairs z, −z, with mean 0 and covariance 1 exactly, shape (count, k).
+
+    Evenly spread, by the additive recurrence with powers of the root of g^(k+1) = g + 1: M. Roberts, 2018.
+
+    Args:
+        count: at least 2 k; of an odd number one more.
+        k: numbers in each.
+    """
+    root = 1.5
+    for _ in range(60):
+        root = (1 + root) ** (1 / (k + 1))
+    rates = root ** -np.arange(1.0, k + 1)
+    shares = (0.5 + np.arange(1, (count + 1) // 2 + 1)[:, None] * rates) % 1
+    half = np.vectorize(NormalDist().inv_cdf)(shares)
+    spread = half.T @ half / len(half)
+    half = np.linalg.solve(np.linalg.cholesky(spread), half.T).T
+    return np.vstack([half, -half])

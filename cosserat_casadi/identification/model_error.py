@@ -1,0 +1,58 @@
+"""The error that modes and nodes leave at what was measured: numbers that are found make up for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.identification.cases import Case
+from cosserat_casadi.identification.found import Identification
+from cosserat_casadi.numerics.outcome import Outcome
+
+
+def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identification:
+    """An identification with the largest error of the equilibria that were measured, and a warning where it is large.
+
+    Motions have the errors of their steps, and are left out here.
+
+    Args:
+        found: at the end of a search.
+        cases: what was fitted, by its first row in words.
+    """
+    try:
+        model = found.model.at(found.parameters)
+    except SceneError:
+        # Numbers that the scene refuses are no model whose error could be told.
+        return found
+    errors = {
+        where: _error(Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0))
+        for where, x, inputs in zip(found.cases, found.unknowns_x, found.inputs, strict=True)
+        if not cases[where].moves
+    }
+    if not errors:
+        return found
+    worst = max(errors, key=lambda where: errors[where])
+    told = replace(found, error_estimate=errors[worst], error_case=worst)
+    if told.within_tolerance is not False:
+        return told
+    return replace(told, warnings=(*told.warnings, _warning(told)))
+
+
+def _error(equilibrium: Solution) -> float:
+    """The estimated error that the tolerance binds."""
+    error = answer_error(equilibrium)
+    return error.shape if equilibrium.model.scene.accuracy.shape else error.watched
+
+
+def _warning(found: Identification) -> str:
+    tolerance = found.model.scene.accuracy.tolerance
+    error = f"may be off by {found.error_estimate:.2g} of the length"
+    if found.error_estimate == UNKNOWN:
+        error = "has an error that is not known"
+    return (
+        f"The model itself {error} in {found.error_case}, where the tolerance is {tolerance:g}: the numbers found make "
+        "up for that. Choose modes and nodes for the range of what was measured with cosserat tune."
+    )

@@ -1,0 +1,250 @@
+"""Estimates where the scene is known roughly: what rows share, what contradicts the model, bent posteriors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import least_squares
+from scipy.stats import chi2
+
+from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi.estimation import Estimate, estimate
+from cosserat_casadi.estimation.consistency import chi_square_deviations
+from cosserat_casadi.estimation.posterior import normal_draws, sampled
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.results.estimate_file import estimate_result
+from cosserat_casadi.scene import Scene
+from tests.scenes import push, rod
+
+STIFFNESS = "rod.stiffness.bending_y"
+BENDING = 1.4
+UNSURE = 0.05
+SIGMA = 1e-3
+PRIOR = 0.4
+AT = (0.25, 0.5, 0.75, 1.0)
+FELT = {"input": "push.force.x", "per_row": True, "prior": {"mean": 0.0, "sigma": PRIOR}}
+ROUGHLY = {"parameter": STIFFNESS, "prior": {"mean": BENDING, "sigma": UNSURE * BENDING}}
+WEIGHT = {"name": "hung", "kind": "point_wrench", "rod": "rod", "at": 0.6, "force": [0.0, 0.0, 0.0]}
+
+
+def felt(*unknowns: dict[str, Any], loads: tuple[dict[str, Any], ...] = (), **changes: Any) -> Scene:
+    """A planar rod with four markers, whose tip is pushed from the side; a known force hangs on it."""
+    measured = [
+        {
+            "quantity": "position",
+            "name": f"marker {k}",
+            "file": "shapes",
+            "inputs": {"hung.force.x": "hung_N"},
+            "rod": "rod",
+            "at": at,
+            "columns": [f"{axis}{k}" for axis in "xyz"],
+            "sigma": SIGMA,
+        }
+        for k, at in enumerate(AT)
+    ]
+    tables = {
+        "schema": 1,
+        "accuracy": {"modes": 3, "nodes": 8, "tolerance": 1e-3},
+        "rods": [rod("planar")],
+        "loads": [push(force=[0.0, 0.0, 0.0]), WEIGHT, *loads],
+        "measurements": measured,
+        "unknowns": list(unknowns),
+        **changes,
+    }
+    return scene_from_dict(tables)
+
+
+def model_of(*unknowns: dict[str, Any], **changes: Any) -> Model:
+    return build(felt(*unknowns, **changes).with_unknowns())
+
+
+def shapes(stiffness: float, forces: FloatArray, hung: FloatArray, seed: int, off: float = 0.0) -> dict[str, Any]:
+    """Markers of a rod of some stiffness, with noise; one marker reads off to one side by so many deviations."""
+    rng = np.random.default_rng(seed)
+    model = build(felt(FELT, ROUGHLY).with_unknowns())
+    columns: dict[str, list[float]] = {f"{axis}{k}": [] for k in range(len(AT)) for axis in "xyz"}
+    for force, weight in zip(forces, hung, strict=True):
+        loads = {"push.force": [force, 0.0, 0.0], "hung.force": [weight, 0.0, 0.0]}
+        positions = solve(model, loads, parameters={STIFFNESS: stiffness}).pose(AT, "rod").position
+        positions = positions + rng.normal(0.0, SIGMA, positions.shape)
+        positions[-1, 2] += off * SIGMA
+        for k, position in enumerate(positions):
+            for axis, value in zip("xyz", position, strict=True):
+                columns[f"{axis}{k}"].append(value)
+    return {"shapes": {"hung_N": hung, **columns}}
+
+
+def nees(found: Estimate, truth: FloatArray) -> FloatArray:
+    errors = found.values - truth
+    return np.einsum("ci,cij,cj->c", errors, np.linalg.inv(found.covariance), errors)
+
+
+def with_uncertain_stiffness(batches: int, rows: int) -> dict[str, FloatArray]:
+    """Squared errors in the metric of the covariances, the stiffness taken for known and for known roughly."""
+    rng = np.random.default_rng(3)
+    trusting, knowing = model_of(FELT), model_of(FELT, ROUGHLY)
+    squares: dict[str, list[float]] = {"trusting": [], "knowing": [], "stiffness": []}
+    for batch in range(batches):
+        stiffness = BENDING * (1 + UNSURE * rng.normal())
+        forces = PRIOR * rng.normal(size=rows)
+        # Where nothing else is known the shape tells forces over stiffness alone.
+        data = shapes(stiffness, forces, 0.0 * forces, batch)
+        squares["trusting"] += nees(estimate(trusting, data), forces[:, None]).tolist()
+        found = estimate(knowing, data)
+        assert found.shared is not None
+        squares["knowing"] += nees(found, forces[:, None]).tolist()
+        squares["stiffness"].append(((found.shared.values - stiffness) / found.shared.sigma).item() ** 2)
+    return {word: np.array(values) for word, values in squares.items()}
+
+
+@pytest.mark.slow
+def test_an_uncertain_stiffness_enters_the_covariance() -> None:
+    squares = with_uncertain_stiffness(batches=60, rows=4)
+    assert squares["trusting"].mean() > 5
+    # Rows of one batch share the error of the stiffness: 60 of 240 squares are free at least.
+    low, high = chi2.ppf([0.005, 0.995], 60) / 60
+    assert low <= squares["knowing"].mean() <= high
+    assert low <= squares["stiffness"].mean() <= high
+
+
+def test_a_known_force_tells_the_stiffness_vs_a_search_over_all_rows_at_once() -> None:
+    """The maximum and the covariance of all numbers together, by scipy's least squares with differences."""
+    truth = 1.07 * BENDING
+    forces = np.array([0.3, -0.2])
+    hung = np.array([4.0, -3.0])
+    data = shapes(truth, forces, hung, 7)
+    found = estimate(model_of(FELT, ROUGHLY), data)
+    model = model_of(FELT, ROUGHLY)
+    markers = [data["shapes"][f"{axis}{k}"] for k in range(len(AT)) for axis in "xyz"]
+    numbers = np.stack(markers, axis=1)
+
+    def misfit(u: FloatArray) -> FloatArray:
+        parts = [u[:2] / PRIOR, (u[2:] - BENDING) / (UNSURE * BENDING)]
+        for row in range(2):
+            loads = {"push.force": [u[row], 0.0, 0.0], "hung.force": [hung[row], 0.0, 0.0]}
+            solution = solve(model, loads, parameters={STIFFNESS: u[2]})
+            parts.append((solution.pose(AT, "rod").position.ravel() - numbers[row]) / SIGMA)
+        return np.concatenate(parts)
+
+    # From the truth a few steps are enough, each with differences on the solver in Python.
+    other = least_squares(misfit, [*forces, truth], max_nfev=6)
+    covariance = np.linalg.inv(other.jac.T @ other.jac)
+    assert found.shared is not None
+    assert found.shared.settled
+    sigma = np.sqrt(np.diag(covariance))
+    assert_allclose(found.shared.values, other.x[2:], rtol=0, atol=5e-3 * sigma[2])
+    assert_allclose(found.shared.sigma, sigma[2:], rtol=1e-3, atol=0)
+    assert_allclose(found.values[:, 0], other.x[:2], rtol=0, atol=5e-3 * sigma[:2].max())
+    assert_allclose(found.sigma[:, 0], sigma[:2], rtol=1e-3, atol=0)
+    assert found.shared.sigma < 0.9 * UNSURE * BENDING
+    assert_allclose(found.consistency.squares, 2 * other.cost, rtol=1e-4, atol=0)
+    told = estimate_result(found)
+    assert told["shared"][0]["unknown"] == STIFFNESS
+    assert told["consistency"]["holds"]
+    # The rows that are checked, and whoever solves them again, have the stiffness that was found.
+    assert_allclose(found.parameters, np.full((2, 1), found.shared.values), rtol=1e-12, atol=0)
+
+
+def test_numbers_that_all_rows_share_need_a_prior() -> None:
+    model = model_of(FELT, {"parameter": STIFFNESS})
+    with pytest.raises(SceneError, match="nothing is known of it beforehand"):
+        estimate(model, {})
+    with pytest.raises(SceneError, match="none differs from row to row"):
+        estimate(model_of(ROUGHLY), {})
+
+
+def rows(count: int, **changes: Any) -> dict[str, Any]:
+    rng = np.random.default_rng(1)
+    return shapes(BENDING, PRIOR * rng.normal(size=count), np.zeros(count), 2, **changes)
+
+
+def test_data_that_the_model_explains_are_not_doubted() -> None:
+    found = estimate(model_of(FELT), rows(40))
+    assert found.consistency.holds
+    assert found.consistency.freedom == 40 * 12
+    assert found.warnings == () or not any("explain" in warning for warning in found.warnings)
+
+
+def test_data_that_the_model_does_not_explain_are_told() -> None:
+    """Noise that is larger by an eighth than sigma says: each row looks sound by itself."""
+    noisier = dict(rows(40)["shapes"])
+    rng = np.random.default_rng(5)
+    for name, values in noisier.items():
+        if name != "hung_N":
+            noisier[name] = np.array(values) + rng.normal(0.0, 0.5 * SIGMA, len(values))
+    found = estimate(model_of(FELT), {"shapes": noisier})
+    assert not found.consistency.holds
+    assert np.nanmax(found.consistency.row_deviations) < 5
+    assert any("do not explain the data" in warning for warning in found.warnings)
+
+
+def test_a_sensor_that_is_off_to_one_side_and_a_row_that_stands_out_are_told() -> None:
+    data = rows(40, off=0.9)
+    # Out of the plane, where no force can follow it.
+    data["shapes"]["y2"][4] += 8 * SIGMA
+    found = estimate(model_of(FELT), data)
+    assert list(found.consistency.biased) == ["marker 3 z at X = 1"]
+    assert any("off to one side" in warning and "marker 3 z at X = 1" in warning for warning in found.warnings)
+    assert np.flatnonzero(found.consistency.outlying).tolist() == [4]
+    assert any("1 row stands out" in warning for warning in found.warnings)
+
+
+@pytest.mark.parametrize("freedom", [3, 40, 1000])
+def test_deviations_of_a_sum_of_squares_vs_its_distribution(freedom: int) -> None:
+    for tail in (0.5, 1e-2, 1e-5):
+        squares = chi2.isf(tail, freedom)
+        normal = np.sqrt(chi2.isf(2 * tail, 1)) if tail < 0.5 else 0.0
+        assert_allclose(chi_square_deviations(squares, freedom), normal, rtol=0, atol=0.15)
+
+
+@pytest.mark.parametrize("k", [1, 3, 7])
+def test_draws_have_the_moments_of_a_normal_distribution(k: int) -> None:
+    z = normal_draws(255, k)
+    assert z.shape == (256, k)
+    assert_allclose(z.mean(axis=0), 0.0, rtol=0, atol=1e-13)
+    assert_allclose(z.T @ z / len(z), np.eye(k), rtol=0, atol=1e-12)
+    assert_allclose(np.mean(z**4, axis=0), 3.0, rtol=0.2, atol=0)
+
+
+def test_draws_from_a_bent_posterior_vs_quadrature() -> None:
+    """A banana: y = x² / 6 within 0.5, x normal; about its maximum at 0."""
+
+    def costs(steps: FloatArray) -> FloatArray:
+        x, y = steps[..., 0], steps[..., 1]
+        return x**2 / 2 + (y - x**2 / 6) ** 2 / (2 * 0.5**2)
+
+    found = sampled(costs, np.zeros(1), np.diag([1.0, 0.5**2])[None], 1024)
+    # E[x²] = 1, E[y²] = 0.5² + E[x⁴] / 36.
+    assert_allclose(found.covariance[0], [[1.0, 0.0], [0.0, 0.5**2 + 3 / 36]], rtol=0, atol=0.05)
+    assert found.sound.all()
+
+
+@pytest.mark.slow
+def test_draws_of_a_wire_that_is_bent_far_hold() -> None:
+    """Rows that bend the rod by much, coarsely measured: intervals by draws hold, those of the tangent do not."""
+    coarse = {"sigma": 30 * SIGMA}
+    prior = {"mean": 0.0, "sigma": 5.0}
+    scene = felt({**FELT, "prior": prior}, {**FELT, "input": "push.force.z", "prior": prior})
+    measurements = tuple(record.model_copy(update=coarse) for record in scene.measurements)
+    scene = scene.model_copy(update={"measurements": measurements})
+    model = build(scene.with_unknowns())
+    rng = np.random.default_rng(11)
+    forces = 5.0 * rng.normal(size=(150, 2))
+    columns: dict[str, list[float]] = {f"{axis}{k}": [] for k in range(len(AT)) for axis in "xyz"}
+    for x, z in forces:
+        positions = solve(model, {"push.force": [x, 0.0, z]}).pose(AT, "rod").position
+        for k, position in enumerate(positions + rng.normal(0.0, 30 * SIGMA, positions.shape)):
+            for axis, value in zip("xyz", position, strict=True):
+                columns[f"{axis}{k}"].append(value)
+    data = {"shapes": {"hung_N": np.zeros(150), **columns}}
+    by_tangent = estimate(model, data)
+    drawing = scene.estimation.model_copy(update={"draws": 128})
+    by_draws = estimate(build(scene.model_copy(update={"estimation": drawing}).with_unknowns()), data)
+    assert by_draws.found.all()
+    assert np.array_equal(by_draws.values, by_tangent.values)
+    low, high = chi2.ppf([0.005, 0.995], 2 * 150) / 150
+    assert nees(by_tangent, forces).mean() > 1.3 * high
+    assert low <= nees(by_draws, forces).mean() <= high
