@@ -1,4 +1,6 @@
-"""The files of a sweep: results as CSV or Parquet, and beside them what was computed, as JSON.
+"""The files of a sweep: results as CSV, Parquet or a dataset, and beside them what was computed, as JSON.
+
+A dataset is a folder of Parquet files, which many readers take as one table.
 
 pyarrow is an extra and is imported inside functions only.
 """
@@ -15,11 +17,14 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
-from cosserat_casadi.files import atomic_file, write_atomically
+from cosserat_casadi.files import atomic_file, atomic_folder, check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep.outcome_table import LABELS, WITHIN, Sweep
 
-FORMATS = (".csv", ".parquet")
+DATASET = ".dataset"
+"""Suffix of a folder of Parquet files."""
+
+FORMATS = (".csv", ".parquet", DATASET)
 """Suffixes of the results."""
 
 STABLE = "stable"
@@ -37,6 +42,9 @@ BLOCK = 4096
 ROW_GROUP = 65_536
 """The same of Parquet, whose readers skip or share out such groups of rows."""
 
+PART_ROWS = 16 * ROW_GROUP
+"""Rows of each file of a dataset: some 100 MB."""
+
 
 class ParquetUnavailableError(CosseratError):
     """Parquet files need pyarrow."""
@@ -47,16 +55,17 @@ class ParquetUnavailableError(CosseratError):
         super().__init__("Parquet needs pyarrow: install it with  pip install 'cosserat-casadi[sweep]', or write .csv")
 
 
-def check_format(path: Path) -> None:
-    """Refuse a file that could not be written.
+def check_output(path: Path) -> None:
+    """Refuse results that could not be written.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of FORMATS, or nothing can be written at the path.
         ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
     """
+    check_writable(path, "--output", folder=_is_dataset(path))
     if path.suffix.lower() not in FORMATS:
         problem = f"{path} is neither CSV nor Parquet"
-        raise SceneError(Problem("--output", problem, f"use {' or '.join(FORMATS)}"))
+        raise SceneError(Problem("--output", problem, f"use {', '.join(FORMATS)}"))
     if _is_parquet(path):
         arrow_module()
 
@@ -86,11 +95,15 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
     recorded_before = record.exists()
     write_atomically(record, text.encode())
     try:
-        with atomic_file(path) as temporary:
-            if _is_parquet(path):
-                _write_parquet(sweep, temporary)
-            else:
-                _write_csv(sweep, temporary)
+        if _is_dataset(path):
+            with atomic_folder(path) as folder:
+                _write_dataset(sweep, folder)
+        else:
+            with atomic_file(path) as temporary:
+                if _is_parquet(path):
+                    _write_parquet(sweep, range(len(sweep.values)), temporary)
+                else:
+                    _write_csv(sweep, temporary)
     except BaseException:
         # A record without its results would be of no use.
         if not recorded_before:
@@ -125,7 +138,11 @@ def read_sweep(path: str | Path) -> Sweep:
 
 
 def _is_parquet(path: Path) -> bool:
-    return path.suffix.lower() == ".parquet"
+    return path.suffix.lower() in (".parquet", DATASET)
+
+
+def _is_dataset(path: Path) -> bool:
+    return path.suffix.lower() == DATASET
 
 
 def _numbers(column: Sequence[Any]) -> FloatArray:
@@ -170,21 +187,34 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             yield cells
 
 
-def _write_parquet(sweep: Sweep, path: Path) -> None:
+def _write_dataset(sweep: Sweep, folder: Path) -> None:
+    """Write the parts of a dataset; their names sort as their rows do."""
+    for number, rows in enumerate(_blocks(range(len(sweep.values)), PART_ROWS)):
+        _write_parquet(sweep, rows, folder / f"part-{number:05}.parquet")
+
+
+def _write_parquet(sweep: Sweep, rows: range, path: Path) -> None:
     arrow_module()
     import pyarrow.parquet
 
     # A block at once: a copy of all columns would take as much memory again as the results.
-    first = _arrow_table(sweep, slice(0, ROW_GROUP))
-    with pyarrow.parquet.ParquetWriter(path, first.schema) as writer:
-        writer.write_table(first)
-        for start in range(ROW_GROUP, len(sweep.values), ROW_GROUP):
-            writer.write_table(_arrow_table(sweep, slice(start, start + ROW_GROUP)))
+    first, *others = _blocks(rows, ROW_GROUP)
+    table = _arrow_table(sweep, first)
+    with pyarrow.parquet.ParquetWriter(path, table.schema) as writer:
+        writer.write_table(table)
+        for block in others:
+            writer.write_table(_arrow_table(sweep, block))
 
 
-def _arrow_table(sweep: Sweep, rows: slice) -> Any:
+def _blocks(rows: range, size: int) -> list[range]:
+    """Rows cut into blocks of a size; the last one may be smaller."""
+    return [rows[start : start + size] for start in range(0, len(rows), size)]
+
+
+def _arrow_table(sweep: Sweep, block: range) -> Any:
     """Some rows as a table of pyarrow."""
     arrow = arrow_module()
+    rows = slice(block.start, block.stop)
     columns: dict[str, Any] = {}
     for name in sweep.swept:
         columns[name] = arrow.array(sweep[name][rows])

@@ -19,7 +19,6 @@ from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import ERRORS, NAME, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
@@ -29,7 +28,7 @@ from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweep.cluster import Cluster
 from cosserat_casadi.sweep.local import Cores
-from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_sweep, record_file, write_sweep
+from cosserat_casadi.sweep.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
@@ -133,7 +132,8 @@ def plan_sweep(
     Args:
         scene: a validated scene.
         table: values of its inputs and parameters.
-        output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
+        output: file of the results, ``.csv`` or ``.parquet``, or a folder of Parquet files, ``.dataset``; what a killed
+            run of the same sweep left is gone on with.
         samples: rows that the discretisation is chosen on, at least 1.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
@@ -182,8 +182,8 @@ def sweep_scene(
     Args:
         scene: a validated scene.
         table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
-        output: file to write, ``.csv`` or ``.parquet``, with a record of what was computed beside it. What a killed or
-            interrupted run of the same sweep has done is not done again.
+        output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
+            was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
         cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
@@ -538,8 +538,7 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
     if output is None:
         return []
     try:
-        check_writable(output, "--output")
-        check_format(output)
+        check_output(output)
     except SceneError as error:
         return list(error.problems)
     if plan is None or plan.part is None:
