@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import atomic_file, atomic_folder, check_writable, write_atomically
@@ -33,8 +34,8 @@ STABLE = "stable"
 TRUTHS = (WITHIN, STABLE)
 """Columns of true and false."""
 
-WORDS = {"true": 1.0, "false": 0.0}
-"""Its cells as numbers."""
+WORDS = {"true": 1.0, "false": 0.0, "": np.nan}
+"""Cells of a CSV file that are written as words, or left empty, as numbers."""
 
 BLOCK = 4096
 """Rows that are written at once."""
@@ -44,6 +45,10 @@ ROW_GROUP = 65_536
 
 PART_ROWS = 16 * ROW_GROUP
 """Rows of each file of a dataset: some 100 MB."""
+
+
+_Read = tuple[list[str], npt.NDArray[np.int64], FloatArray]
+"""Of a file of results its columns, the outcomes as places in LABELS, and the numbers of all other columns."""
 
 
 class ParquetUnavailableError(CosseratError):
@@ -121,17 +126,15 @@ def read_sweep(path: str | Path) -> Sweep:
     record = read_record(file)
     read = _read_parquet if _is_parquet(file) else _read_csv
     try:
-        names, columns = read(file)
-        split = names.index("outcome")
-        outcomes = np.array([LABELS.index(word) for word in columns[split]])
-        numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
-    except (OSError, ValueError, IndexError) as error:
+        names, outcomes, values = read(file)
+    except (OSError, ValueError, IndexError, NotImplementedError) as error:
         problem = f"cannot be read as the results of a sweep: {error}"
         raise SceneError(Problem(str(file), problem)) from None
+    split = names.index("outcome")
     return Sweep(
         swept=tuple(names[:split]),
         found=tuple(names[split + 1 :]),
-        values=np.column_stack(numbers),
+        values=values,
         outcomes=outcomes,
         record=record or {},
     )
@@ -145,15 +148,9 @@ def _is_dataset(path: Path) -> bool:
     return path.suffix.lower() == DATASET
 
 
-def _numbers(column: Sequence[Any]) -> FloatArray:
-    """Numbers of a column; NaN where the cell is empty."""
-    numbers = []
-    for cell in column:
-        # CSV leaves an empty text, Parquet nothing.
-        missing = cell is None or cell == ""
-        number = WORDS.get(cell, cell)
-        numbers.append(np.nan if missing else float(number))
-    return np.array(numbers)
+def _numbers(column: Sequence[str]) -> FloatArray:
+    """Numbers of a column of a CSV file; NaN where the cell is empty."""
+    return np.array([WORDS[cell] if cell in WORDS else float(cell) for cell in column])
 
 
 def _write_csv(sweep: Sweep, path: Path) -> None:
@@ -232,18 +229,34 @@ def _arrow_table(sweep: Sweep, block: range) -> Any:
     return arrow.table(columns)
 
 
-def _read_parquet(path: Path) -> tuple[list[str], list[Any]]:
-    arrow_module()
+def _read_parquet(path: Path) -> _Read:
+    arrow = arrow_module()
+    import pyarrow.compute
     import pyarrow.parquet
 
     table = pyarrow.parquet.read_table(path)
-    return table.column_names, [column.to_pylist() for column in table.columns]
+    names = table.column_names
+    split = names.index("outcome")
+    # Arrays of arrow are cast as they are: Python's own numbers would take several times their memory.
+    words = table.column(split).cast(arrow.string())
+    places = pyarrow.compute.index_in(words, arrow.array(LABELS))
+    if places.null_count:
+        raise ValueError("an outcome is none that a row can have")
+    columns = [*table.columns[:split], *table.columns[split + 1 :]]
+    values = np.empty((table.num_rows, len(columns)))
+    for index, column in enumerate(columns):
+        values[:, index] = column.cast(arrow.float64()).to_numpy()
+    return names, places.to_numpy().astype(np.int64), values
 
 
-def _read_csv(path: Path) -> tuple[list[str], list[Any]]:
+def _read_csv(path: Path) -> _Read:
     with path.open(encoding="utf-8", newline="") as stream:
-        header, *rows = csv.reader(stream)
-    return header, list(zip(*rows, strict=True))
+        names, *rows = csv.reader(stream)
+    columns = list(zip(*rows, strict=True))
+    split = names.index("outcome")
+    outcomes = np.array([LABELS.index(word) for word in columns[split]])
+    numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
+    return names, outcomes, np.column_stack(numbers)
 
 
 def arrow_module() -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -101,3 +102,37 @@ def test_a_folder_goes_to_where_a_link_leads_and_over_nothing(tmp_path: Path) ->
             (folder / "b").write_text("second")
         assert [path.name for path in (tmp_path / "far").iterdir()] == ["a"]
         (tmp_path / "far" / "a").unlink()
+
+
+def test_numbers_are_read_as_arrays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numbers of Python would take several times as much memory as the results."""
+    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.ROW_GROUP", 65_536)
+    found = rows(20_000)
+    file = tmp_path / "rows.parquet"
+    write_sweep(found, file)
+    tracemalloc.start()
+    read = read_sweep(file)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert_array_equal(read.values, found.values)
+    # Beside them the outcomes, and one column at a time.
+    assert peak < 2.0 * found.values.nbytes
+
+
+def test_parquet_files_of_others_are_refused(tmp_path: Path) -> None:
+    import pyarrow
+    import pyarrow.parquet
+
+    file = tmp_path / "rows.parquet"
+    for outcomes, numbers, said in (
+        (["converged", "lost"], [0.0, 1.0], "an outcome is none that a row can have"),
+        (["converged", None], [0.0, 1.0], "an outcome is none that a row can have"),
+        (["converged", "converged"], ["a", "b"], "rows.parquet: cannot be read as the results of a sweep"),
+        (["converged", "converged"], [[1.0], [2.0]], "rows.parquet: cannot be read as the results of a sweep"),
+    ):
+        pyarrow.parquet.write_table(pyarrow.table({"outcome": outcomes, "iterations": numbers}), file)
+        with pytest.raises(SceneError, match=said):
+            read_sweep(file)
+    pyarrow.parquet.write_table(pyarrow.table({"iterations": [1.0]}), file)
+    with pytest.raises(SceneError, match="cannot be read as the results of a sweep"):
+        read_sweep(file)
