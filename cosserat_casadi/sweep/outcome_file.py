@@ -166,12 +166,13 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
     swept_count = len(sweep.swept)
     iterations = swept_count + sweep.found.index("iterations")
     truths = [swept_count + sweep.found.index(name) for name in TRUTHS if name in sweep.found]
-    complete = np.isfinite(sweep.values.sum(axis=1)).tolist()
     # Lists of a block of rows: Python's own numbers print faster, and all at once would take too much memory.
     for first in range(0, len(sweep.values), BLOCK):
-        block = sweep.values[first : first + BLOCK].tolist()
-        for index, row in enumerate(block, first):
-            if complete[index]:
+        block = sweep.values[first : first + BLOCK]
+        complete = np.isfinite(block.sum(axis=1)).tolist()
+        outcomes = sweep.outcomes[first : first + BLOCK].tolist()
+        for row, is_complete, number in zip(block.tolist(), complete, outcomes, strict=True):
+            if is_complete:
                 cells = list(map(repr, row))
             else:
                 cells = ["" if math.isnan(cell) else repr(cell) for cell in row]
@@ -179,8 +180,7 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             for truth in truths:
                 if cells[truth]:
                     cells[truth] = "true" if row[truth] else "false"
-            outcome = LABELS[sweep.outcomes[index]]
-            cells.insert(swept_count, outcome)
+            cells.insert(swept_count, LABELS[number])
             yield cells
 
 

@@ -83,8 +83,8 @@ class Plan:
             self.estimate_errors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
-        values = np.ascontiguousarray(self.table.values, dtype="<f8")
-        digest.update(values.tobytes())
+        # The array itself: its bytes would be a copy of the table.
+        digest.update(np.ascontiguousarray(self.table.values, dtype="<f8").data)
         return digest.hexdigest()
 
     @property

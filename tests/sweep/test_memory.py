@@ -13,6 +13,8 @@ from numpy.testing import assert_array_equal
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep import run
+from cosserat_casadi.sweep.outcome_file import write_sweep
+from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan, plan_sweep, run_shard, run_sweep
 from cosserat_casadi.sweep.shards import Shard
 from cosserat_casadi.sweep.store import Store, StoreChangedError
@@ -73,6 +75,22 @@ def test_a_shard_keeps_no_results_in_memory(plan: Plan, peak: Any) -> None:
     results = 8 * len(plan.results) * rows
     # The places of its chunks, and some chunks at once.
     assert peak() < 0.4 * results
+
+
+@pytest.fixture
+def answered() -> Sweep:
+    numbers = np.linspace(0.0, 1.0, ROWS)
+    values = np.column_stack([numbers, np.ones(ROWS), numbers])
+    return Sweep(("push.force.x",), ("iterations", "rod.x"), values, np.zeros(ROWS, dtype=np.int64), {})
+
+
+def test_a_file_takes_a_block_of_rows_at_once(
+    answered: Sweep, tmp_path: Path, peak: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.BLOCK", 64)
+    write_sweep(answered, tmp_path / "rows.csv")
+    # Nothing has a number for each row.
+    assert peak() < 0.3 * answered.values.nbytes
 
 
 def test_a_store_that_others_changed_is_told_of(tmp_path: Path) -> None:
