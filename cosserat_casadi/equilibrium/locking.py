@@ -71,23 +71,27 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
 
 
 def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Largest motion of what is watched over the length, or turn, per unit of each entry of an input, by its name."""
-    residual = column(model.path_residual(x, inputs, 1.0))
+    """Motion of what is watched per unit of each entry of every input but lengths, by the input's name."""
     inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
-    before = _watched(model, x, inputs)
+    responses = -inverse @ residual_by_inputs(model, x, inputs)
     for entry, span in model.inputs:
-        if entry.declared.moves:
-            continue
-        compliances = []
-        for k in range(span.start, span.stop):
-            moved = inputs.copy()
-            # The equations are affine in loads.
-            moved[k] += 1.0
-            response = -inverse @ (column(model.path_residual(x, moved, 1.0)) - residual)
-            share = STEP / max(float(np.abs(response).max(initial=0.0)), STEP)
-            motion = _watched(model, x + share * response, inputs) - before
-            compliances.append(float(np.abs(motion).max(initial=0.0)) / share)
-        yield entry.name, np.array(compliances)
+        if not entry.declared.moves:
+            motions = [motion(model, x, inputs, responses[:, k]) for k in range(span.start, span.stop)]
+            yield entry.name, np.array(motions)
+
+
+def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """Derivatives of the residual by the inputs, shape (size, inputs)."""
+    units = np.eye(len(inputs))
+    rates = [column(model.path_rate(x, inputs, 1.0, unit, 0.0)) for unit in units]
+    return np.reshape(rates, (len(inputs), model.size)).T
+
+
+def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
+    """How far a step of the unknowns moves what is watched, to first order: over the length, or in quaternions."""
+    share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
+    change = _watched(model, x + share * step, inputs) - _watched(model, x, inputs)
+    return float(np.abs(change).max(initial=0.0)) / share
 
 
 def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
