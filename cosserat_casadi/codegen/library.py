@@ -443,6 +443,8 @@ def _file_rows(
 
 def _accuracy_note(model: Model, error_estimate: float | None, verified: Verified | None) -> str:
     tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
+    if not model.scene.accuracy.binds:
+        tolerance = "The scene fixes what it is computed with, and asks for no tolerance."
     if verified is not None:
         return f"{tolerance} {verified.sentence}"
     if error_estimate is None:
