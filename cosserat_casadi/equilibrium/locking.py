@@ -109,14 +109,20 @@ def locking_sentence(locked: Sequence[str]) -> str:
     )
 
 
-def locking_note(solution: Solution) -> str:
-    """The sentence on locking, for modes that the scene fixes: those that were chosen are free to move.
+def may_be_locked(model: Model) -> bool:
+    """Whether constraints meet modes that the scene fixes: those that were chosen are free to move.
 
-    Empty in exact contact too, whose forces are inputs of another model for every arrangement.
+    False in exact contact too, whose forces are inputs of another model for every arrangement.
     """
-    scene = solution.model.scene
-    chosen = scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for
-    if chosen or not solution.converged:
+    scene = model.scene
+    if scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for:
+        return False
+    return degrees_of_freedom(model) is not None
+
+
+def locking_note(solution: Solution) -> str:
+    """The sentence on locking; empty where no equilibrium was found."""
+    if not solution.converged or not may_be_locked(solution.model):
         return ""
     return locking_sentence(locked_inputs(solution))
 
