@@ -222,6 +222,19 @@ def test_draws_from_a_bent_posterior_vs_quadrature() -> None:
     assert found.sound.all()
 
 
+@pytest.mark.parametrize(("wide", "narrow"), [(10.0, 0.02), (0.02, 0.02), (0.001, 0.001)])
+def test_draws_that_miss_narrow_bounds_are_not_believed(wide: float, narrow: float) -> None:
+    """An estimate in a corner of bounds that are narrower than its deviations: few draws hit, or none."""
+    upper = np.array([wide, narrow, narrow])
+
+    def costs(steps: FloatArray) -> FloatArray:
+        is_outside = ((steps < 0.0) | (steps > upper)).any(axis=2)
+        return np.where(is_outside, np.inf, np.sum(steps**2, axis=2) / 2)
+
+    found = sampled(costs, np.zeros(1), np.eye(3)[None], 256)
+    assert not found.sound.any()
+
+
 @pytest.mark.slow
 def test_draws_of_a_wire_that_is_bent_far_hold() -> None:
     """Rows that bend the rod by much, coarsely measured: intervals by draws hold, those of the tangent do not."""
