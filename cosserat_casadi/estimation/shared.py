@@ -43,7 +43,7 @@ class SharedNumbers:
         units: of these.
         values: the maxima a posteriori, shape (q,).
         covariance: shape (q, q).
-        settled: whether no step would lessen the cost.
+        settled: whether no step within the bounds would lessen the cost.
     """
 
     labels: tuple[str, ...]
@@ -102,7 +102,7 @@ def find_shared(
     for _ in range(MOST_ROUNDS):
         reduced = _reduced(found[0], own)
         slope = reduced.slope + weights * (values - limits.mean)
-        step = np.asarray(-np.linalg.solve(reduced.curvature + np.diag(weights), slope), dtype=np.float64)
+        step = _step(reduced.curvature + np.diag(weights), slope, limits.held(values, slope))
         if -(slope @ step) <= SETTLED:
             settled = True
             break
@@ -114,6 +114,13 @@ def find_shared(
     covariance = np.asarray(np.linalg.inv(reduced.curvature + np.diag(weights)), dtype=np.float64)
     added = np.einsum("cij,jk,clk->cil", reduced.moves, covariance, reduced.moves)
     return found, SharedNumbers(names.labels, names.units, values, covariance, settled), added
+
+
+def _step(curvature: FloatArray, slope: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:
+    """Gauss and Newton's step, shape (q,), of the numbers that no bound holds."""
+    step = np.zeros_like(slope)
+    step[~held] = -np.linalg.solve(curvature[np.ix_(~held, ~held)], slope[~held])
+    return step
 
 
 def _tried(

@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, lsq_linear
 from scipy.stats import chi2
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.estimation import Estimate, estimate
 from cosserat_casadi.estimation.consistency import chi_square_deviations
 from cosserat_casadi.estimation.posterior import normal_draws, sampled
+from cosserat_casadi.estimation.shared import Searched, SharedLabels, find_shared
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.results.estimate_file import estimate_result
 from cosserat_casadi.scene import Scene
 from tests.scenes import push, rod
@@ -146,6 +149,41 @@ def test_a_known_force_tells_the_stiffness_vs_a_search_over_all_rows_at_once() -
     assert told["consistency"]["holds"]
     # The rows that are checked, and whoever solves them again, have the stiffness that was found.
     assert_allclose(found.parameters, np.full((2, 1), found.shared.values), rtol=1e-12, atol=0)
+
+
+def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:
+    """One row with the deviations u − 1, u + p − 3 and p + q − 4, with p at most 1.5, vs scipy."""
+    matrix = np.array([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
+    data = np.array([1.0, 3.0, 4.0])
+    limits = Limits(
+        lower=np.full(2, -np.inf),
+        upper=np.array([1.5, np.inf]),
+        mean=np.zeros(2),
+        weight=np.full(2, 0.1),
+        ratios=np.zeros(2, dtype=bool),
+    )
+
+    def search(shared: FloatArray) -> Searched:
+        unknowns = np.concatenate([[2.0 - shared[0] / 2.0], shared])
+        residual = matrix @ unknowns - data
+        found = Estimates(
+            outcome=np.zeros(1, dtype=np.int64),
+            iterations=np.zeros(1, dtype=np.int64),
+            cost=np.array([residual @ residual / 2.0]),
+            unknowns=unknowns[None],
+            information=(matrix.T @ matrix)[None],
+            gradient=(matrix.T @ residual)[None],
+            residuals=residual[None],
+            x=np.zeros((1, 0)),
+        )
+        return found, None
+
+    names = SharedLabels(("p", "q"), ("1", "1"))
+    _, shared, _ = find_shared(search, limits, names, (np.full(1, -np.inf), np.full(1, np.inf)))
+    with_priors = np.vstack([matrix, 0.1 * np.eye(3)[1:]])
+    other = lsq_linear(with_priors, np.append(data, [0.0, 0.0]), (-np.inf, [np.inf, 1.5, np.inf]), tol=1e-14)
+    assert shared.settled
+    assert_allclose(shared.values, other.x[1:], rtol=0, atol=1e-6)
 
 
 def test_numbers_that_all_rows_share_need_a_prior() -> None:
