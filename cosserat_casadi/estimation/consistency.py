@@ -79,7 +79,8 @@ class Consistency:
                 f"{told}{more}. No noise does that."
             )
         rows = [case for case, outlies in zip(cases, self.outlying, strict=True) if outlies]
-        if rows and len(rows) < len(cases) / 2:
+        # Where most rows stand out, the sum over all of them does, and tells it.
+        if rows and 2 * len(rows) <= len(cases):
             names = ", ".join(rows[:TOLD])
             more = f" and {len(rows) - TOLD} more" if len(rows) > TOLD else ""
             verb = "stands" if len(rows) == 1 else "stand"

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.estimation import Estimate, estimate
-from cosserat_casadi.estimation.consistency import chi_square_deviations
+from cosserat_casadi.estimation.consistency import chi_square_deviations, consistency
 from cosserat_casadi.estimation.posterior import normal_draws, sampled
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, find_shared
 from cosserat_casadi.maths.typing import FloatArray
@@ -228,6 +228,16 @@ def test_a_sensor_that_is_off_to_one_side_and_a_row_that_stands_out_are_told() -
     assert any("off to one side" in warning and "marker 3 z at X = 1" in warning for warning in found.warnings)
     assert np.flatnonzero(found.consistency.outlying).tolist() == [4]
     assert any("1 row stands out" in warning for warning in found.warnings)
+
+
+def test_one_row_of_two_that_stands_out_is_told() -> None:
+    """The other row fits so well that the sum of both is no reason to doubt."""
+    found = consistency(np.array([110.0, 20.0]), np.array([40, 40]), 0.0, {})
+    assert found.outlying.tolist() == [True, False]
+    assert found.deviations < 4
+    assert not found.holds
+    (sentence,) = found.sentences(["row 1", "row 2"])
+    assert sentence.startswith("1 row stands out")
 
 
 @pytest.mark.parametrize("freedom", [3, 40, 1000])
