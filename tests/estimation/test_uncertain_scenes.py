@@ -240,6 +240,16 @@ def test_one_row_of_two_that_stands_out_is_told() -> None:
     assert sentence.startswith("1 row stands out")
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_one_reading_that_is_far_off_is_no_side_of_all_rows(count: int) -> None:
+    readings = np.zeros(count)
+    readings[0] = 12.0
+    squares = 40.0 + readings**2
+    found = consistency(squares, np.full(count, 40), 0.0, {"marker": readings})
+    assert not found.biased
+    assert not found.holds
+
+
 @pytest.mark.parametrize("freedom", [3, 40, 1000])
 def test_deviations_of_a_sum_of_squares_vs_its_distribution(freedom: int) -> None:
     for tail in (0.5, 1e-2, 1e-5):
