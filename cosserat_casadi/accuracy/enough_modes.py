@@ -57,8 +57,8 @@ def enough_for(solution: Solution, tolerance: float) -> Chosen:
     """
     settled, correction = believed_correction(solution)
     if not settled:
-        # What the answer lacks is not known: a little more of everything.
-        return with_more_modes(solution.model.discretisation)
+        # What the answer lacks is not known, but it is far from right: more of everything.
+        return with_more_modes(with_more_modes(solution.model.discretisation))
     return _Lack(solution, correction.missing, correction.change, tolerance / SAFETY).made_up()
 
 

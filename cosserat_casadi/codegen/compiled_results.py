@@ -11,6 +11,9 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
+SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
+"""Ends after which there is a solution for the inputs, if of the discrete equations alone."""
+
 Fields = Sequence[tuple[str, type[Any]]]
 """Names and types of the members of a struct."""
 

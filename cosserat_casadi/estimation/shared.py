@@ -1,12 +1,15 @@
 """Numbers that all rows share and a prior knows roughly, such as a modulus: found beside what each row feels.
 
-With these numbers p held, row i has its least cost C_i(p) at u_i(p), with the information H_i of (u_i, p) there. The
-sum of the C_i and the cost of the prior is least by Gauss and Newton's method; with A = H_uu and B = H_up of a row
+With these numbers p held, row i has its least cost C_i(p) at u_i(p), with the information H_i of (u_i, p) there. What
+the data say of p, whatever the rows feel, is by Laplace's approximation of the integral over u_i, with A = H_uu,
 
-    ∂²C_i/∂p² ≈ H_pp − Bᵀ A⁻¹ B,  cov(p) = (W² + Σ ∂²C_i/∂p²)⁻¹,  cov(u_i) = A⁻¹ + G cov(p) Gᵀ  with  G = −A⁻¹ B,
+    −log p(data | p) = Σ C_i(p) + ½ log det A_i(p).
 
-the blocks of the inverse of the information of all numbers together: F. Zhang (ed.), *The Schur Complement and Its
-Applications*, Springer 2005, section 1.1.
+Without the second term, the volume of what a row may feel, p would drift to where forces are small, the farther the
+more rows there are (J. Neyman, E. L. Scott, Econometrica 16, 1948, 1-32). The sum with the cost of the prior is least
+by Gauss and Newton's method, the volumes differentiated by differences of p; with B = H_up of a row
+
+    ∂²C_i/∂p² ≈ H_pp − Bᵀ A⁻¹ B,  cov(u_i) = A⁻¹ + G cov(p) Gᵀ  with  G = −A⁻¹ B.
 """
 
 from __future__ import annotations
@@ -30,6 +33,9 @@ MOST_TRIALS = 10
 
 SETTLED = 1e-6
 """Decrease of the cost, in squared deviations, that a step must promise to be worth taking."""
+
+ASIDE = 0.2
+"""Deviations of the prior to either side by which volumes are differentiated."""
 
 Searched = tuple[Estimates, SecondBest | None]
 
@@ -100,19 +106,20 @@ def find_shared(
     found = search(values)
     settled = False
     for _ in range(MOST_ROUNDS):
-        reduced = _reduced(found[0], own)
-        slope = reduced.slope + weights * (values - limits.mean)
-        step = _step(reduced.curvature + np.diag(weights), slope, limits.held(values, slope))
+        slope, curvature, moves = _expansion(search, limits, values, found, own)
+        slope = slope + weights * (values - limits.mean)
+        curvature = curvature + np.diag(weights)
+        step = _step(curvature, slope, limits.held(values, slope))
         if -(slope @ step) <= SETTLED:
             settled = True
             break
-        better = _tried(search, limits, values, step, found)
+        better = _tried(search, limits, values, step, found, own)
         if better is None:
             break
         values, found = better
-    reduced = _reduced(found[0], own)
-    covariance = np.asarray(np.linalg.inv(reduced.curvature + np.diag(weights)), dtype=np.float64)
-    added = np.einsum("cij,jk,clk->cil", reduced.moves, covariance, reduced.moves)
+    _, curvature, moves = _expansion(search, limits, values, found, own)
+    covariance = np.asarray(np.linalg.inv(curvature + np.diag(weights)), dtype=np.float64)
+    added = np.einsum("cij,jk,clk->cil", moves, covariance, moves)
     return found, SharedNumbers(names.labels, names.units, values, covariance, settled), added
 
 
@@ -123,24 +130,83 @@ def _step(curvature: FloatArray, slope: FloatArray, held: npt.NDArray[np.bool_])
     return step
 
 
+def _expansion(
+    search: Callable[[FloatArray], Searched],
+    limits: Limits,
+    values: FloatArray,
+    found: Searched,
+    own: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What the rows say of the shared numbers to second order: slope, curvature; and how the rows move with them."""
+    reduced = _reduced(found[0], own)
+    slope = reduced.slope
+    curvature = reduced.curvature
+    for k in range(len(values)):
+        aside = []
+        for sign in (-1.0, 1.0):
+            shifted = values.copy()
+            shifted[k] += sign * ASIDE / limits.weight[k]
+            shifted = limits.within_step(values).clipped(shifted)
+            aside.append((shifted[k] - values[k], search(shifted)[0]))
+        (before, less), (after, more) = aside
+        # At a bound there is one side alone, and the volumes count for nothing.
+        if before == 0.0 or after == 0.0:
+            continue
+        changes = [_volumes(rows, own) - _volumes(found[0], own) for rows in (less, more)]
+        down, up = (float(np.nansum(change)) for change in changes)
+        rates = (down / before, up / after)
+        slope[k] += (rates[0] * after - rates[1] * before) / (after - before)
+        bend = 2 * (rates[1] - rates[0]) / (after - before)
+        # Volumes may bend down; the sum must have a minimum all the same.
+        curvature[k, k] += max(bend, -(curvature[k, k] + limits.weight[k] ** 2) / 2)
+    return slope, curvature, reduced.moves
+
+
+def _volumes(found: Estimates, own: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Half the logarithm of det A of each row, what stays at a bound left out, shape (cases,); NaN where not found."""
+    volumes = np.full(len(found.outcome), np.nan)
+    rows = found.outcome == 0
+    matrices, _ = _of_own(found, own)
+    sign, logarithm = np.linalg.slogdet(matrices)
+    volumes[rows] = np.where(sign > 0, logarithm / 2, np.nan)
+    return volumes
+
+
+def _of_own(found: Estimates, own: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+    """Information of the own numbers of rows that were found, and which of these numbers are at no bound."""
+    k = len(own[0])
+    rows = found.outcome == 0
+    free = ~_at_bound(found.unknowns[rows, :k], own)
+    matrices = found.information[rows, :k, :k] * free[:, :, None] * free[:, None, :]
+    return matrices + np.eye(k) * np.where(free, 0.0, 1.0)[:, :, None], free
+
+
 def _tried(
-    search: Callable[[FloatArray], Searched], limits: Limits, values: FloatArray, step: FloatArray, found: Searched
+    search: Callable[[FloatArray], Searched],
+    limits: Limits,
+    values: FloatArray,
+    step: FloatArray,
+    found: Searched,
+    own: tuple[FloatArray, FloatArray],
 ) -> tuple[FloatArray, Searched] | None:
     """Values and rows a step on, or a part of it, where all costs together are less; None where they nowhere are."""
     reach = limits.within_step(values)
     for trial in range(MOST_TRIALS):
         ahead = reach.clipped(values + step / 2**trial)
         rows = search(ahead)
-        if _total(rows, found, limits, ahead) < _total(found, rows, limits, values):
+        if _total(rows, found, limits, ahead, own) < _total(found, rows, limits, values, own):
             return ahead, rows
     return None
 
 
-def _total(one: Searched, other: Searched, limits: Limits, values: FloatArray) -> float:
-    """Cost of the rows that both have found, and of the prior."""
-    both = (one[0].outcome == 0) & (other[0].outcome == 0)
+def _total(
+    one: Searched, other: Searched, limits: Limits, values: FloatArray, own: tuple[FloatArray, FloatArray]
+) -> float:
+    """Costs and volumes of the rows that both have found, and the cost of the prior."""
+    of_rows = one[0].cost + _volumes(one[0], own)
+    both = np.isfinite(of_rows) & np.isfinite(_volumes(other[0], own))
     apart = limits.weight * (values - limits.mean)
-    return float(one[0].cost[both].sum() + apart @ apart / 2)
+    return float(of_rows[both].sum() + apart @ apart / 2)
 
 
 def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> _Reduced:
@@ -151,9 +217,7 @@ def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> _Reduced:
     rows = found.outcome == 0
     information = found.information[rows]
     # What stays at a bound does not move.
-    free = ~_at_bound(found.unknowns[rows, :k], own)
-    of_own = information[:, :k, :k] * free[:, :, None] * free[:, None, :]
-    of_own = of_own + np.eye(k) * np.where(free, 0.0, 1.0)[:, :, None]
+    of_own, free = _of_own(found, own)
     coupling = information[:, :k, k:] * free[:, :, None]
     moved = -_solved(of_own, coupling)
     curvature = information[:, k:, k:] + np.swapaxes(coupling, 1, 2) @ moved

@@ -15,9 +15,9 @@ over the nodes. It is no gradient, so that a rod with such a cable has no potent
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import casadi as ca
@@ -35,7 +35,7 @@ Rows = tuple[Row, Row, Row]
 """A vector field in the axes of the sections."""
 
 BETWEEN = 4
-"""Gauss points between neighbouring nodes: |dt/dX| has a kink where the cable straightens, which needs many."""
+"""Gauss points between neighbouring nodes, for what of |dt/dX| differs from the length of a straight line of dt/dX."""
 
 STRAIGHT = 1e-6
 """Turn of a whole rod, rad, below which a cable's turn is smooth: its derivative is finite where it is straight."""
@@ -86,6 +86,9 @@ class RubbingCable(RoutedCable):
     def turn(self) -> Matrix:
         """Angle φ that the cable has turned through since its base, 1×k, rad."""
         turned = self.turn_slope @ self._interval_weights.T
+        if self._kinks is not None:
+            missed, _, _ = self._kinks
+            turned = turned + missed * self._interval_widths.T
         # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
         sections = ca.cumsum(ca.densify(ca.horzcat(ca.DM(1, 1), turned)), 1)
         return sections[:, self._sections]
@@ -178,6 +181,21 @@ class RubbingCable(RoutedCable):
         """U at the points between the nodes, three rows, rad."""
         return [None if row is None else row @ self._between.T for row in self._turning]
 
+    @cached_property
+    def _kinks(self) -> tuple[Matrix, Matrix, Matrix] | None:
+        """What Gauss sums of |u| miss in each interval where u passes zero, and derivatives with u at both ends.
+
+        For u on the straight line between its values at the ends: relative to the width of the interval, 1×I, and m×I
+        each for the m components that u has; None where the cable does not turn.
+        """
+        rows = [row for row in self._turning if row is not None]
+        if not rows:
+            return None
+        turning = ca.densify(ca.vertcat(*rows))
+        kernel = _missed_by_gauss(len(rows)).map(len(self._left_nodes))
+        missed, by_left, by_right = kernel(turning[:, self._left_nodes], turning[:, self._right_nodes])
+        return missed, by_left, by_right
+
     @property
     def _interval_turn_gradient(self) -> Matrix:
         """Derivative with q of the angle that each interval between nodes turns through, Σ w (u/|u|)·∂u/∂q, I×n."""
@@ -186,6 +204,13 @@ class RubbingCable(RoutedCable):
         to_angles = [
             None if unit is None else self._interval_weights @ (ca.diag(unit) @ self._between) for unit in units
         ]
+        if self._kinks is not None:
+            _, by_left, by_right = self._kinks
+            present = [i for i, row in enumerate(self._turning) if row is not None]
+            for k, i in enumerate(present):
+                at_left = ca.diag(by_left[k, :] * self._interval_widths.T) @ self._picked(self._left_nodes)
+                at_right = ca.diag(by_right[k, :] * self._interval_widths.T) @ self._picked(self._right_nodes)
+                to_angles[i] = added(to_angles[i], at_left, at_right)
         columns = []
         for c in self.shape.rod.admitted:
             phi = ca.DM(self._phi(c))
@@ -254,6 +279,26 @@ class RubbingCable(RoutedCable):
         return list(map(int, (starts[:, None] + local).ravel()))
 
     @cached_property
+    def _left_nodes(self) -> list[int]:
+        """Node of the routing at which each interval begins."""
+        grid = self.shape.rod.grid
+        return [node for node in range(len(self.routing.nodes)) if (node + 1) % (grid.intervals + 1)]
+
+    @property
+    def _right_nodes(self) -> list[int]:
+        """Node of the routing at which each interval ends."""
+        return [node + 1 for node in self._left_nodes]
+
+    def _picked(self, nodes: Sequence[int]) -> ca.DM:
+        """Matrix from values at the nodes of the routing to those at some of them, len(nodes)×k."""
+        return _sparse(np.eye(len(self.routing.nodes))[nodes])
+
+    @property
+    def _interval_widths(self) -> ca.DM:
+        """Widths of the intervals, I×1."""
+        return ca.densify(ca.sum2(self._interval_weights))
+
+    @cached_property
     def _between(self) -> ca.DM:
         """Matrix from values at the nodes to those at the points between them, f×k."""
         places, _ = _gauss_points(self.shape.rod.grid.intervals)
@@ -282,6 +327,47 @@ def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
     points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
     widths = np.diff(nodes)[:, None]
     return nodes[:-1, None] + widths * (points + 1) / 2, widths * weights / 2
+
+
+@cache
+def _missed_by_gauss(components: int) -> ca.Function:
+    """(u₀, u₁) ↦ ∫₀¹ √(|u|² + ε²) ds less its Gauss sum for u = u₀ + s (u₁ − u₀), and the derivatives with both.
+
+    With e₀, e₁ the values of the root at both ends, q their sum, L = |u₁ − u₀| and σ = (e₁ − e₀)/L it is that of the
+    potential of a straight segment,
+
+        ∫ = q/4 [1 + σ² + (1 − σ²)(1 − c²) artanh(c)/c],    c = L/q.
+
+    It counts where the directions at both ends are more than a right angle apart, in full where they are opposite: only
+    there does u come near zero. A course that turns evenly, as a helix does, is no straight line of u, and its sum is
+    exact.
+    """
+    left = ca.SX.sym("left", components)
+    right = ca.SX.sym("right", components)
+    e0 = ca.sqrt(ca.sumsqr(left) + STRAIGHT**2)
+    e1 = ca.sqrt(ca.sumsqr(right) + STRAIGHT**2)
+    q = e0 + e1
+    # A cable that turns alike at both ends has no length of u: its square is kept from zero.
+    squared_length = ca.sumsqr(right - left) + STRAIGHT**2
+    length = ca.sqrt(squared_length)
+    both = ca.dot(left, right)
+    # q² − L², which rounding must not turn negative where u passes zero itself.
+    gap = ca.fmax(2 * (e0 * e1 + both) + STRAIGHT**2, STRAIGHT**2)
+    artanh = ca.log(q + length) - ca.log(gap) / 2
+    share = gap / q**2 * artanh * q / length
+    # 1 − σ².
+    across = 2 * (e0 * e1 - both - STRAIGHT**2) / squared_length
+    integral = q / 2 - q / 4 * across * (1 - share)
+    points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
+    gauss_sum = ca.SX(0)
+    for point, weight in zip(((points + 1) / 2).tolist(), (weights / 2).tolist(), strict=True):
+        between = left + point * (right - left)
+        gauss_sum += weight * ca.sqrt(ca.sumsqr(between) + STRAIGHT**2)
+    opposite = ca.fmax(-both / (e0 * e1), 0)
+    counted = opposite**2 * (2 - opposite**2)
+    missed = counted * (integral - gauss_sum)
+    results = ca.cse([missed, ca.jacobian(missed, left).T, ca.jacobian(missed, right).T])
+    return ca.Function("missed_by_gauss", [left, right], results, ["left", "right"], ["missed", "by_left", "by_right"])
 
 
 def _sparse(matrix: npt.NDArray[Any]) -> ca.DM:

@@ -15,7 +15,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot
-from cosserat_casadi.tubes.stability import Stability, stability_of
+from cosserat_casadi.tubes.stability import TubeStability, stability_of
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class TubeSolution:
         return self.outcome.value
 
     @cached_property
-    def stability(self) -> Stability:
+    def stability(self) -> TubeStability:
         """What the second variation of the energy says."""
         return stability_of(self.model, self.x, self.inputs)
 

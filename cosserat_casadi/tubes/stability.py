@@ -29,7 +29,7 @@ NUDGE = 1e-14
 
 
 @dataclass(frozen=True)
-class Stability:
+class TubeStability:
     """What the second variation says of an equilibrium.
 
     Attributes:
@@ -51,7 +51,7 @@ class Stability:
         return self.falling == 0 and not self.neutral
 
 
-def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Stability:
+def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> TubeStability:
     """Judge an equilibrium.
 
     Args:
@@ -64,7 +64,7 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Sta
     falling = None
     if model.robot.has_energy:
         falling = _falling(model, model.varied(x, inputs), inputs)
-    return Stability(
+    return TubeStability(
         falling=falling,
         neutral=bool(singular[-1] <= NEUTRAL * singular[0]),
         determinant=float(np.linalg.det(jacobian)),

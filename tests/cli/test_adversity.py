@@ -325,7 +325,7 @@ def test_a_standard_error_that_is_full_changes_no_exit_code(folder: Path, line: 
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell sets the variable")
-@pytest.mark.parametrize("columns", ["0", "00", "''"])
+@pytest.mark.parametrize("columns", mostly_slow(["0", "00", "''"], quick=["00"]))
 def test_no_columns_are_those_of_a_pipe(folder: Path, columns: str) -> None:
     wanted = in_shell(folder, "check wire.toml").stdout
     shown = subprocess.run(

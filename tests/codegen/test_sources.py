@@ -108,7 +108,7 @@ def test_variants_compile_without_a_warning(library: Library, flags: tuple[str, 
         gcc(*STRICT, "-O2", *flags, "-c", library("planar").folder / f"{stem}.c", "-o", tmp_path / "o")
 
 
-@ALL
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "fixed", "loops", "robot"]))
 def test_generated_sources_compile_without_a_warning(library: Library, name: str) -> None:
     assert not library(name).warnings(*QUICK)
 

@@ -105,50 +105,69 @@ def with_uncertain_stiffness(batches: int, rows: int) -> dict[str, FloatArray]:
 
 @pytest.mark.slow
 def test_an_uncertain_stiffness_enters_the_covariance() -> None:
-    squares = with_uncertain_stiffness(batches=60, rows=4)
+    squares = with_uncertain_stiffness(batches=60, rows=8)
     assert squares["trusting"].mean() > 5
-    # Rows of one batch share the error of the stiffness: 60 of 240 squares are free at least.
+    # Rows of one batch share the error of the stiffness: 60 of 480 squares are free at least.
     low, high = chi2.ppf([0.005, 0.995], 60) / 60
     assert low <= squares["knowing"].mean() <= high
     assert low <= squares["stiffness"].mean() <= high
 
 
-def test_a_known_force_tells_the_stiffness_vs_a_search_over_all_rows_at_once() -> None:
-    """The maximum and the covariance of all numbers together, by scipy's least squares with differences."""
-    truth = 1.07 * BENDING
-    forces = np.array([0.3, -0.2])
+def test_a_stiffness_vs_the_integral_over_what_rows_feel() -> None:
+    """The marginal posterior of the stiffness by searches of each row at three stiffnesses, on the solver in Python."""
     hung = np.array([4.0, -3.0])
-    data = shapes(truth, forces, hung, 7)
+    data = shapes(1.07 * BENDING, np.array([0.3, -0.2]), hung, 7)
     found = estimate(model_of(FELT, ROUGHLY), data)
     model = model_of(FELT, ROUGHLY)
-    markers = [data["shapes"][f"{axis}{k}"] for k in range(len(AT)) for axis in "xyz"]
-    numbers = np.stack(markers, axis=1)
-
-    def misfit(u: FloatArray) -> FloatArray:
-        parts = [u[:2] / PRIOR, (u[2:] - BENDING) / (UNSURE * BENDING)]
-        for row in range(2):
-            loads = {"push.force": [u[row], 0.0, 0.0], "hung.force": [hung[row], 0.0, 0.0]}
-            solution = solve(model, loads, parameters={STIFFNESS: u[2]})
-            parts.append((solution.pose(AT, "rod").position.ravel() - numbers[row]) / SIGMA)
-        return np.concatenate(parts)
-
-    # From the truth a few steps are enough, each with differences on the solver in Python.
-    other = least_squares(misfit, [*forces, truth], max_nfev=6)
-    covariance = np.linalg.inv(other.jac.T @ other.jac)
+    numbers = np.stack([data["shapes"][f"{axis}{k}"] for k in range(len(AT)) for axis in "xyz"], axis=1)
     assert found.shared is not None
     assert found.shared.settled
-    sigma = np.sqrt(np.diag(covariance))
-    assert_allclose(found.shared.values, other.x[2:], rtol=0, atol=5e-3 * sigma[2])
-    assert_allclose(found.shared.sigma, sigma[2:], rtol=1e-3, atol=0)
-    assert_allclose(found.values[:, 0], other.x[:2], rtol=0, atol=5e-3 * sigma[:2].max())
-    assert_allclose(found.sigma[:, 0], sigma[:2], rtol=1e-3, atol=0)
-    assert found.shared.sigma < 0.9 * UNSURE * BENDING
-    assert_allclose(found.consistency.squares, 2 * other.cost, rtol=1e-4, atol=0)
+    best, sigma = found.shared.values[0], found.shared.sigma[0]
+    least = []
+    felt_there = []
+    stiffnesses = best + 0.5 * sigma * np.array([-1.0, 0.0, 1.0])
+    for stiffness in stiffnesses:
+        total = ((stiffness - BENDING) / (UNSURE * BENDING)) ** 2 / 2
+        rows_felt = []
+        for row in range(2):
+
+            def misfit(u: FloatArray, row: int = row, stiffness: float = stiffness) -> FloatArray:
+                loads = {"push.force": [u[0], 0.0, 0.0], "hung.force": [hung[row], 0.0, 0.0]}
+                positions = solve(model, loads, parameters={STIFFNESS: stiffness}).pose(AT, "rod").position
+                return np.append((positions.ravel() - numbers[row]) / SIGMA, u[0] / PRIOR)
+
+            other = least_squares(misfit, found.values[row], max_nfev=4)
+            information = float((other.jac.T @ other.jac).item())
+            total += other.cost + np.log(information) / 2
+            rows_felt.append((other.x[0], information))
+        least.append(total)
+        felt_there.append(rows_felt)
+    curvature = (least[0] - 2 * least[1] + least[2]) / (0.5 * sigma) ** 2
+    slope = (least[2] - least[0]) / sigma
+    # The differences that volumes are taken by, and the first derivatives alone of the costs, leave this much.
+    assert abs(slope / curvature) < 0.02 * sigma
+    assert_allclose(sigma, curvature**-0.5, rtol=0.02, atol=0)
+    for row in range(2):
+        at_best, information = felt_there[1][row]
+        moved = (felt_there[2][row][0] - felt_there[0][row][0]) / sigma
+        assert_allclose(found.values[row, 0], at_best, rtol=0, atol=5e-3 * found.sigma[row, 0])
+        assert_allclose(found.sigma[row, 0] ** 2, 1 / information + (moved * sigma) ** 2, rtol=0.02, atol=0)
+    assert sigma < 0.9 * UNSURE * BENDING
     told = estimate_result(found)
     assert told["shared"][0]["unknown"] == STIFFNESS
     assert told["consistency"]["holds"]
     # The rows that are checked, and whoever solves them again, have the stiffness that was found.
-    assert_allclose(found.parameters, np.full((2, 1), found.shared.values), rtol=1e-12, atol=0)
+    assert_allclose(found.parameters, np.full((2, 1), best), rtol=1e-12, atol=0)
+
+
+def test_an_uncertain_offset_of_a_marker_is_found_beside_what_rows_feel() -> None:
+    """The marker that reads off to one side, below, is explained where its offset is an unknown."""
+    offset = {"parameter": "marker 3.offset.z", "prior": {"mean": 0.0, "sigma": 2 * SIGMA}}
+    found = estimate(model_of(FELT, offset), rows(40, off=0.9))
+    assert found.shared is not None
+    assert abs(found.shared.values[0] - 0.9 * SIGMA) < 4 * found.shared.sigma[0]
+    assert found.shared.sigma[0] < 0.3 * SIGMA
+    assert found.consistency.holds
 
 
 def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:

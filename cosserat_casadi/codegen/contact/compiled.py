@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import CompiledAnswer, Info, answer_words
+from cosserat_casadi.codegen.compiled_results import SOLVED, CompiledAnswer, Info, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
@@ -20,9 +20,6 @@ from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-
-SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
-"""Ends after which the state is a solution for the inputs, if of the discrete equations alone."""
 
 
 class ContactInfo(Info):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import AnswerInfo, CompiledAnswer, answer_words
+from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, CompiledAnswer, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import TUBES
@@ -19,9 +19,6 @@ from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-
-SOLVED = (Outcome.CONVERGED, Outcome.UNRESOLVED)
-"""Ends after which x is a solution for the inputs, if of the discrete equations alone."""
 
 
 class TubeInfo(AnswerInfo):
