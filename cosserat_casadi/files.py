@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,16 +16,21 @@ BLOCK = 1 << 20
 """Bytes that are copied at a time."""
 
 
-def check_writable(path: Path, option: str) -> None:
+def check_writable(path: Path, option: str, *, folder: bool = False) -> None:
     """Refuse a path that cannot become a file, before any work is done for it.
 
     Links are followed; a device or a pipe that is there needs no folder that takes files.
 
+    Args:
+        path: of the file.
+        option: what asks for it.
+        folder: whether the path is to become a folder of files instead.
+
     Raises:
-        SceneError: the path is a folder, or a device or a pipe that takes nothing, or its folder does not exist or
-            cannot be written to, or the path is a link that leads to itself.
+        SceneError: a folder lies where a file is wanted; the path is a device or a pipe that takes nothing, or its
+            folder does not exist or cannot be written to, or the path is a link that leads to itself.
     """
-    if path.is_dir():
+    if path.is_dir() and not folder:
         raise SceneError(Problem(option, f"{path} is a folder", "name a file in it"))
     if is_special(path):
         if not os.access(path, os.W_OK):
@@ -33,11 +39,11 @@ def check_writable(path: Path, option: str) -> None:
     target = _target(path)
     if target.is_symlink():
         raise SceneError(Problem(option, f"{path} is a link that leads to itself", "remove it, or name another file"))
-    folder = target.parent
-    if not folder.is_dir():
-        raise SceneError(Problem(option, f"the folder {folder} does not exist", "make it first"))
-    if not os.access(folder, os.W_OK):
-        raise SceneError(Problem(option, f"the folder {folder} cannot be written to"))
+    parent = target.parent
+    if not parent.is_dir():
+        raise SceneError(Problem(option, f"the folder {parent} does not exist", "make it first"))
+    if not os.access(parent, os.W_OK):
+        raise SceneError(Problem(option, f"the folder {parent} cannot be written to"))
 
 
 def is_special(path: Path) -> bool:
@@ -90,6 +96,27 @@ def atomic_file(path: Path) -> Iterator[Path]:
             temporary.replace(target)
         except BaseException:
             temporary.unlink(missing_ok=True)
+            raise
+
+
+@contextmanager
+def atomic_folder(path: Path) -> Iterator[Path]:
+    """A temporary folder, to be filled; it goes to a path at the end, or is removed where that fails.
+
+    Where the path is a link, the folder goes to where the link leads.
+
+    Raises:
+        WriteError: the disk is full, the parent folder cannot be written to, or something lies at the path.
+    """
+    with write_errors(path):
+        target = _target(path)
+        temporary = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part"))
+        try:
+            yield temporary
+            temporary.chmod(0o755)
+            temporary.rename(target)
+        except BaseException:
+            shutil.rmtree(temporary, ignore_errors=True)
             raise
 
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
-from cosserat_casadi.codegen.rows import JUDGED, POSE
+from cosserat_casadi.codegen.rows import POSE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.pose_change import rotation_angles
@@ -19,7 +20,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.row_model import result_row
+from cosserat_casadi.sweep.row_model import solved_poses
 from cosserat_casadi.sweep.sampling import representative_rows
 from cosserat_casadi.sweep.variants import Variants
 
@@ -120,7 +121,8 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
 def check(
     variants: Variants,
     choice: Choice,
-    results: FloatArray,
+    converged: npt.NDArray[np.bool_],
+    poses: FloatArray,
     progress: Progress,
 ) -> list[dict[str, Any]]:
     """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
@@ -128,20 +130,20 @@ def check(
     Args:
         variants: scenes and inputs of the table.
         choice: the discretisation.
-        results: of all rows, shape (rows, results).
+        converged: which rows hold an equilibrium, shape (rows,).
+        poses: of their tips and bodies, shape (rows, 7 tips and bodies).
         progress: told what is being done.
 
     Returns:
         for each row its number from 0, the estimated error, how far its poses lie from those found in Python, relative
         to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
     """
-    converged = np.flatnonzero(results[:, 0] == 0)
-    if not converged.size:
+    candidates = np.flatnonzero(converged)
+    if not candidates.size:
         return []
     # Rows whose first tip lies at the corners of the workspace, where the rods are bent most.
-    first = len(JUDGED)
-    positions = results[converged][:, first : first + 3]
-    rows = converged[representative_rows(positions, CHECKED)].tolist()
+    positions = poses[candidates, :3]
+    rows = candidates[representative_rows(positions, CHECKED)].tolist()
     models: dict[str, Model] = {}
     checked = []
     for done, row in enumerate(rows):
@@ -154,30 +156,27 @@ def check(
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate
-            entry["difference"] = pose_difference(results[row], solution)
+            entry["difference"] = pose_difference(poses[row], solution)
             entry["stable"] = solution.stable
         checked.append(entry)
     progress("Checking rows", len(rows), len(rows))
     return checked
 
 
-def pose_difference(row: FloatArray, solution: Solution) -> float:
-    """Largest pose error of a row of results against a solution: distance over length, angle in rad."""
+def pose_difference(poses: FloatArray, solution: Solution) -> float:
+    """Largest pose error of a row of a sweep against a solution: distance over length, angle in rad.
+
+    Args:
+        poses: of tips and bodies in the row, shape (7 tips and bodies,).
+        solution: of the row.
+    """
     scene = solution.model.scene
     length = max(rod.length for rod in scene.rods)
-    count = len(scene.rods) + len(scene.bodies)
-    swept = _poses(row, count)
-    solved = _poses(result_row(solution, len(row)), count)
+    swept = poses.reshape(-1, len(POSE))
+    solved = solved_poses(solution).reshape(swept.shape)
     distances = np.linalg.norm(swept[:, :3] - solved[:, :3], axis=1)
     angles = rotation_angles(swept[:, 3:], solved[:, 3:])
     return float(max(distances.max() / length, angles.max()))
-
-
-def _poses(row: FloatArray, count: int) -> FloatArray:
-    """Positions and quaternions of tips and bodies in a row of results, shape (count, 7)."""
-    first = len(JUDGED)
-    stop = first + count * len(POSE)
-    return row[first:stop].reshape(count, len(POSE))
 
 
 def _plain_discretisation(chosen: Discretisation | None) -> dict[str, Any] | None:

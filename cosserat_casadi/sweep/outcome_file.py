@@ -1,4 +1,6 @@
-"""The files of a sweep: results as CSV or Parquet, and beside them what was computed, as JSON.
+"""The files of a sweep: results as CSV, Parquet or a dataset, and beside them what was computed, as JSON.
+
+A dataset is a folder of Parquet files, which many readers take as one table.
 
 pyarrow is an extra and is imported inside functions only.
 """
@@ -13,13 +15,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
-from cosserat_casadi.files import atomic_file, write_atomically
+from cosserat_casadi.files import atomic_file, atomic_folder, check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep.outcome_table import LABELS, WITHIN, Sweep
 
-FORMATS = (".csv", ".parquet")
+DATASET = ".dataset"
+"""Suffix of a folder of Parquet files."""
+
+FORMATS = (".csv", ".parquet", DATASET)
 """Suffixes of the results."""
 
 STABLE = "stable"
@@ -28,14 +34,21 @@ STABLE = "stable"
 TRUTHS = (WITHIN, STABLE)
 """Columns of true and false."""
 
-WORDS = {"true": 1.0, "false": 0.0}
-"""Its cells as numbers."""
+WORDS = {"true": 1.0, "false": 0.0, "": np.nan}
+"""Cells of a CSV file that are written as words, or left empty, as numbers."""
 
 BLOCK = 4096
 """Rows that are written at once."""
 
 ROW_GROUP = 65_536
 """The same of Parquet, whose readers skip or share out such groups of rows."""
+
+PART_ROWS = 16 * ROW_GROUP
+"""Rows of each file of a dataset: some 100 MB."""
+
+
+_Read = tuple[list[str], npt.NDArray[np.int64], FloatArray]
+"""Of a file of results its columns, the outcomes as places in LABELS, and the numbers of all other columns."""
 
 
 class ParquetUnavailableError(CosseratError):
@@ -47,16 +60,17 @@ class ParquetUnavailableError(CosseratError):
         super().__init__("Parquet needs pyarrow: install it with  pip install 'cosserat-casadi[sweep]', or write .csv")
 
 
-def check_format(path: Path) -> None:
-    """Refuse a file that could not be written.
+def check_output(path: Path) -> None:
+    """Refuse results that could not be written.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of FORMATS, or nothing can be written at the path.
         ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
     """
+    check_writable(path, "--output", folder=_is_dataset(path))
     if path.suffix.lower() not in FORMATS:
         problem = f"{path} is neither CSV nor Parquet"
-        raise SceneError(Problem("--output", problem, f"use {' or '.join(FORMATS)}"))
+        raise SceneError(Problem("--output", problem, f"use {', '.join(FORMATS)}"))
     if _is_parquet(path):
         arrow_module()
 
@@ -86,11 +100,15 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
     recorded_before = record.exists()
     write_atomically(record, text.encode())
     try:
-        with atomic_file(path) as temporary:
-            if _is_parquet(path):
-                _write_parquet(sweep, temporary)
-            else:
-                _write_csv(sweep, temporary)
+        if _is_dataset(path):
+            with atomic_folder(path) as folder:
+                _write_dataset(sweep, folder)
+        else:
+            with atomic_file(path) as temporary:
+                if _is_parquet(path):
+                    _write_parquet(sweep, range(len(sweep.values)), temporary)
+                else:
+                    _write_csv(sweep, temporary)
     except BaseException:
         # A record without its results would be of no use.
         if not recorded_before:
@@ -108,35 +126,31 @@ def read_sweep(path: str | Path) -> Sweep:
     record = read_record(file)
     read = _read_parquet if _is_parquet(file) else _read_csv
     try:
-        names, columns = read(file)
-        split = names.index("outcome")
-        outcomes = np.array([LABELS.index(word) for word in columns[split]])
-        numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
-    except (OSError, ValueError, IndexError) as error:
+        names, outcomes, values = read(file)
+    except (OSError, ValueError, IndexError, NotImplementedError) as error:
         problem = f"cannot be read as the results of a sweep: {error}"
         raise SceneError(Problem(str(file), problem)) from None
+    split = names.index("outcome")
     return Sweep(
         swept=tuple(names[:split]),
         found=tuple(names[split + 1 :]),
-        values=np.column_stack(numbers),
+        values=values,
         outcomes=outcomes,
         record=record or {},
     )
 
 
 def _is_parquet(path: Path) -> bool:
-    return path.suffix.lower() == ".parquet"
+    return path.suffix.lower() in (".parquet", DATASET)
 
 
-def _numbers(column: Sequence[Any]) -> FloatArray:
-    """Numbers of a column; NaN where the cell is empty."""
-    numbers = []
-    for cell in column:
-        # CSV leaves an empty text, Parquet nothing.
-        missing = cell is None or cell == ""
-        number = WORDS.get(cell, cell)
-        numbers.append(np.nan if missing else float(number))
-    return np.array(numbers)
+def _is_dataset(path: Path) -> bool:
+    return path.suffix.lower() == DATASET
+
+
+def _numbers(column: Sequence[str]) -> FloatArray:
+    """Numbers of a column of a CSV file; NaN where the cell is empty."""
+    return np.array([WORDS[cell] if cell in WORDS else float(cell) for cell in column])
 
 
 def _write_csv(sweep: Sweep, path: Path) -> None:
@@ -170,21 +184,34 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             yield cells
 
 
-def _write_parquet(sweep: Sweep, path: Path) -> None:
+def _write_dataset(sweep: Sweep, folder: Path) -> None:
+    """Write the parts of a dataset; their names sort as their rows do."""
+    for number, rows in enumerate(_blocks(range(len(sweep.values)), PART_ROWS)):
+        _write_parquet(sweep, rows, folder / f"part-{number:05}.parquet")
+
+
+def _write_parquet(sweep: Sweep, rows: range, path: Path) -> None:
     arrow_module()
     import pyarrow.parquet
 
     # A block at once: a copy of all columns would take as much memory again as the results.
-    first = _arrow_table(sweep, slice(0, ROW_GROUP))
-    with pyarrow.parquet.ParquetWriter(path, first.schema) as writer:
-        writer.write_table(first)
-        for start in range(ROW_GROUP, len(sweep.values), ROW_GROUP):
-            writer.write_table(_arrow_table(sweep, slice(start, start + ROW_GROUP)))
+    first, *others = _blocks(rows, ROW_GROUP)
+    table = _arrow_table(sweep, first)
+    with pyarrow.parquet.ParquetWriter(path, table.schema) as writer:
+        writer.write_table(table)
+        for block in others:
+            writer.write_table(_arrow_table(sweep, block))
 
 
-def _arrow_table(sweep: Sweep, rows: slice) -> Any:
+def _blocks(rows: range, size: int) -> list[range]:
+    """Rows cut into blocks of a size; the last one may be smaller."""
+    return [rows[start : start + size] for start in range(0, len(rows), size)]
+
+
+def _arrow_table(sweep: Sweep, block: range) -> Any:
     """Some rows as a table of pyarrow."""
     arrow = arrow_module()
+    rows = slice(block.start, block.stop)
     columns: dict[str, Any] = {}
     for name in sweep.swept:
         columns[name] = arrow.array(sweep[name][rows])
@@ -202,18 +229,34 @@ def _arrow_table(sweep: Sweep, rows: slice) -> Any:
     return arrow.table(columns)
 
 
-def _read_parquet(path: Path) -> tuple[list[str], list[Any]]:
-    arrow_module()
+def _read_parquet(path: Path) -> _Read:
+    arrow = arrow_module()
+    import pyarrow.compute
     import pyarrow.parquet
 
     table = pyarrow.parquet.read_table(path)
-    return table.column_names, [column.to_pylist() for column in table.columns]
+    names = table.column_names
+    split = names.index("outcome")
+    # Arrays of arrow are cast as they are: Python's own numbers would take several times their memory.
+    words = table.column(split).cast(arrow.string())
+    places = pyarrow.compute.index_in(words, arrow.array(LABELS))
+    if places.null_count:
+        raise ValueError("an outcome is none that a row can have")
+    columns = [*table.columns[:split], *table.columns[split + 1 :]]
+    values = np.empty((table.num_rows, len(columns)))
+    for index, column in enumerate(columns):
+        values[:, index] = column.cast(arrow.float64()).to_numpy()
+    return names, places.to_numpy().astype(np.int64), values
 
 
-def _read_csv(path: Path) -> tuple[list[str], list[Any]]:
+def _read_csv(path: Path) -> _Read:
     with path.open(encoding="utf-8", newline="") as stream:
-        header, *rows = csv.reader(stream)
-    return header, list(zip(*rows, strict=True))
+        names, *rows = csv.reader(stream)
+    columns = list(zip(*rows, strict=True))
+    split = names.index("outcome")
+    outcomes = np.array([LABELS.index(word) for word in columns[split]])
+    numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
+    return names, outcomes, np.column_stack(numbers)
 
 
 def arrow_module() -> Any:

@@ -87,12 +87,7 @@ def result_row(
     if not solution.converged:
         return row
     scene = solution.model.scene
-    tips = [solution.tip(rod.name) for rod in scene.rods]
-    bodies = [solution.body(body.name) for body in scene.bodies]
-    numbers: list[float] = []
-    for pose in (*tips, *bodies):
-        numbers.extend(pose.position[0])
-        numbers.extend(pose.quaternion[0])
+    numbers: list[float] = solved_poses(solution).tolist()
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
@@ -107,6 +102,15 @@ def result_row(
         numbers += [np.nan if number is None else float(number) for number in verdict]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
+
+
+def solved_poses(solution: Solution) -> FloatArray:
+    """Positions and quaternions of the tips and the bodies of a solution, shape (7 tips and bodies,)."""
+    scene = solution.model.scene
+    tips = [solution.tip(rod.name) for rod in scene.rods]
+    bodies = [solution.body(body.name) for body in scene.bodies]
+    numbers = [number for pose in (*tips, *bodies) for number in (pose.position[0], pose.quaternion[0])]
+    return np.concatenate(numbers)
 
 
 def error_numbers(estimate: float | None) -> list[float]:

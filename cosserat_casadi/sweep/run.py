@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -17,9 +16,8 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import ERRORS, NAME, STABILITY, RowLibrary, row_library, row_results
+from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
@@ -29,12 +27,12 @@ from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweep.cluster import Cluster
 from cosserat_casadi.sweep.local import Cores
-from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_sweep, record_file, write_sweep
+from cosserat_casadi.sweep.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.shards import Shard, named, shard_files
-from cosserat_casadi.sweep.store import Store
+from cosserat_casadi.sweep.store import Memory, Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
 from cosserat_casadi.sweep.variants import Variants, variants_of
@@ -133,7 +131,8 @@ def plan_sweep(
     Args:
         scene: a validated scene.
         table: values of its inputs and parameters.
-        output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
+        output: file of the results, ``.csv`` or ``.parquet``, or a folder of Parquet files, ``.dataset``; what a killed
+            run of the same sweep left is gone on with.
         samples: rows that the discretisation is chosen on, at least 1.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
@@ -182,8 +181,8 @@ def sweep_scene(
     Args:
         scene: a validated scene.
         table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
-        output: file to write, ``.csv`` or ``.parquet``, with a record of what was computed beside it. What a killed or
-            interrupted run of the same sweep has done is not done again.
+        output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
+            was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
         cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
@@ -231,15 +230,18 @@ def run_sweep(
         progress = _ignore
     # A cluster that does not answer is told of before the discretisation is chosen.
     with _machine(scheduler, cores) as machine:
-        store = None if plan.part is None else Store(plan.part)
-        with store or nullcontext():
-            work = chunks(plan.variants)
-            choice, done = _begun(plan, work, store, progress)
-            _solve_rest(plan, choice, machine, work, done, store, progress)
-            sweep = _sweep(plan, choice, work, done, progress)
-            if plan.output is not None and store is not None:
-                write_sweep(sweep, plan.output)
-                store.remove()
+        work = chunks(plan.variants)
+        if plan.output is None or plan.part is None:
+            memory = Memory()
+            choice = _choice(plan, progress)
+            _solve_rest(plan, choice, machine, work, memory, progress)
+            return _sweep(plan, choice, work, memory.results(), progress)
+        with Store(plan.part) as store:
+            choice = _begun(plan, work, store, progress)
+            _solve_rest(plan, choice, machine, work, store, progress)
+            sweep = _sweep(plan, choice, work, store.results(), progress)
+            write_sweep(sweep, plan.output)
+            store.remove()
     return sweep
 
 
@@ -271,8 +273,8 @@ def run_shard(
         raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
     work = [chunk for chunk in chunks(plan.variants) if shard.has(chunk)]
     with _machine(scheduler, cores) as machine, Store(file) as store:
-        choice, done = _begun(plan, work, store, told, _choice_of_others(plan, shard))
-        _solve_rest(plan, choice, machine, work, done, store, told)
+        choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
+        _solve_rest(plan, choice, machine, work, store, told)
     return sum(len(chunk.rows) for chunk in work)
 
 
@@ -309,20 +311,30 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
     rows = {chunk.number: len(chunk.rows) for chunk in work}
     heads = {shard: Store(file).head() for shard, file in files.items()}
     _check_shards(plan, work, heads)
-    done: dict[int, FloatArray] = {}
+    width = len(plan.results)
+    done = set[int]()
     for file in files.values():
         with Store(file) as store:
-            done |= store.resume(rows, len(plan.results))
+            store.resume(rows, width)
+            done.update(store.done)
     missing = [chunk for chunk in work if chunk.number not in done]
     if missing:
         unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
         raise SceneError(Problem("--merge", f"not done to the end: {named(unfinished)}", "run these shards again"))
     choice = Choice.read(_known(heads)[0]["choice"])
-    sweep = _sweep(plan, choice, work, done, progress or _ignore)
+    sweep = _sweep(plan, choice, work, _results_of(files.values(), rows, width), progress or _ignore)
     write_sweep(sweep, plan.output)
     for file in files.values():
         file.unlink(missing_ok=True)
     return sweep
+
+
+def _results_of(files: Iterable[Path], rows: Mapping[int, int], width: int) -> Iterator[tuple[int, FloatArray]]:
+    """The chunks of shards with their results, one file open at a time: there may be thousands."""
+    for file in files:
+        with Store(file) as store:
+            store.resume(rows, width)
+            yield from store.results()
 
 
 def _known(heads: Mapping[Shard, dict[str, Any] | None]) -> list[dict[str, Any]]:
@@ -374,22 +386,25 @@ def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
     return Cluster(scheduler)
 
 
-def _begun(
-    plan: Plan, work: Sequence[Chunk], store: Store | None, progress: Progress, choice: Choice | None = None
-) -> tuple[Choice, dict[int, FloatArray]]:
-    """The discretisation and what is done; of a new sweep the one is chosen now, unless it is given."""
-    head = None if store is None else store.head()
-    if store is not None and head is not None:
+def _begun(plan: Plan, work: Sequence[Chunk], store: Store, progress: Progress, choice: Choice | None = None) -> Choice:
+    """The discretisation of a sweep whose store is ready for more; that of a new one is chosen now, unless given."""
+    head = store.head()
+    if head is not None:
         rows = {chunk.number: len(chunk.rows) for chunk in work}
-        return Choice.read(head["choice"]), store.resume(rows, len(plan.results))
-    # Each row of tubes has as many steps as its own tolerance asks for.
-    if choice is None and plan.scene.tubes:
-        choice = Choice(None)
-    elif choice is None:
-        choice = choose(plan.variants, plan.table.values, plan.samples, progress)
-    if store is not None:
-        store.start({"sweep": plan.identity, "choice": choice.plain()})
-    return choice, {}
+        store.resume(rows, len(plan.results))
+        return Choice.read(head["choice"])
+    if choice is None:
+        choice = _choice(plan, progress)
+    store.start({"sweep": plan.identity, "choice": choice.plain()})
+    return choice
+
+
+def _choice(plan: Plan, progress: Progress) -> Choice:
+    """The discretisation of all rows."""
+    if plan.scene.tubes:
+        # Each row of tubes has as many steps as its own tolerance asks for.
+        return Choice(None)
+    return choose(plan.variants, plan.table.values, plan.samples, progress)
 
 
 def _solve_rest(
@@ -397,19 +412,16 @@ def _solve_rest(
     choice: Choice,
     machine: Cores | Cluster,
     work: Sequence[Chunk],
-    done: dict[int, FloatArray],
-    store: Store | None,
+    store: Store | Memory,
     progress: Progress,
 ) -> None:
     """Solve every chunk that is not done, and keep it."""
-    rest = [chunk for chunk in work if chunk.number not in done]
+    rest = [chunk for chunk in work if chunk.number not in store.done]
     total = sum(len(chunk.rows) for chunk in work)
-    count = sum(len(chunk.rows) for chunk in work if chunk.number in done)
+    count = total - sum(len(chunk.rows) for chunk in rest)
     tasks = _tasks(plan, choice, rest, progress)
     for chunk, results in machine.run(tasks):
-        done[chunk.number] = results
-        if store is not None:
-            store.add(chunk.number, results)
+        store.add(chunk.number, results)
         count += len(results)
         progress("Sweeping", count, total)
 
@@ -461,37 +473,47 @@ def _sweep(
     plan: Plan,
     choice: Choice,
     work: Sequence[Chunk],
-    done: dict[int, FloatArray],
+    answered: Iterable[tuple[int, FloatArray]],
     progress: Progress,
 ) -> Sweep:
-    """All results in the order of the table, some of them checked."""
-    names = plan.results
+    """All results in the order of the table, some of them checked.
+
+    Args:
+        plan: of the sweep.
+        choice: its discretisation.
+        work: its chunks.
+        answered: for each of them its number and its results, in any order.
+        progress: told what is being done.
+    """
+    swept = len(plan.table.columns)
+    result_names = plan.columns[swept:]
+    result_columns = [plan.results.index(name) for name in result_names]
+    count = len(plan.table.values)
+    values = np.empty((count, len(plan.columns)))
+    values[:, :swept] = plan.table.values
+    outcomes = np.empty(count, dtype=np.int64)
     # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
-    results = np.empty((len(plan.table.values), len(names)))
-    for chunk in work:
-        results[chunk.rows] = done.pop(chunk.number)
+    chunk_of = {chunk.number: chunk for chunk in work}
+    for number, results in answered:
+        rows = chunk_of[number].rows
+        outcomes[rows] = results[:, 0]
+        values[rows, swept:] = results[:, result_columns]
+    converged = outcomes == 0
     if plan.stability and not plan.scene.tubes:
         judged = rows_with_potential(plan.variants, work)
-        results[~judged, -len(STABILITY) :] = np.nan
+        values[~judged, -len(STABILITY) :] = np.nan
     if plan.estimate_errors:
-        estimate, verdict = (names.index(name) for name in ERRORS)
-        results[:, verdict] = _within_tolerance(plan.scene, results[:, 0] == 0, results[:, estimate])
+        estimate, verdict = (plan.columns.index(name) for name in ERRORS)
+        values[:, verdict] = _within_tolerance(plan.scene, converged, values[:, estimate])
+    checked = []
     # Rows of tubes are within tolerance each, or do not converge.
-    checked = [] if plan.scene.tubes else check(plan.variants, choice, results, progress)
-    result_names = plan.columns[len(plan.table.columns) :]
-    result_columns = [names.index(name) for name in result_names]
-    swept = len(plan.table.columns)
-    values = np.empty((len(results), swept + len(result_columns)))
-    values[:, :swept] = plan.table.values
-    for place, column in enumerate(result_columns, swept):
-        values[:, place] = results[:, column]
-    sweep = Sweep(
-        swept=plan.table.columns,
-        found=result_names,
-        values=values,
-        outcomes=results[:, 0].astype(np.int64),
-        record={},
-    )
+    if not plan.scene.tubes:
+        posed = len(plan.scene.rods) + len(plan.scene.bodies)
+        # The outcome, first of a row of results, has no column of numbers; poses cannot be swept.
+        first = swept + len(JUDGED) - 1
+        poses = values[:, first : first + posed * len(POSE)]
+        checked = check(plan.variants, choice, converged, poses, progress)
+    sweep = Sweep(swept=plan.table.columns, found=result_names, values=values, outcomes=outcomes, record={})
     # The record counts the outcomes of the sweep that it belongs to.
     sweep.record.update(_record(plan, choice, sweep, checked))
     return sweep
@@ -543,8 +565,7 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
     if output is None:
         return []
     try:
-        check_writable(output, "--output")
-        check_format(output)
+        check_output(output)
     except SceneError as error:
         return list(error.problems)
     if plan is None or plan.part is None:

@@ -1,11 +1,17 @@
-"""What is done of a sweep, on disc: one file that only grows, so that a kill loses no more than its last entry."""
+"""What is done of a sweep: on disc a file that only grows, so that a kill loses no more than its last entry.
+
+The results of chunks lie there alone until all are done: memory does not grow with them. A sweep that no file is wanted
+of keeps them in memory.
+"""
 
 from __future__ import annotations
 
 import json
+import os
 import struct
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
@@ -13,6 +19,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.files import write_errors, write_whole
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -21,6 +28,36 @@ CHECKSUM = "checksum"
 
 ENTRY = struct.Struct("<qqI")
 """Number of a chunk, bytes of its results, their checksum."""
+
+
+class StoreChangedError(CosseratError):
+    """What a sweep has kept on disc was changed by others while it ran."""
+
+    page = "sweeps"
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(f"{path} was changed while the sweep ran: the same command goes on with what is sound in it")
+
+
+class Memory:
+    """The results of a sweep that no file is wanted of."""
+
+    def __init__(self) -> None:
+        self._results: dict[int, FloatArray] = {}
+
+    @property
+    def done(self) -> Collection[int]:
+        """Numbers of the chunks that are done."""
+        return self._results.keys()
+
+    def add(self, number: int, results: FloatArray) -> None:
+        """Keep the results of a chunk."""
+        self._results[number] = results
+
+    def results(self) -> Iterator[tuple[int, FloatArray]]:
+        """Every chunk with its results, which are let go: rows may be millions."""
+        while self._results:
+            yield self._results.popitem()
 
 
 class Store:
@@ -33,6 +70,12 @@ class Store:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: FileIO | None = None
+        self._places: dict[int, _Place] = {}
+
+    @property
+    def done(self) -> Collection[int]:
+        """Numbers of the chunks that are done."""
+        return self._places.keys()
 
     def head(self) -> dict[str, Any] | None:
         """What sweep the file is of; None where there is none, or where it is damaged."""
@@ -58,31 +101,27 @@ class Store:
         with write_errors(self.path):
             try:
                 # Unbuffered: out of this process at once, so that a kill does not lose it.
-                self._file = self.path.open("wb", buffering=0)
+                self._file = self.path.open("w+b", buffering=0)
                 write_whole(self._file, line)
             except OSError:
                 self.remove()
                 raise
 
-    def resume(self, rows: Mapping[int, int], width: int) -> dict[int, FloatArray]:
-        """What is done, by number of chunk; the file is ready for more.
+    def resume(self, rows: Mapping[int, int], width: int) -> None:
+        """Find what is done; the file is ready for more.
 
         Args:
             rows: of each chunk of the sweep, by its number.
             width: numbers that a row is answered with.
         """
-        done = {}
         with self.path.open("rb") as file:
             end = len(file.readline())
             for number, content in _entries(file, {chunk: 8 * width * count for chunk, count in rows.items()}):
-                results = np.frombuffer(content, dtype="<f8")
-                done[number] = results.reshape(-1, width)
+                self._places[number] = _Place(end, rows[number], len(content))
                 end += ENTRY.size + len(content)
         # What was being written when the process was killed is cut off.
         self._file = self.path.open("r+b", buffering=0)
         self._file.truncate(end)
-        self._file.seek(end)
-        return done
 
     def add(self, number: int, results: FloatArray) -> None:
         """Keep the results of a chunk.
@@ -95,7 +134,25 @@ class Store:
             raise ValueError("the store is not open")
         header = ENTRY.pack(number, len(content), zlib.crc32(content))
         with write_errors(self.path):
+            end = self._file.seek(0, os.SEEK_END)
             write_whole(self._file, header + content)
+        self._places[number] = _Place(end, len(results), len(content))
+
+    def results(self) -> Iterator[tuple[int, FloatArray]]:
+        """Every chunk that is done with its results, one at a time.
+
+        Raises:
+            StoreChangedError: the file does not hold any more what was kept.
+        """
+        if self._file is None:
+            raise ValueError("the store is not open")
+        for number, place in self._places.items():
+            self._file.seek(place.start)
+            entry = next(_entries(self._file, {number: place.size}), None)
+            if entry is None:
+                raise StoreChangedError(self.path)
+            _, content = entry
+            yield number, np.frombuffer(content, dtype="<f8").reshape(place.rows, -1)
 
     def remove(self) -> None:
         """The sweep is finished and written."""
@@ -112,6 +169,21 @@ class Store:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where a chunk lies in the file.
+
+    Attributes:
+        start: of its entry, in bytes from the beginning of the file.
+        rows: of its results.
+        size: of its results, in bytes.
+    """
+
+    start: int
+    rows: int
+    size: int
 
 
 def _checksum(head: Mapping[str, Any]) -> int:

@@ -9,10 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, solve
-from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.sweep.choice import pose_difference
 from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.row_model import result_row
+from cosserat_casadi.sweep.row_model import solved_poses
 from tests.sweep.conftest import PLANAR
 
 FINE = {"row": 0, "error_estimate": 2e-5, "difference": 1e-12, "stable": True}
@@ -21,8 +20,8 @@ FINE = {"row": 0, "error_estimate": 2e-5, "difference": 1e-12, "stable": True}
 def test_difference_of_a_row_from_a_solution() -> None:
     """Distances count over the length, 0.8 m; a quaternion and its negative are one rotation."""
     solution = solve(build(PLANAR), raise_on_failure=True)
-    row = result_row(solution, len(row_results(PLANAR)))
-    position, quaternion = slice(len(JUDGED), len(JUDGED) + 3), slice(len(JUDGED) + 3, len(JUDGED) + 7)
+    row = solved_poses(solution)
+    position, quaternion = slice(0, 3), slice(3, 7)
     moved = row.copy()
     moved[position] += [0.004, 0.0, 0.003]
     assert_allclose(pose_difference(moved, solution), 0.005 / 0.8, rtol=1e-12, atol=0)

@@ -37,7 +37,9 @@ from cosserat_casadi.sweep.table import Table, read_table
 def sweep(
     scene: SceneFile,
     over: Annotated[Path, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")],
-    output: Annotated[Path, typer.Option(help="Write a row for each solve here: .csv or .parquet.")],
+    output: Annotated[
+        Path, typer.Option(help="Write a row for each solve here: .csv, .parquet, or .dataset, a folder of parts.")
+    ],
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
     ] = None,
