@@ -73,8 +73,8 @@ class Choice:
 
     @property
     def within_tolerance(self) -> bool | None:
-        """As ``met``; None where modes are fixed that are not locked, and nobody asks for a tolerance."""
-        return self.met if self.locked or self.scene.accuracy.binds else None
+        """As ``met``; None where modes are fixed, and nobody asks for a tolerance."""
+        return self.met if self.scene.accuracy.binds else None
 
 
 def choose(

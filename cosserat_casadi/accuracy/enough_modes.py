@@ -6,7 +6,6 @@ is added where that lessens most what the rest of them would still change, until
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
@@ -15,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
+from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
     SAFETY,
     balance_lacks,
@@ -44,9 +44,6 @@ MOST_GROWTH = 1.5
 NEXT_ORDER = {"magnus4": "magnus6"}
 """Rotation integrator that takes over where many more intervals would be needed."""
 
-Chosen = dict[str, Discretisation]
-"""Discretisation of every rod."""
-
 
 def enough_for(solution: Solution, tolerance: float) -> Chosen:
     """The discretisation of an answer with the modes and intervals added that its error asks for.
@@ -62,9 +59,9 @@ def enough_for(solution: Solution, tolerance: float) -> Chosen:
     return _Lack(solution, correction.missing, correction.change, tolerance / SAFETY).made_up()
 
 
-def with_more_modes(chosen: Mapping[str, Discretisation]) -> Chosen:
+def with_more_modes(chosen: Chosen) -> Chosen:
     """A discretisation with one more mode of every strain, and two more intervals."""
-    more: Chosen = {}
+    more = {}
     for name, own in chosen.items():
         modes = tuple(count + 1 for count in own.modes)
         more[name] = replace(own, modes=modes, nodes=own.nodes + 2)
@@ -110,7 +107,7 @@ class _Lack:
 
     def _with_one_more(self, chosen: Chosen) -> list[Chosen]:
         """Discretisations with one more mode of a strain, where the answer's correction has such a mode."""
-        trials = []
+        trials: list[Chosen] = []
         present = self.solution.model.discretisation
         most_added = next((most for excess, most in MOST_ADDED if self.error > excess * self.bound), 1)
         for names in alike_rods(self.solution.model):

@@ -52,13 +52,14 @@ def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
 
 
 def fixed_alike(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
-    """The scene with all rods on one discretisation."""
+    """The scene with all rods on one discretisation that was chosen for its tolerance."""
     modes: int | tuple[int, ...] = chosen.modes
     # One number suits rods that admit different strains too.
     if len(set(chosen.modes)) == 1:
         modes = chosen.modes[0]
     return with_accuracy(
         scene,
+        tolerance=scene.accuracy.tolerance,
         modes=modes,
         nodes=chosen.nodes,
         rotation=chosen.transport,

@@ -19,8 +19,9 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.locking import motion, residual_by_inputs
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
+from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
@@ -40,9 +41,6 @@ LEAST_COMPLIANCE = 0.1
 
 AMPLE_FREEDOM = 24
 """Coordinates for each body that constraints leave free and with which nothing locks: four for each of its motions."""
-
-PROBE = 1e-5
-"""Size of changes of residual and unknowns that derivatives by inputs are read off."""
 
 CORRECTIONS = 2
 """Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
@@ -235,15 +233,11 @@ class Preview:
 
     def _locks(self, kept: Mask) -> bool:
         """Whether constraints leave so little freedom to these unknowns that some input hardly moves anything."""
-        if self._has_ample_freedom(kept) or not self._pushes.size:
+        if self._has_ample_freedom(kept):
             return False
-        inverse = self._inverse_of_kept(kept)
-        for push, whole in zip(self._pushes, self._motions, strict=True):
-            step = np.zeros(self.model.size)
-            step[kept] = -inverse @ push[kept]
-            if self._motion(step) < LEAST_COMPLIANCE * whole:
-                return True
-        return False
+        steps = np.zeros_like(self._pushes)
+        steps[kept] = -self._inverse_of_kept(kept) @ self._pushes[kept]
+        return bool(np.any(self._motions(steps) < LEAST_COMPLIANCE * self._whole_motions))
 
     def _has_ample_freedom(self, kept: Mask) -> bool:
         """Whether so many coordinates are free that nothing can lock; so where nothing is constrained."""
@@ -256,39 +250,17 @@ class Preview:
 
     @cached_property
     def _pushes(self) -> FloatArray:
-        """Derivatives of the residual by the inputs that have an effect, each of unit size, shape (k, n)."""
-        pushes = [self._push(i) for i in range(len(self._inputs))]
-        return np.array([push for push in pushes if push.any()]).reshape(-1, self.model.size)
-
-    def _push(self, number: int) -> FloatArray:
-        """Derivative of the residual by one input, of unit size; zero where the input moves nothing."""
-        x = self.reference.x
-        before = _column(self.model.path_residual(x, self._inputs, 1.0))
-        step = PROBE
-        # Units of inputs differ by many orders of magnitude: the second step is of the right size.
-        for _ in range(2):
-            inputs = self._inputs.copy()
-            inputs[number] += step
-            change = _column(self.model.path_residual(x, inputs, 1.0)) - before
-            size = float(np.linalg.norm(change))
-            if not size:
-                return change
-            step *= PROBE / size
-        return change / size
+        """Derivatives of the residual by the inputs, shape (n, inputs)."""
+        return residual_by_inputs(self.model, self.reference.x, self._inputs)
 
     @cached_property
-    def _motions(self) -> list[float]:
-        """Motions that the pushes cause with all unknowns."""
-        inverse = _inverse(self._regular_jacobian)
-        return [self._motion(-inverse @ push) for push in self._pushes]
+    def _whole_motions(self) -> FloatArray:
+        """Motions that the pushes cause with all unknowns, shape (inputs,)."""
+        return self._motions(-_inverse(self._regular_jacobian) @ self._pushes)
 
-    def _motion(self, step: FloatArray) -> float:
-        """Change of what is watched by a step of the unknowns, to first order."""
-        size = float(np.linalg.norm(step))
-        if not size:
-            return 0.0
-        moved = self._tips(self.reference.x + PROBE / size * step).change_from(self.tips)
-        return change_size(moved) * size / PROBE
+    def _motions(self, steps: FloatArray) -> FloatArray:
+        """Motions of what is watched by steps of the unknowns, shape (n, k), one a column."""
+        return np.array([motion(self.model, self.reference.x, self._inputs, step) for step in steps.T])
 
     @property
     def _inputs(self) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.equilibrium.locking import locking_sentence
 
 
@@ -34,7 +35,8 @@ class Verified:
         where = ", ".join(self.ranges) or "the scene's own inputs"
         text = f"The discretisation was verified by {self.solves} solves over {where}:"
         if self.error_estimate is not None:
-            text += f" largest estimated error {self.error_estimate:.1e}."
+            known = self.error_estimate != UNKNOWN
+            text += f" largest estimated error {self.error_estimate:.1e}." if known else " their error is not known."
         if self.within is False:
             text += " The tolerance is not kept there."
         if self.locked:

@@ -45,6 +45,7 @@ from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
+from cosserat_casadi.tubes.functions import TubeFunctions
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
@@ -71,6 +72,13 @@ PLAIN_BUILD = dict.fromkeys(
     ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
 )
 """Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
+
+RANGES_OF_RODS = (
+    "a tension not below zero and a length above, and by the bounds of the scene. The\n"
+    "   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one "
+    "all the same."
+)
+"""Which ranges inputs have, and what the solver does beyond them, for the header."""
 
 ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",
@@ -329,13 +337,19 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
     }
 
 
-def input_words(model: Model, names: Names) -> dict[str, str]:
-    """What the templates say of the inputs of a model: macros, struct, ranges, table, default values."""
-    words = words_of_inputs(input_entries(model), names)
+def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES_OF_RODS) -> dict[str, str]:
+    """What the templates say of the inputs of a model: macros, struct, ranges, table, default values.
+
+    Args:
+        model: with the inputs.
+        names: what things are called.
+        ranges: which ranges inputs have by what they are, and what the solver does beyond them.
+    """
+    words = _words_of_inputs(input_entries(model), names)
     if model.inputs.size:
         lower, upper = ranges_of_inputs(model.scene, model.inputs)
         ends = {"lower": _ends(lower, names), "upper": _ends(upper, names)}
-        named = {"name": names.name, "MACRO": names.macro, **ends}
+        named = {"name": names.name, "MACRO": names.macro, "ranges": ranges, **ends}
         words["inputs_struct"] += render("ranges.h.in", named)
         words["inputs_functions"] += render("ranges.c.in", named)
     return words
@@ -348,7 +362,7 @@ def _ends(values: FloatArray, names: Names) -> str:
     return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
 
 
-def words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:
+def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:
     """What the templates say of inputs as they are in the manifest: macros, struct, table, default values."""
     macros = list[str]()
     rows = list[str]()
@@ -443,6 +457,8 @@ def _file_rows(
 
 def _accuracy_note(model: Model, error_estimate: float | None, verified: Verified | None) -> str:
     tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
+    if not model.scene.accuracy.binds:
+        tolerance = "The scene fixes what it is computed with, and asks for no tolerance."
     if verified is not None:
         return f"{tolerance} {verified.sentence}"
     if error_estimate is None:

@@ -71,23 +71,27 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
 
 
 def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Largest motion of what is watched over the length, or turn, per unit of each entry of an input, by its name."""
-    residual = column(model.path_residual(x, inputs, 1.0))
+    """Motion of what is watched per unit of each entry of every input but lengths, by the input's name."""
     inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
-    before = _watched(model, x, inputs)
+    responses = -inverse @ residual_by_inputs(model, x, inputs)
     for entry, span in model.inputs:
-        if entry.declared.moves:
-            continue
-        compliances = []
-        for k in range(span.start, span.stop):
-            moved = inputs.copy()
-            # The equations are affine in loads.
-            moved[k] += 1.0
-            response = -inverse @ (column(model.path_residual(x, moved, 1.0)) - residual)
-            share = STEP / max(float(np.abs(response).max(initial=0.0)), STEP)
-            motion = _watched(model, x + share * response, inputs) - before
-            compliances.append(float(np.abs(motion).max(initial=0.0)) / share)
-        yield entry.name, np.array(compliances)
+        if not entry.declared.moves:
+            motions = [motion(model, x, inputs, responses[:, k]) for k in range(span.start, span.stop)]
+            yield entry.name, np.array(motions)
+
+
+def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """Derivatives of the residual by the inputs, shape (size, inputs)."""
+    units = np.eye(len(inputs))
+    rates = [column(model.path_rate(x, inputs, 1.0, unit, 0.0)) for unit in units]
+    return np.reshape(rates, (len(inputs), model.size)).T
+
+
+def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
+    """How far a step of the unknowns moves what is watched, to first order: over the length, or in quaternions."""
+    share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
+    change = _watched(model, x + share * step, inputs) - _watched(model, x, inputs)
+    return float(np.abs(change).max(initial=0.0)) / share
 
 
 def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -105,14 +109,20 @@ def locking_sentence(locked: Sequence[str]) -> str:
     )
 
 
-def locking_note(solution: Solution) -> str:
-    """The sentence on locking, for modes that the scene fixes: those that were chosen are free to move.
+def may_be_locked(model: Model) -> bool:
+    """Whether constraints meet modes that the scene fixes: those that were chosen are free to move.
 
-    Empty in exact contact too, whose forces are inputs of another model for every arrangement.
+    False in exact contact too, whose forces are inputs of another model for every arrangement.
     """
-    scene = solution.model.scene
-    chosen = scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for
-    if chosen or not solution.converged:
+    scene = model.scene
+    if scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for:
+        return False
+    return degrees_of_freedom(model) is not None
+
+
+def locking_note(solution: Solution) -> str:
+    """The sentence on locking; empty where no equilibrium was found."""
+    if not solution.converged or not may_be_locked(solution.model):
         return ""
     return locking_sentence(locked_inputs(solution))
 

@@ -36,7 +36,8 @@ class Consistency:
         freedom: what it is expected to be.
         deviations: by how much it is larger, in standard deviations of a normal distribution.
         row_deviations: the same of each row, shape (cases,); NaN where it was not found, or nothing is left over.
-        bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name.
+        bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name; of sensors
+            that were read in two rows at least, the largest deviation counted as the next largest.
     """
 
     squares: float
@@ -79,7 +80,8 @@ class Consistency:
                 f"{told}{more}. No noise does that."
             )
         rows = [case for case, outlies in zip(cases, self.outlying, strict=True) if outlies]
-        if rows and len(rows) < len(cases) / 2:
+        # Where most rows stand out, the sum over all of them does, and tells it.
+        if rows and 2 * len(rows) <= len(cases):
             names = ", ".join(rows[:TOLD])
             more = f" and {len(rows) - TOLD} more" if len(rows) > TOLD else ""
             verb = "stands" if len(rows) == 1 else "stand"
@@ -101,9 +103,18 @@ def consistency(
     found = np.isfinite(squares)
     total = float(squares[found].sum()) + shared
     left = int(freedom[found].sum())
-    bias = {name: float(values.sum() / np.sqrt(len(values))) for name, values in residuals.items() if len(values)}
+    bias = {name: _mean_deviation(values) for name, values in residuals.items() if len(values) > 1}
     by_row = np.array([chi_square_deviations(*row) for row in zip(squares.tolist(), freedom.tolist(), strict=True)])
     return Consistency(total, left, chi_square_deviations(total, left), by_row, bias)
+
+
+def _mean_deviation(values: FloatArray) -> float:
+    """Mean of two deviations or more, in standard deviations of that mean.
+
+    The largest counts as the next largest: one reading that is far off is no side that all are on.
+    """
+    limit = np.sort(np.abs(values))[-2]
+    return float(np.clip(values, -limit, limit).sum() / np.sqrt(len(values)))
 
 
 def chi_square_deviations(squares: float, freedom: int) -> float:

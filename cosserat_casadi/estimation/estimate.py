@@ -116,6 +116,7 @@ def estimate(
     values = np.where(told.determined[:, None], found.unknowns[:, :own], np.nan)
     inputs = table.inputs.copy()
     inputs[:, indices] = np.where(told.determined[:, None], found.unknowns, np.nan)
+    sensors = sensor_names(model, sections, table.at)
     result = Estimate(
         model=model,
         cases=tuple(case.where for case in cases),
@@ -132,7 +133,7 @@ def estimate(
         second=second,
         unseen=told.unseen,
         shared=shared,
-        consistency=_consistency(found, table, layout, shared, sensor_names(model, sections, table.at)),
+        consistency=_consistency(found, told.determined, table, layout, shared, sensors),
     )
     return replace(result, warnings=tuple(_remarks(result, known, drawn)))
 
@@ -153,13 +154,13 @@ def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, S
 
 def _consistency(
     found: Estimates,
+    rows: npt.NDArray[np.bool_],
     table: MeasuredCases,
     layout: UnknownLayout,
     shared: SharedNumbers | None,
     sensors: Sequence[str],
 ) -> Consistency:
-    """How well the rows that were found go together with the model."""
-    rows = found.outcome == 0
+    """How well some rows, in which data and priors determine every unknown, go together with the model."""
     priors = int(np.count_nonzero(layout.own_limits.weight))
     freedom = np.count_nonzero(table.weights, axis=1) + priors - len(layout.own_labels)
     squares = np.where(rows, 2 * found.cost, np.nan)

@@ -2,9 +2,9 @@
 
 Around each estimate steps are drawn from a normal distribution, somewhat wider than the covariance of the linearised
 model, and weighted with the posterior there, for which the equilibrium is solved; a second round draws from the mean
-and the covariance that the first has found: O. Cappé, A. Guillin, J. M. Marin, C. P. Robert, *Population Monte Carlo*,
-J. Comput. Graph. Stat. 13, 2004, 907-929. The draws are the same for every row, have mean 0 and covariance 1 exactly,
-and come in pairs z, −z.
+and the covariance that the first has found, where enough of its draws count: O. Cappé, A. Guillin, J. M. Marin, C. P.
+Robert, *Population Monte Carlo*, J. Comput. Graph. Stat. 13, 2004, 907-929. The draws are the same for every row, have
+mean 0 and covariance 1 exactly, and come in pairs z, −z.
 """
 
 from __future__ import annotations
@@ -67,16 +67,33 @@ def sampled(costs: Costs, least: FloatArray, covariance: FloatArray, draws: int)
         factors = wider * np.linalg.cholesky(spread)
         steps = mean[:, None] + np.einsum("cij,sj->csi", factors, z)
         differences = costs(np.einsum("cij,csj->csi", to_units, steps)) - least[:, None]
-        log_weights = np.sum(z**2, axis=1) / 2 - differences
-        weights = np.exp(log_weights - log_weights.max(axis=1, keepdims=True))
-        weights /= weights.sum(axis=1, keepdims=True)
-        effective = 1 / np.sum(weights**2, axis=1)
-        mean = np.einsum("cs,csi->ci", weights, steps)
-        apart = steps - mean[:, None]
-        # A few draws span no ellipsoid: a trace of the linearised model's keeps the next round from being flat.
-        spread = np.einsum("cs,csi,csj->cij", weights, apart, apart) + 1e-6 * np.eye(k)
+        weights = _weights(np.sum(z**2, axis=1) / 2 - differences)
+        effective = _effective(weights)
+        # A few draws within narrow bounds span less than the posterior: the next round would not leave them.
+        enough = effective >= LEAST_EFFECTIVE * k
+        drawn_mean = np.einsum("cs,csi->ci", weights, steps)
+        apart = steps - drawn_mean[:, None]
+        drawn_spread = np.einsum("cs,csi,csj->cij", weights, apart, apart)
+        mean = np.where(enough[:, None], drawn_mean, mean)
+        spread = np.where(enough[:, None, None], drawn_spread, spread)
     about_estimate = spread + mean[:, :, None] * mean[:, None, :]
     return Sampled(to_units @ about_estimate @ np.swapaxes(to_units, 1, 2), effective)
+
+
+def _weights(logarithms: FloatArray) -> FloatArray:
+    """Weights whose sum is 1, shape (cases, draws); 0 all where no draw has an equilibrium within the bounds."""
+    largest = logarithms.max(axis=1, keepdims=True)
+    weights = np.exp(logarithms - np.where(np.isfinite(largest), largest, 0.0))
+    total = weights.sum(axis=1, keepdims=True)
+    normalised: FloatArray = np.divide(weights, total, out=np.zeros_like(weights), where=total > 0.0)
+    return normalised
+
+
+def _effective(weights: FloatArray) -> FloatArray:
+    """Number of equal draws that weighted ones are worth, shape (cases,); 0 where all weights are."""
+    squares = np.sum(weights**2, axis=1)
+    effective: FloatArray = np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0.0)
+    return effective
 
 
 def normal_draws(count: int, k: int) -> FloatArray:

@@ -49,7 +49,7 @@ class SharedNumbers:
         units: of these.
         values: the maxima a posteriori, shape (q,).
         covariance: shape (q, q).
-        settled: whether no step would lessen the cost.
+        settled: whether no step within the bounds would lessen the cost.
     """
 
     labels: tuple[str, ...]
@@ -109,7 +109,7 @@ def find_shared(
         slope, curvature, moves = _expansion(search, limits, values, found, own)
         slope = slope + weights * (values - limits.mean)
         curvature = curvature + np.diag(weights)
-        step = np.asarray(-np.linalg.solve(curvature, slope), dtype=np.float64)
+        step = _step(curvature, slope, limits.held(values, slope))
         if -(slope @ step) <= SETTLED:
             settled = True
             break
@@ -121,6 +121,13 @@ def find_shared(
     covariance = np.asarray(np.linalg.inv(curvature + np.diag(weights)), dtype=np.float64)
     added = np.einsum("cij,jk,clk->cil", moves, covariance, moves)
     return found, SharedNumbers(names.labels, names.units, values, covariance, settled), added
+
+
+def _step(curvature: FloatArray, slope: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:
+    """Gauss and Newton's step, shape (q,), of the numbers that no bound holds."""
+    step = np.zeros_like(slope)
+    step[~held] = -np.linalg.solve(curvature[np.ix_(~held, ~held)], slope[~held])
+    return step
 
 
 def _expansion(

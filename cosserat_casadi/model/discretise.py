@@ -52,6 +52,8 @@ def discretise(
 def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
     """The scene with modes, nodes and rotation fixed, so that :func:`discretise` gives the same again.
 
+    A scene that leaves them open asks for its tolerance, written or not: with them fixed it still does.
+
     Args:
         scene: the scene.
         chosen: of every rod; their elements end where the scene makes them.
@@ -67,6 +69,8 @@ def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation
     given = {key: value for key, value in given.items() if key != "of_rods"} | first
     if others:
         given["of_rods"] = others
+    if scene.accuracy.binds:
+        given["tolerance"] = scene.accuracy.tolerance
     return scene.model_copy(update={"accuracy": scenes.Accuracy(**given)})
 
 

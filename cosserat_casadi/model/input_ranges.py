@@ -30,12 +30,13 @@ def ends_of(pairs: scenes.Pairs) -> tuple[float | tuple[float, ...], float | tup
     return pairs
 
 
-def physical_lower(layout: InputLayout) -> FloatArray:
-    """Least values that inputs can have by what they are, shape (layout.size,); -inf where there is none."""
-    lower = np.full(layout.size, -np.inf)
+def physical_range(layout: InputLayout) -> tuple[FloatArray, FloatArray]:
+    """Least and largest values of inputs by what they are, shape (layout.size,) each; infinite where there are none."""
+    lower, upper = np.empty((2, layout.size))
     for entry, indices in layout:
         lower[indices] = entry.lower
-    return lower
+        upper[indices] = entry.upper
+    return lower, upper
 
 
 def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[FloatArray, FloatArray]:
@@ -45,8 +46,7 @@ def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[Float
         layout: the inputs.
         bounds: what narrows the ranges that inputs have by what they are.
     """
-    lower = physical_lower(layout)
-    upper = np.full(layout.size, np.inf)
+    lower, upper = physical_range(layout)
     for bound in bounds:
         # A bound is of all entries of a vector alike.
         entries = layout.slices[bound.input]

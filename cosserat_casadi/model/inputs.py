@@ -38,6 +38,7 @@ class Input:
         default: the scene's value, shape (components, k): column k holds the k-th Legendre coefficient.
         axes: "none" of a number, else "world" or "section".
         of_rod: whether the owner is a rod.
+        upper: largest value that each entry may have by what it is; inf where there is none.
     """
 
     owner: str
@@ -46,6 +47,7 @@ class Input:
     default: FloatArray
     axes: str
     of_rod: bool
+    upper: float
 
     @property
     def name(self) -> str:
@@ -153,7 +155,8 @@ def _input(free: scenes.FreeInput) -> Input:
     else:
         default = known(scene_value(record, free.field))
         of_rod = False
-    return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod)
+    upper = free.record.input_upper(free.field)
+    return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod, upper)
 
 
 def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:

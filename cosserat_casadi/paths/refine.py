@@ -73,13 +73,17 @@ def follow_scene_path(
         report: receives the discretisation of rods, in words.
 
     Raises:
-        SceneError: the input is unknown, a value is refused, or a path of tubes is to leave at a bifurcation.
+        SceneError: the input is unknown, a value is refused, a path of tubes is to leave at a bifurcation, or one of
+            rods to begin at an equilibrium of tubes.
     """
     if scene.tubes:
         if branch:
             problem = "is for rods: a path of tubes goes straight on"
             raise SceneError(Problem("--branch", problem, "leave it out"))
         return follow_tubes(scene, name, value, values, first=first, settings=settings, progress=progress)
+    if first is not None:
+        problem = "is for concentric tubes: a path of rods begins without the input"
+        raise SceneError(Problem("first", problem, "leave it out"))
 
     def follow(model: Model) -> EquilibriumPath:
         if report is not None:

@@ -6,6 +6,7 @@ the file says, not at validated records, so that their faults come together with
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, ClassVar, Self, TypeVar
 
@@ -157,6 +158,10 @@ class Entry(Record):
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """Reasons why one of the free fields cannot stay free in this scene, without path."""
         yield from ()
+
+    def input_upper(self, field: str) -> float:
+        """Largest value that each number of one of the free fields can have by what it is; inf where there is none."""
+        return math.inf
 
 
 class HashedTable(dict[str, Any]):

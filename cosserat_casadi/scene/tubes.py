@@ -109,6 +109,12 @@ translation = 0.15
         description="how far its tip stands out of the plate along the tube, m; at most its length"
     )
 
+    def input_upper(self, field: str) -> float:
+        """A tube is not pushed out of its drive; inf of its rotation."""
+        if field == "translation":
+            return self.straight + self.curved
+        return super().input_upper(field)
+
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The elasticity is given once; the tube has a length, and is not pushed out of its drive."""

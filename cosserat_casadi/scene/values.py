@@ -223,6 +223,12 @@ def names_in(entry: str | tuple[str, ...]) -> tuple[str, ...]:
     return (entry,) if isinstance(entry, str) else entry
 
 
+def _without_list_of_one(entry: str | tuple[str, ...]) -> str | tuple[str, ...]:
+    """The name alone where a list has no other: both spellings are one parameter."""
+    names = names_in(entry)
+    return names[0] if len(names) == 1 else entry
+
+
 def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
     seen: set[str] = set()
     for i, name in enumerate(names):
@@ -313,6 +319,7 @@ Component = Annotated[
 TiedNames = Annotated[
     Annotated[str, SINGLE] | Annotated[tuple[str, ...], NotEmpty(), SEVERAL],
     BY_LENGTH,
+    AfterValidator(_without_list_of_one),
 ]
 """A name, or several whose numbers are tied together."""
 

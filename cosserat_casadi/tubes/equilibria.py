@@ -99,7 +99,8 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
 
     Args:
         scene: a scene with tubes.
-        values: as in :func:`solve_tubes`.
+        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
+            or all of them, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.

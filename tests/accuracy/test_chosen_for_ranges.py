@@ -164,6 +164,17 @@ def test_points_without_equilibrium_are_told() -> None:
     assert choice.without_equilibrium
 
 
+def test_a_tolerance_that_nobody_has_written_holds_on_the_modes_chosen_for_it() -> None:
+    """It is the one that they were chosen for: their answers beyond the ranges are told to miss it."""
+    choice = choose(scene(push(), strain="planar"), {"push.force": (-0.1, 0.1)}, samples=1)
+    assert choice.within_tolerance is True
+    assert solve(choice.model, {"push.force": [0.1, 0.0, 0.0]}).within_tolerance is True
+    far = solve(choice.model, {"push.force": [20.0, 0.0, 0.0]})
+    assert far.converged
+    assert far.within_tolerance is False
+    assert "above the tolerance" in far.message
+
+
 def test_fixed_modes_are_verified(chosen: Choice) -> None:
     """Too few of them: the choice says so, with the point where it shows."""
     coarse = scene(push(), accuracy={"tolerance": 1e-3, "modes": 1, "nodes": 4})

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise, read_scene, solve, solve_scene
 from cosserat_casadi.accuracy.preview import LEAST_COMPLIANCE, Preview
+from cosserat_casadi.equilibrium.locking import locked_inputs, residual_by_inputs
 from cosserat_casadi.model.build import Model
 from tests.conftest import CASES
+from tests.scenes import push, scene
 
 PUSH = {"load.force": [0.3, 0.2, 0.1]}
 
@@ -24,8 +27,8 @@ def moved_by_push(model: Model) -> float:
 
 @pytest.fixture(scope="module")
 def platform() -> Model:
-    scene = read_scene(CASES / "away" / "platform_locks.toml")
-    return build(scene, discretise(scene, 4, 8))
+    legs = read_scene(CASES / "away" / "platform_locks.toml")
+    return build(legs, discretise(legs, 4, 8))
 
 
 def test_modes_that_lock_are_beyond_all_bounds(platform: Model) -> None:
@@ -34,6 +37,27 @@ def test_modes_that_lock_are_beyond_all_bounds(platform: Model) -> None:
     free = dict.fromkeys(platform.discretisation, (4, 2, 1))
     assert np.all(np.isinf(preview.mode_shift(locked)))
     assert np.all(np.isfinite(preview.mode_shift(free)))
+
+
+def test_derivatives_by_inputs_are_those_of_differences(platform: Model) -> None:
+    solution = solve(platform, PUSH, estimate_error=False)
+    derivatives = residual_by_inputs(platform, solution.x, solution.inputs)
+    step = 1e-6
+    for k, derivative in enumerate(derivatives.T):
+        change = step * np.eye(len(solution.inputs))[k]
+        ahead = platform.path_residual(solution.x, solution.inputs + change, 1.0).full()[:, 0]
+        behind = platform.path_residual(solution.x, solution.inputs - change, 1.0).full()[:, 0]
+        assert np.any(derivative)
+        assert_allclose(derivative, (ahead - behind) / (2 * step), rtol=0, atol=1e-7)
+
+
+def test_a_scene_without_inputs_is_not_locked() -> None:
+    held = {"rod": "rod", "kind": "clamped", "position": [0.0, 0.0, 0.8], "quaternion": [1.0, 0.0, 0.0, 0.0]}
+    bare = scene(push(force=[0.0, 0.0, 0.0]), strain="planar", supports=[held], inputs=[], accuracy={"modes": 1})
+    solution = solve(build(bare), estimate_error=False)
+    assert solution.converged
+    assert residual_by_inputs(solution.model, solution.x, solution.inputs).shape == (solution.model.size, 0)
+    assert locked_inputs(solution) == ()
 
 
 @pytest.mark.slow

@@ -55,9 +55,12 @@ def test_an_export_of_locked_modes_says_so_and_does_not_end_well(held: Path) -> 
     done = cosserat("export", "held.toml", "--output", "c", "--no-error-estimate", cwd=held)
     assert done.returncode == 3, done.stdout + done.stderr
     assert "kinematically locked" in " ".join(done.stderr.split())
+    assert "asks for no tolerance" in " ".join(done.stdout.split())
+    assert "tolerance" not in done.stderr
     for file in ("README.md", "held.h", "manifest.json"):
         text = (held / "c" / file).read_text()
         assert '"locked": [' in text or "kinematically locked" in " ".join(text.split())
+        assert "The scene asks for a tip pose" not in " ".join(text.split())
 
 
 def test_locked_modes_are_told_in_python(held: Path) -> None:
@@ -65,4 +68,6 @@ def test_locked_modes_are_told_in_python(held: Path) -> None:
     assert "kinematically locked" in solve_scene(scene).message
     choice = choose(scene, samples=2)
     assert choice.locked == ("wind.force",)
-    assert choice.within_tolerance is False
+    assert not choice.met
+    # Nobody asks for a tolerance.
+    assert choice.within_tolerance is None

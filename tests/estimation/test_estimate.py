@@ -147,6 +147,9 @@ def test_what_nothing_determines_is_told() -> None:
     assert np.isnan(found.values).all()
     assert list(found.unseen) == ["push.force.y"]
     assert any("2 of 2 rows not found" in warning for warning in found.warnings)
+    # What was left over in them says nothing of the model.
+    assert found.consistency.freedom == 0
+    assert np.isnan(found.consistency.row_deviations).all()
     assert estimate_result(found)["message"] == "0 of 2 rows found."
     assert estimate_result(found)["rows"][0]["value"] == [None, None, None]
     assert estimate_table(found).splitlines()[1].endswith(",not_determined,,,,,,")

@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, lsq_linear
 from scipy.stats import chi2
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.estimation import Estimate, estimate
-from cosserat_casadi.estimation.consistency import chi_square_deviations
+from cosserat_casadi.estimation.consistency import chi_square_deviations, consistency
 from cosserat_casadi.estimation.posterior import normal_draws, sampled
+from cosserat_casadi.estimation.shared import Searched, SharedLabels, find_shared
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.results.estimate_file import estimate_result
 from cosserat_casadi.scene import Scene
 from tests.scenes import push, rod
@@ -167,6 +170,41 @@ def test_an_uncertain_offset_of_a_marker_is_found_beside_what_rows_feel() -> Non
     assert found.consistency.holds
 
 
+def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:
+    """One row with the deviations u − 1, u + p − 3 and p + q − 4, with p at most 1.5, vs scipy."""
+    matrix = np.array([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
+    data = np.array([1.0, 3.0, 4.0])
+    limits = Limits(
+        lower=np.full(2, -np.inf),
+        upper=np.array([1.5, np.inf]),
+        mean=np.zeros(2),
+        weight=np.full(2, 0.1),
+        ratios=np.zeros(2, dtype=bool),
+    )
+
+    def search(shared: FloatArray) -> Searched:
+        unknowns = np.concatenate([[2.0 - shared[0] / 2.0], shared])
+        residual = matrix @ unknowns - data
+        found = Estimates(
+            outcome=np.zeros(1, dtype=np.int64),
+            iterations=np.zeros(1, dtype=np.int64),
+            cost=np.array([residual @ residual / 2.0]),
+            unknowns=unknowns[None],
+            information=(matrix.T @ matrix)[None],
+            gradient=(matrix.T @ residual)[None],
+            residuals=residual[None],
+            x=np.zeros((1, 0)),
+        )
+        return found, None
+
+    names = SharedLabels(("p", "q"), ("1", "1"))
+    _, shared, _ = find_shared(search, limits, names, (np.full(1, -np.inf), np.full(1, np.inf)))
+    with_priors = np.vstack([matrix, 0.1 * np.eye(3)[1:]])
+    other = lsq_linear(with_priors, np.append(data, [0.0, 0.0]), (-np.inf, [np.inf, 1.5, np.inf]), tol=1e-14)
+    assert shared.settled
+    assert_allclose(shared.values, other.x[1:], rtol=0, atol=1e-6)
+
+
 def test_numbers_that_all_rows_share_need_a_prior() -> None:
     model = model_of(FELT, {"parameter": STIFFNESS})
     with pytest.raises(SceneError, match="nothing is known of it beforehand"):
@@ -211,6 +249,26 @@ def test_a_sensor_that_is_off_to_one_side_and_a_row_that_stands_out_are_told() -
     assert any("1 row stands out" in warning for warning in found.warnings)
 
 
+def test_one_row_of_two_that_stands_out_is_told() -> None:
+    """The other row fits so well that the sum of both is no reason to doubt."""
+    found = consistency(np.array([110.0, 20.0]), np.array([40, 40]), 0.0, {})
+    assert found.outlying.tolist() == [True, False]
+    assert found.deviations < 4
+    assert not found.holds
+    (sentence,) = found.sentences(["row 1", "row 2"])
+    assert sentence.startswith("1 row stands out")
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_one_reading_that_is_far_off_is_no_side_of_all_rows(count: int) -> None:
+    readings = np.zeros(count)
+    readings[0] = 12.0
+    squares = 40.0 + readings**2
+    found = consistency(squares, np.full(count, 40), 0.0, {"marker": readings})
+    assert not found.biased
+    assert not found.holds
+
+
 @pytest.mark.parametrize("freedom", [3, 40, 1000])
 def test_deviations_of_a_sum_of_squares_vs_its_distribution(freedom: int) -> None:
     for tail in (0.5, 1e-2, 1e-5):
@@ -239,6 +297,19 @@ def test_draws_from_a_bent_posterior_vs_quadrature() -> None:
     # E[x²] = 1, E[y²] = 0.5² + E[x⁴] / 36.
     assert_allclose(found.covariance[0], [[1.0, 0.0], [0.0, 0.5**2 + 3 / 36]], rtol=0, atol=0.05)
     assert found.sound.all()
+
+
+@pytest.mark.parametrize(("wide", "narrow"), [(10.0, 0.02), (0.02, 0.02), (0.001, 0.001)])
+def test_draws_that_miss_narrow_bounds_are_not_believed(wide: float, narrow: float) -> None:
+    """An estimate in a corner of bounds that are narrower than its deviations: few draws hit, or none."""
+    upper = np.array([wide, narrow, narrow])
+
+    def costs(steps: FloatArray) -> FloatArray:
+        is_outside = ((steps < 0.0) | (steps > upper)).any(axis=2)
+        return np.where(is_outside, np.inf, np.sum(steps**2, axis=2) / 2)
+
+    found = sampled(costs, np.zeros(1), np.eye(3)[None], 256)
+    assert not found.sound.any()
 
 
 @pytest.mark.slow

@@ -74,6 +74,12 @@ def tips(moduli: tuple[float, float], seed: int) -> dict[str, Any]:
     return {"tips": columns}
 
 
+def test_a_list_of_one_name_is_that_name() -> None:
+    """Listed as a parameter and unknown as a list, it is one argument of the functions, not two."""
+    scene = pair({"parameter": MODULI[:1], "lower": 1e8}, parameters=[MODULI[0]])
+    assert scene.with_unknowns().parameters == (MODULI[0],)
+
+
 def test_one_modulus_for_two_rods() -> None:
     scene = pair({"parameter": MODULI, "lower": 1e8, "upper": 1e11})
     model = build(scene.with_unknowns())

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from cosserat_casadi import SceneError, read_sweep, sweep_scene
 from cosserat_casadi.cli.main import REFUSED, app, run
@@ -62,6 +63,20 @@ def test_more_shards_than_chunks(tmp_path: Path) -> None:
         run_shard(plan, Shard(number, 7), cores=1)
     # The last two would have no row: nobody has to run them.
     assert merge_shards(plan).converged.all()
+
+
+def test_shards_that_a_killed_merge_left_are_removed(tmp_path: Path) -> None:
+    plan = plan_of(tmp_path / "rows.csv")
+    file = Shard(1, 1).file(tmp_path / "rows.csv")
+    run_shard(plan, Shard(1, 1), cores=1)
+    content = file.read_bytes()
+    merged = merge_shards(plan)
+    file.write_bytes(content)
+    foreign = Shard(1, 2).file(tmp_path / "rows.csv")
+    foreign.write_text("of nobody")
+    assert_array_equal(merge_shards(plan).values, merged.values)
+    assert not file.exists()
+    assert foreign.exists()
 
 
 def test_shards_that_are_no_whole_sweep_are_refused(tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.solve import solution_near
 from tests.commands import cosserat
+from tests.scenes import push
+from tests.scenes import scene as scene_of_rods
 
 TWO = """
 schema = 1
@@ -263,6 +265,9 @@ def test_a_path_begins_at_an_equilibrium_of_its_own_robot() -> None:
         follow_scene_path(scene, "push.force.y", 1.0, first=other)
     with pytest.raises(SceneError, match="stands beside values"):
         follow_scene_path(scene, "push.force.y", 1.0, {"push.force.x": 1.0}, first=solve_scene(scene))
+    of_rods = scene_of_rods(push(force=[0.0, 0.0, 0.0]))
+    with pytest.raises(SceneError, match="is for concentric tubes"):
+        follow_scene_path(of_rods, "push.force", [1.0, 0.0, 0.0], first=other)
 
 
 def test_loads_that_follow_have_no_energy() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import (
@@ -26,6 +26,7 @@ from cosserat_casadi import (
     result,
     solve_scene,
 )
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.tubes import equilibria
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.solution import tip_error
@@ -104,6 +105,14 @@ def integrated(found: TubeSolution) -> tuple[np.ndarray, np.ndarray, float]:
         y = solve_ivp(rate, (start + inset, end - inset), y, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
     housing = np.sum(shape.torques[0] ** 2 * (robot.length - reach) / robot.torsion) / 2
     return y[:size], y[2 * size + 9 : 2 * size + 12], float(y[-1] + housing)
+
+
+def test_ranges_of_inputs() -> None:
+    """A translation goes from zero to the length of its tube; rotations and loads have no range."""
+    scene = parse_scene(TWO + '[[loads]]\nname = "push"\nkind = "tip_wrench"\nrod = "inner"\nforce = [0, 1, 0]\n')
+    lower, upper = ranges_of_inputs(scene, robot_of(scene).layout)
+    assert_array_equal(lower, [-np.inf, 0, -np.inf, 0, *[-np.inf] * 3])
+    assert_array_equal(upper, [np.inf, 0.05 + 0.15, np.inf, 0.1 + 0.2, *[np.inf] * 3])
 
 
 @pytest.mark.parametrize(

@@ -234,6 +234,27 @@ def test_translations_out_of_range_are_refused(robot: Robot, translation: float)
     assert_allclose(turn.x, found.x, rtol=0, atol=0)
 
 
+@pytest.mark.parametrize(
+    ("inputs", "clamped"),
+    [
+        ([9.0, 0.13, -9.0, 0.2], [9.0, 0.13, -9.0, 0.2]),
+        ([0.0, 0.0, 0.0, 0.32], [0.0, 0.0, 0.0, 0.32]),
+        ([0.0, 0.23, 0.0, -1e-9], [0.0, 0.22, 0.0, 0.0]),
+        ([0.0, 1e300, 1e300, 0.4], [0.0, 0.22, 1e300, 0.32]),
+    ],
+)
+def test_translations_have_ranges_in_c_and_in_python(robot: Robot, inputs: list[float], clamped: list[float]) -> None:
+    """From zero to the length of the tube, 0.22 and 0.32 m, at both of which the solver still solves."""
+    moved = np.array(inputs)
+    inside = bool(robot.compiled._function("in_range")(pointer(moved)))
+    count = robot.compiled._function("clamp")(pointer(moved))
+    assert inside == robot.compiled.in_range(inputs) == (inputs == clamped)
+    assert count == np.count_nonzero(moved != inputs)
+    assert_allclose(moved, clamped, rtol=1e-15, atol=0)
+    assert_allclose(robot.compiled.clamp(inputs), moved, rtol=0, atol=0)
+    assert robot.compiled.solve(moved).outcome is not Outcome.OUT_OF_RANGE
+
+
 def test_other_inputs_without_an_equilibrium(robot: Robot) -> None:
     assert robot.compiled.solve([0.0, 0.0, 0.0, 0.0]).outcome is Outcome.OUT_OF_RANGE
     assert robot.compiled.solve([np.nan, 0.1, 0.0, 0.2]).outcome is Outcome.NOT_FINITE

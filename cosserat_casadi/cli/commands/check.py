@@ -16,10 +16,10 @@ from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.equilibrium.locking import degrees_of_freedom, locking_note
+from cosserat_casadi.equilibrium.locking import locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
@@ -60,7 +60,8 @@ def check(
         show_count("Choosing the ranges of inputs", 0, 0)
         ranges = input_ranges(checked_scene)
         show_count("Looking for constraints that lock", 0, 0)
-        locking = _locking_note(checked_scene, model)
+        # An equilibrium tells.
+        locking = locking_note(solve(model, estimate_error=False)) if may_be_locked(model) else ""
     print_check(Console(), model, varying, cost, of_effects)
     print_ranges(Console(), ranges)
     print_locking(Console(), locking)
@@ -68,14 +69,6 @@ def check(
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
-
-
-def _locking_note(scene: Scene, model: Model) -> str:
-    """A sentence where constraints lock modes that the scene fixes, which an equilibrium tells."""
-    held = degrees_of_freedom(model) is not None and not scene.touches_exactly
-    if not held or not scene.accuracy.fixed:
-        return ""
-    return locking_note(solve(model, estimate_error=False))
 
 
 def _print_times(scene: Scene) -> None:

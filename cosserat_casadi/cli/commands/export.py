@@ -90,7 +90,7 @@ def export(
     """Write a scene as C sources, a page for a browser, or an FMU.
 
     Exit codes: 0 written; 2 refused; 3 not solved and nothing written, or written with an error above the tolerance
-    somewhere in the ranges, as header, README and manifest say.
+    somewhere in the ranges, or on modes that constraints lock, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
     is one file that other simulators step.
@@ -209,8 +209,10 @@ def export(
     if choice is not None:
         print_choice(console, choice)
         print_locking(Console(stderr=True), locking_sentence(choice.locked))
-        if choice.within_tolerance is False:
+        missed = choice.within_tolerance is False
+        if missed:
             print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
+        if missed or choice.locked:
             raise typer.Exit(NOT_FOUND)
 
 

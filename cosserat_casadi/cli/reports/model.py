@@ -13,6 +13,7 @@ from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -71,7 +72,7 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     inputs = input_layout(without_contacts(model.scene)).size
     estimate = "not known"
     if solution.error_estimate is not None:
-        estimate = f"{solution.error_estimate:.1e}"
+        estimate = error_words(solution.error_estimate, None, model.scene.accuracy.tolerance)
     print_plain(console, title_line(model.scene.title))
     console.print(discretisation_table(model))
     print_plain(
@@ -85,20 +86,23 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
 def print_choice(console: Console, choice: Choice) -> None:
     """Print what a discretisation was chosen for, and the point that is worst on it."""
     tolerance = choice.scene.accuracy.tolerance
+    failed = len(choice.without_equilibrium)
     if choice.met:
-        print_plain(console, f"[bold green]All {choice.solves} load cases are within {tolerance:g}.[/]")
+        cases = f"{choice.solves - failed} load cases"
+        if failed:
+            cases += " that have an equilibrium"
+        print_plain(console, f"[bold green]All {cases} are within {tolerance:g}.[/]")
     elif choice.within_tolerance is None:
         print_plain(console, "The scene fixes modes and asks for no tolerance.")
     else:
         print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
     print_ranges(console, choice.ranges)
-    if choice.without_equilibrium:
-        count = len(choice.without_equilibrium)
+    if failed:
         point = escape(_point(choice.without_equilibrium[0]))
-        print_plain(console, f"[bold yellow]No equilibrium was found at {count} load cases[/], such as {point}")
+        print_plain(console, f"[bold yellow]No equilibrium was found at {failed} load cases[/], such as {point}")
     if choice.error_estimate is not None:
-        error = f"estimated error {choice.error_estimate:.1e}"
-        print_plain(console, f"Worst case: {escape(_point(choice.worst))}: {error}")
+        error = error_words(choice.error_estimate, None, tolerance)
+        print_plain(console, f"Worst case: {escape(_point(choice.worst))}: estimated error {error}")
 
 
 def print_missed(console: Console, *, fixed: bool) -> None:

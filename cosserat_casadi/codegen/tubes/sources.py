@@ -18,9 +18,9 @@ from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
     SHARED,
     comment,
+    input_words,
     solver_constants,
     version_words,
-    words_of_inputs,
 )
 from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
@@ -48,6 +48,12 @@ OWN = ("tubes_sensitivity.c", "tubes_turn.c")
 
 OTHERS = ("solver_sensitivity.c", "solver_recover.c")
 """Files of the solver that tubes do without."""
+
+RANGES = (
+    "a translation from zero to the length of its tube. The solver refuses a translation\n"
+    "   beyond that, and inputs at which no tube stands out of the plate, each of which is in its range."
+)
+"""Which ranges inputs have, and what the solver does beyond them, for the header."""
 
 VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
@@ -119,7 +125,7 @@ def _words(
         "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
-        **words_of_inputs(input_entries(model), names),
+        **input_words(model, names, RANGES),
         **version_words(),
         "version": version("cosserat-casadi"),
         "casadi_version": ca.CasadiMeta.version(),
