@@ -32,7 +32,7 @@ from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.shards import Shard, named, shard_files
-from cosserat_casadi.sweep.store import Memory, Store
+from cosserat_casadi.sweep.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
 from cosserat_casadi.sweep.variants import Variants, variants_of
@@ -312,28 +312,40 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
     heads = {shard: Store(file).head() for shard, file in files.items()}
     _check_shards(plan, work, heads)
     width = len(plan.results)
-    done = set[int]()
+    done: dict[Path, set[int]] = {}
     for file in files.values():
         with Store(file) as store:
             store.resume(rows, width)
-            done.update(store.done)
-    missing = [chunk for chunk in work if chunk.number not in done]
+            done[file] = set(store.done)
+    known = set[int]().union(*done.values())
+    missing = [chunk for chunk in work if chunk.number not in known]
     if missing:
         unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
         raise SceneError(Problem("--merge", f"not done to the end: {named(unfinished)}", "run these shards again"))
     choice = Choice.read(_known(heads)[0]["choice"])
-    sweep = _sweep(plan, choice, work, _results_of(files.values(), rows, width), progress or _ignore)
+    sweep = _sweep(plan, choice, work, _results_of(done, rows, width), progress or _ignore)
     write_sweep(sweep, plan.output)
     for file in files.values():
         file.unlink(missing_ok=True)
     return sweep
 
 
-def _results_of(files: Iterable[Path], rows: Mapping[int, int], width: int) -> Iterator[tuple[int, FloatArray]]:
-    """The chunks of shards with their results, one file open at a time: there may be thousands."""
-    for file in files:
+def _results_of(done: Mapping[Path, set[int]], rows: Mapping[int, int], width: int) -> Iterator[tuple[int, FloatArray]]:
+    """The chunks of shards with their results, one file open at a time: there may be thousands.
+
+    Args:
+        done: numbers of the chunks that each file held when all were looked at.
+        rows: of each chunk, by its number.
+        width: numbers that a row is answered with.
+
+    Raises:
+        StoreChangedError: a file does not hold them any more.
+    """
+    for file, numbers in done.items():
         with Store(file) as store:
             store.resume(rows, width)
+            if set(store.done) != numbers:
+                raise StoreChangedError(file)
             yield from store.results()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,8 +14,10 @@ from numpy.testing import assert_array_equal
 from cosserat_casadi import SceneError, read_sweep, sweep_scene
 from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.sweep.choice import Choice
 from cosserat_casadi.sweep.run import Plan, merge_shards, plan_sweep, run_shard
 from cosserat_casadi.sweep.shards import Shard
+from cosserat_casadi.sweep.store import StoreChangedError
 from cosserat_casadi.sweep.table import table_of
 from tests.sweep.conftest import PLANAR
 
@@ -105,6 +108,26 @@ def test_shards_that_are_no_whole_sweep_are_refused(tmp_path: Path) -> None:
     run_shard(plan, Shard(1, 2), cores=1)
     with pytest.raises(SceneError, match="was cut into 2 and 3 shards"):
         merge_shards(plan)
+
+
+def test_a_shard_that_changes_while_it_is_merged_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rows that it lost would have whatever numbers the memory held."""
+    output = tmp_path / "rows.csv"
+    plan = plan_of(output)
+    for number in (1, 2):
+        run_shard(plan, Shard(number, 2), cores=1)
+    file = Shard(2, 2).file(output)
+    choice_of = Choice.read
+
+    def read(plain: dict[str, Any]) -> Choice:
+        """Read when all shards have been looked at, and none has been read."""
+        file.write_bytes(file.read_bytes()[:-50])
+        return choice_of(plain)
+
+    monkeypatch.setattr(Choice, "read", read)
+    with pytest.raises(StoreChangedError, match="was changed while the sweep ran"):
+        merge_shards(plan)
+    assert not output.exists()
 
 
 @pytest.mark.parametrize("word", ["0/4", "5/4", "3", "a/b", "1/0", "-1/4", "1/1000000"])
