@@ -24,6 +24,7 @@ from cosserat_casadi.cli.signals import (
     install_handlers,
     remove_handlers,
     remove_temporary_files,
+    say_once,
     was_interrupted,
     was_terminated,
 )
@@ -78,7 +79,7 @@ def main() -> None:
     except KeyboardInterrupt:
         # A signal that comes while the command ends finds it outside of what catches the others.
         remove_handlers()
-        exit_code = _stopped(Console(stderr=True))
+        exit_code = _stopped()
     if exit_code == INTERRUPTED and was_terminated():
         exit_code = TERMINATED
     if was_interrupted():
@@ -99,18 +100,18 @@ def run(command: Callable[..., object]) -> int:
     except StoppedError:
         return INTERRUPTED
     except (KeyboardInterrupt, typer.Abort):
-        return _stopped(console)
+        return _stopped()
     # Raised by commands that end with a code of their own.
     except typer.Exit as stop:
         return stop.exit_code
     except Exception as error:
         # An interrupt inside CasADi or in an import comes out as some other error.
         if was_interrupted():
-            return _stopped(console)
+            return _stopped()
         return _failed(console, error)
     # Typer makes this code of an interrupt that a command lets through.
     if exit_code == INTERRUPTED:
-        return _stopped(console)
+        return _stopped()
     if isinstance(exit_code, int):
         return exit_code
     return 0
@@ -153,8 +154,8 @@ def _failed(console: Console, error: Exception) -> int:
     raise error
 
 
-def _stopped(console: Console) -> int:
-    console.print(STOPPED)
+def _stopped() -> int:
+    say_once(STOPPED)
     return INTERRUPTED
 
 

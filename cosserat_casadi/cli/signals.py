@@ -44,6 +44,12 @@ _temporary_folders: list[str] = []
 _unhurried = threading.Event()
 """Whether the command writes what it has after a signal."""
 
+_said = threading.Event()
+"""Whether the user has been told that the command was stopped."""
+
+_saying = threading.Lock()
+"""Held by the thread that tells the user: the command itself and the thread that watches may both come to it."""
+
 
 def install_handlers() -> None:
     """Turn the signals into KeyboardInterrupt, so that what is unfinished is removed on the way out."""
@@ -80,6 +86,21 @@ def remove_temporary_files() -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def say_once(sentence: str) -> None:
+    """Print a sentence on standard error, unless the command or the thread that watches has printed one before.
+
+    Args:
+        sentence: that the command was stopped.
+    """
+    with _saying:
+        if _said.is_set():
+            return
+        _said.set()
+        clear_line = "\r\x1b[2K\x1b[?25h" if os.isatty(2) else ""
+        with suppress(OSError):
+            os.write(2, f"{clear_line}{sentence}\n".encode())
+
+
 def take_time() -> None:
     """Let the command that runs write what it has after a signal."""
     _unhurried.set()
@@ -89,6 +110,7 @@ def forget_signals() -> None:
     """Begin anew: a command has not been stopped yet."""
     _received.clear()
     _unhurried.clear()
+    _said.clear()
 
 
 def remove_handlers() -> None:
@@ -139,9 +161,7 @@ def _watch(told: socket.socket, heard: socket.socket, sentence: str, exit_codes:
         except TimeoutError:
             continue
         break
-    clear_line = "\r\x1b[2K\x1b[?25h" if os.isatty(2) else ""
-    with suppress(OSError):
-        os.write(2, f"{clear_line}{sentence}\n".encode())
+    say_once(sentence)
     remove_temporary_files()
     told.close()
     os._exit(exit_codes[first])
