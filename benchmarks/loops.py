@@ -16,7 +16,8 @@ import casadi as ca
 from growth import FOLLOWER, PUSH, WEIGHT, model_of
 from rich.progress import track
 
-from cosserat_casadi.codegen.kernels import loops, scalar, sources
+from cosserat_casadi.codegen.kernel_files import external_sources
+from cosserat_casadi.codegen.kernels import loops, scalar
 
 MODELS = (
     ("kirchhoff", [PUSH], 4, 9),
@@ -73,7 +74,7 @@ def compiled(function: ca.Function) -> Compiled:
     """A function called ``timed``, compiled and run."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for file, text in {**sources([function], "timed", "int"), "timer.c": TIMER}.items():
+        for file, text in {**external_sources([function], "timed", "int"), "timer.c": TIMER}.items():
             (folder / file).write_text(text)
         begin = time.perf_counter()
         for source in ("timed.c", "timer.c"):

@@ -19,7 +19,7 @@ from loops import compiled
 from rich.progress import track
 
 from cosserat_casadi import Model, build, discretise, read_scene, scene_from_dict
-from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.parts import Parted
@@ -65,7 +65,7 @@ def cost(split: Parted) -> Cost:
     """What the parts of a function cost."""
     calls = [sum(part.kernel == number for part in split.parts) for number in range(len(split.kernels))]
     us = sum(count * compiled(named(kernel)).us for count, kernel in zip(calls, split.kernels, strict=True))
-    code = len(sources(split.kernels, "motion", "int")["motion.c"])
+    code = len(external_sources(split.kernels, "motion", "int")["motion.c"])
     constants = sum(len(str(part.constants)) for part in split.parts)
     return Cost((code + constants) / 1000, us)
 

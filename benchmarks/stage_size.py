@@ -11,7 +11,7 @@ from doc_tables import table
 from cosserat_casadi import Model, read_scene
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
-from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.stage import stage_functions
 
 SCENE = "examples/two_section_robot.toml"
@@ -23,7 +23,7 @@ def size_and_seconds(model: Model, curvature: bool) -> tuple[int, float]:
     """Bytes of C, and processor seconds of the compiler."""
     texts: dict[str, str] = {}
     for function in stage_functions(model, "stage", curvature):
-        texts |= sources([function], function.name(), "long long int")
+        texts |= external_sources([function], function.name(), "long long int")
     before = os.times()
     with tempfile.TemporaryDirectory() as folder:
         # A cache of its own: what was compiled before is compiled again.

@@ -24,7 +24,7 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar, written
@@ -143,7 +143,7 @@ def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, 
     stale = check_folder(folder, MANIFEST)
     files: dict[str, str] = {}
     for function in functions:
-        files |= sources([function], function.name(), "int")
+        files |= external_sources([function], function.name(), "int")
     versions = {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()}
     described = {"name": name, "functions": [f.name() for f in functions], "files": [*files, MANIFEST]}
     files[MANIFEST] = json.dumps({**described, "versions": versions}, indent=1) + "\n"

@@ -6,7 +6,6 @@ import casadi as ca
 
 from cosserat_casadi.codegen.functions_in_c import differentiable_functions
 from cosserat_casadi.codegen.kernels import kernel
-from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 
@@ -18,4 +17,4 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
         plain = kernel(model, entry.function, entry.external)
         reverse = plain.reverse(1)
         functions += [plain, plain.forward(1), reverse, reverse.forward(1)]
-    return [in_loops(function) for function in functions]
+    return functions

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.kernels import kernel, kernel_sources, kernels
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import kernel, kernels
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import model_names

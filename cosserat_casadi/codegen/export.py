@@ -17,7 +17,8 @@ from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cas
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import QUIET, kernel_sources, kernels, sources
+from cosserat_casadi.codegen.kernel_files import external_sources, kernel_sources
+from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
@@ -255,7 +256,9 @@ def _side_by_side(model: Model, names: Names) -> InLanes:
 
 
 def _derivative_source(model: Model, names: Names) -> dict[str, str]:
-    file = f"{names.name}_derivatives.c"
+    stem = f"{names.name}_derivatives"
     # casadi.external expects the integers that CasADi itself was built with.
-    written = sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]
-    return {file: QUIET + written}
+    written = external_sources(differentiable(model, names), stem, "long long int")
+    # Nothing else includes their prototypes.
+    del written[f"{stem}.h"]
+    return written

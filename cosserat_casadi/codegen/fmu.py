@@ -18,7 +18,8 @@ from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
-from cosserat_casadi.codegen.kernels import kernel, kernel_sources
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import kernel
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion

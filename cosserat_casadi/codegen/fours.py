@@ -25,32 +25,30 @@ from cosserat_casadi.codegen.listing import (
     UnknownOperationError,
 )
 from cosserat_casadi.codegen.statements import (
+    FOURS,
     LONGEST,
     LONGEST_OF_NUMBERS,
+    SINGLE,
+    Arithmetic,
     Block,
     Statement,
     in_parts,
-    number_in_c,
-    on_fours,
-    on_numbers,
 )
 from cosserat_casadi.maths.typing import FloatArray
 
-FEWEST = 3
-"""Calls of one function from which on they are made together."""
 
-
-def in_fours(function: ca.Function, signature: ca.Function) -> InFours:
+def in_fours(function: ca.Function, signature: ca.Function, arithmetic: Arithmetic = SINGLE) -> InFours:
     """A scalar function as C of our own.
 
     Args:
         function: the function.
         signature: a function with the name, arguments and first result that it has in C.
+        arithmetic: on what it computes.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Writing(Listing(function), signature, None).result()
+    return _Writing(Listing(function), signature, None, arithmetic).result()
 
 
 def with_calls_in_fours(kernel: ca.Function) -> Kernel:
@@ -73,7 +71,7 @@ def columns_in_fours(form: ColumnForm, signature: ca.Function) -> InFours:
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Writing(Listing(form.function), signature, form).result()
+    return _Writing(Listing(form.function), signature, form, SINGLE).result()
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,10 @@ class _Writing:
     variables.
     """
 
-    def __init__(self, listing: Listing, signature: ca.Function, form: ColumnForm | None) -> None:
+    def __init__(
+        self, listing: Listing, signature: ca.Function, form: ColumnForm | None, arithmetic: Arithmetic
+    ) -> None:
+        self.arithmetic = arithmetic
         self.listing = listing
         self.name: str = signature.name()
         self.signature = signature
@@ -210,13 +211,17 @@ class _Writing:
             groups[hash(call.function), depth[call.results[0]]].append(number)
         batches: dict[int, _Batch] = {}
         for calls in groups.values():
-            width = LANES if len(calls) >= FEWEST else 1
+            width = LANES if self._are_made_together(len(calls)) else 1
             call = self.listing.calls[calls[0]]
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
             self._room(width * batch.turns * batch.results)
             batches |= dict.fromkeys(calls, batch)
             self._place_results(batch)
         return batches
+
+    def _are_made_together(self, calls: int) -> bool:
+        """Whether so many calls of one function are made four at a time."""
+        return self.arithmetic.together is not None and calls >= self.arithmetic.together
 
     def _depths(self) -> list[int]:
         """For each value the number of calls that one needs of another for it, itself included."""
@@ -276,10 +281,10 @@ class _Writing:
         if self._is_of_all_columns(number):
             return
         if isinstance(value, Read):
-            entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : 0"
+            entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : {self.arithmetic.number(0.0)}"
             self.main.statements.append(Statement(f"{{made}} = {entry};", [], number))
         elif isinstance(value, Computed):
-            self.main.statements.append(on_numbers(value.operation, value.operands, number))
+            self.main.statements.append(self.arithmetic.operation(value.operation, value.operands, number))
         if number in self.place:
             self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
 
@@ -307,7 +312,7 @@ class _Writing:
                     self._compute(entries[entry])
                     self.main.statements.append(Statement(f"{asked}{place} = {{0}};", [entries[entry]]))
                 else:
-                    self.main.statements.append(Statement(f"{asked}{place} = 0;", []))
+                    self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
 
     def _is_of_all_columns(self, number: int) -> bool:
         value = self.listing.values[number]
@@ -317,7 +322,7 @@ class _Writing:
         """What a value without columns is called outside of variables."""
         value = self.listing.values[number]
         if isinstance(value, Constant):
-            return number_in_c(value.value)
+            return self.arithmetic.number(value.value)
         if isinstance(value, Called):
             return f"w[{self.place[number]}]"
         if isinstance(value, Read) and self._is_of_all_columns(number):
@@ -338,34 +343,8 @@ class _Writing:
             self._write_callee(name, Listing(function), width)
 
     def _write_callee(self, name: str, listing: Listing, width: int) -> None:
-        """Write a function that is called, for one or for four calls at once."""
-        function = listing.function
-        wide = width == LANES
-        arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
-        results = _starts(function.nnz_out(i) for i in range(function.n_out()))
-        block = Block("FOUR", "b", []) if wide else Block("casadi_real", "a", [])
-        for number, value in enumerate(listing.values):
-            if isinstance(value, Computed):
-                written = on_fours if wide else on_numbers
-                block.statements.append(written(value.operation, value.operands, number))
-        for start, entries in zip(results, listing.outputs, strict=True):
-            for entry, number in entries.items():
-                place = width * (start + entry)
-                store = f"STORE(made + {place}, {{0}});" if wide else f"made[{place}] = {{0}};"
-                block.statements.append(Statement(store, [number]))
-
-        def text(number: int) -> str | None:
-            value = listing.values[number]
-            if isinstance(value, Constant):
-                constant = number_in_c(value.value)
-                return f"EACH({constant})" if wide else constant
-            if isinstance(value, Read):
-                place = width * (arguments[value.argument] + value.entry)
-                return f"LOAD(given + {place})" if wide else f"given[{place}]"
-            return None
-
-        self.callees[name] = Callee(_body(block.lines(text)), width, function.nnz_in(), function.nnz_out())
-        self.statements += len(block.statements)
+        self.callees[name], statements = callee(listing, FOURS if width == LANES else self.arithmetic)
+        self.statements += statements
 
     # Columns
 
@@ -400,7 +379,7 @@ class _Writing:
             if self.in_column[number] and not isinstance(value, Read):
                 if not isinstance(value, Computed):
                     raise UnknownOperationError("a call in a column")
-                statements.append(on_fours(value.operation, value.operands, number))
+                statements.append(FOURS.operation(value.operation, value.operands, number))
         entries = self.listing.outputs[1]
         for row in range(form.rows):
             place = row * form.stride
@@ -419,12 +398,49 @@ class _Writing:
         if number in elsewhere:
             return f"LOAD(passed + {LANES * elsewhere[number]})"
         if isinstance(value, Constant):
-            return f"EACH({number_in_c(value.value)})"
+            return FOURS.number(value.value)
         if not self.in_column[number]:
             return f"EACH(w[{self.place[number]}])"
         if isinstance(value, Read):
             return f"LOAD(turns + {LANES * value.entry})"
         return None
+
+
+def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
+    """A function that is called, and its number of statements.
+
+    Args:
+        listing: of the function.
+        arithmetic: on what it computes: with FOURS for four calls at once.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    function = listing.function
+    wide = arithmetic is FOURS
+    width = LANES if wide else 1
+    arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
+    results = _starts(function.nnz_out(i) for i in range(function.n_out()))
+    block = Block("FOUR", "b", []) if wide else Block("casadi_real", "a", [])
+    for number, value in enumerate(listing.values):
+        if isinstance(value, Computed):
+            block.statements.append(arithmetic.operation(value.operation, value.operands, number))
+    for start, entries in zip(results, listing.outputs, strict=True):
+        for entry, number in entries.items():
+            place = width * (start + entry)
+            store = f"STORE(made + {place}, {{0}});" if wide else f"made[{place}] = {{0}};"
+            block.statements.append(Statement(store, [number]))
+
+    def text(number: int) -> str | None:
+        value = listing.values[number]
+        if isinstance(value, Constant):
+            return arithmetic.number(value.value)
+        if isinstance(value, Read):
+            place = width * (arguments[value.argument] + value.entry)
+            return f"LOAD(given + {place})" if wide else f"given[{place}]"
+        return None
+
+    return Callee(_body(block.lines(text)), width, function.nnz_in(), function.nnz_out()), len(block.statements)
 
 
 def _body(lines: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 import casadi as ca
 
+from cosserat_casadi.codegen.products import Product, product_routines
 from cosserat_casadi.codegen.texts import fill, resource
 
 PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
@@ -76,7 +77,7 @@ class Callee:
         return CALLEE.format(name=name, body=self.body, given=given, made=made, call=call.format(name=name))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class InFours:
     """A kernel that is written here.
 
@@ -88,6 +89,9 @@ class InFours:
         callees: functions that these call by the name of the kernel and a word, by the word.
         reals: numbers that it works in.
         statements: how many there are.
+        is_program: whether it is written in loops.
+        products: routines that it calls for products of matrices.
+        kernels: others that it calls.
     """
 
     signature: ca.Function
@@ -97,6 +101,9 @@ class InFours:
     callees: Mapping[str, Callee]
     reals: int
     statements: int
+    is_program: bool = False
+    products: tuple[Product, ...] = ()
+    kernels: tuple[InFours, ...] = ()
 
     def name(self) -> str:
         """Its name in C."""
@@ -124,11 +131,13 @@ class SourcesInFours:
 
     Attributes:
         source: what follows in the source.
+        functions: of it, functions on numbers that nothing is made four at a time in.
         prototypes: what follows in the header.
         included: files by name that the source includes.
     """
 
     source: str
+    functions: str
     prototypes: str
     included: dict[str, str]
 
@@ -140,25 +149,46 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         kernels: the kernels.
         stem: of the file names.
     """
+    public = kernels
+    kernels = _with_called(kernels)
     callees = _callees(kernels, stem)
+    any_program = any(kernel.is_program for kernel in kernels)
+    routines = product_routines(product for kernel in kernels for product in kernel.products)
     bodies = {kernel.name(): _with_names_of_callees(kernel, callees) for kernel in kernels}
     for_each_width = [kernel for kernel in kernels if kernel.by_columns]
     once = [kernel for kernel in kernels if not kernel.by_columns]
     called_once = [callees[callee] for kernel in once for callee in kernel.callees.values()]
-    words = {
-        "stem": stem,
-        "tables": "".join(kernel.tables for kernel in kernels),
-        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once)),
-        "once": "\n".join(bodies[kernel.name()] for kernel in once),
-        "kernels_once": "".join(f"KERNEL({kernel.name()}, KERNEL_ONCE)\n" for kernel in once),
-        "kernels_for_each_width": "".join(f"KERNEL({kernel.name()}, IN_FOURS)\n" for kernel in for_each_width),
-    }
-    prototypes = "".join(kernel.prototype() for kernel in kernels)
     functions = [callee.text(name) for callee, name in callees.items()]
     functions += [bodies[kernel.name()] for kernel in for_each_width]
-    text = "\n".join(["/* Included once for each width of vectors. */", *functions])
-    included = {f"{stem}_in_fours.h": text, "fours.h": resource("c", "fours.h")}
-    return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
+    words = {
+        "stem": stem,
+        "programs": '#include "program.h"\n' + routines if any_program else "",
+        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once)),
+        "once": "\n".join(bodies[kernel.name()] for kernel in once),
+        "kernels_once": "".join(f"KERNEL({kernel.name()}, KERNEL_ONCE)\n" for kernel in once if kernel in public),
+        "kernels_for_each_width": "".join(f"KERNEL({kernel.name()}, IN_FOURS)\n" for kernel in for_each_width),
+    }
+    source = "".join(kernel.tables for kernel in kernels)
+    included = {}
+    if functions:
+        source += fill(resource("templates", "fours.c.in"), words)
+        included[f"{stem}_in_fours.h"] = "\n".join(["/* Included once for each width of vectors. */", *functions])
+        included["fours.h"] = resource("c", "fours.h")
+    if any_program:
+        included["program.h"] = resource("c", "program.h")
+    source += fill(resource("templates", "kernels_once.c.in"), words)
+    prototypes = "".join(kernel.prototype() for kernel in public)
+    return SourcesInFours(source, "\n".join([*functions, words["once"]]), prototypes, included)
+
+
+def _with_called(kernels: Sequence[InFours]) -> list[InFours]:
+    """Kernels behind those that they call, each once."""
+    every: dict[str, InFours] = {}
+    for kernel in kernels:
+        for one in (*_with_called(kernel.kernels), kernel):
+            same = every.setdefault(one.name(), one)
+            assert same.body == one.body, f"two kernels are called {one.name()}"
+    return list(every.values())
 
 
 def _callees(kernels: Sequence[InFours], stem: str) -> dict[Callee, str]:

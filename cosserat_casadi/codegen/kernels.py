@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import errno
-import os
-import re
-import tempfile
-from collections.abc import Sequence
 from contextlib import suppress
-from pathlib import Path
 
 import casadi as ca
 
@@ -16,17 +10,13 @@ from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
-from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.motion_parts import MotionInC
-from cosserat_casadi.codegen.moves import without_unused_tables
-from cosserat_casadi.codegen.names import QUERIES, Names
+from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
-from cosserat_casadi.codegen.routines import improved
-from cosserat_casadi.errors import WriteError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
@@ -45,8 +35,6 @@ RATE = "path_rate"
 STRAIGHT_BESIDE = {"tip_jacobian": 6000, "shape": 6000}
 """Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a
 tip's Jacobian from there on, and compilers take half as long for them; for a section, they take a tenth."""
-
-GENERATOR = {"with_header": True, "static_aux": True}
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
@@ -150,7 +138,7 @@ def kernel(model: Model, function: ca.Function, name: str, straight_within: int 
 
 def loops(function: ca.Function, name: str) -> ca.Function:
     """A function written for loops in C, with dense outputs."""
-    return in_loops(dense(function, name))
+    return dense(function, name)
 
 
 def dense(function: ca.Function, name: str) -> ca.Function:
@@ -165,90 +153,3 @@ def scalar(function: ca.Function, name: str) -> ca.Function:
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     expressions = [ca.densify(expression) for expression in ca.cse(list(function.call(symbols)))]
     return ca.Function(name, symbols, expressions, function.name_in(), function.name_out())
-
-
-def sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
-    """Text of ``stem.c`` and ``stem.h`` with these functions, with this C type for integers."""
-    generator = ca.CodeGenerator(stem, {**GENERATOR, "casadi_int": integer})
-    for function in functions:
-        generator.add(function)
-    with tempfile.TemporaryDirectory() as folder:
-        generator.generate(f"{folder}/")
-        return {name: _generated(Path(folder) / name) for name in (f"{stem}.c", f"{stem}.h")}
-
-
-def _generated(file: Path) -> str:
-    """Text of a file that CasADi has written.
-
-    Raises:
-        WriteError: the disk was full. CasADi does not look whether its files are written, and leaves them cut off.
-    """
-    text = file.read_text(encoding="utf-8")
-    if not text.endswith(ENDING):
-        raise WriteError(file, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
-    return improved(text)
-
-
-BEFORE_END = '#ifdef __cplusplus\n} /* extern "C" */'
-
-ENDING = '} /* extern "C" */\n#endif\n'
-"""How every file of CasADi ends."""
-
-QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
-#ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-"""
-
-PROLOGUE = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "The solver looks for values that are not finite: compile without -ffast-math."
-#endif
-#ifdef {macro}_SINGLE
-#define casadi_real float
-#endif
-/* Kernels are seen by the library alone. */
-#if defined(__GNUC__) && !defined(_WIN32)
-#define CASADI_SYMBOL_EXPORT __attribute__((visibility("hidden")))
-#else
-#define CASADI_SYMBOL_EXPORT
-#endif
-"""
-
-FILE_QUERIES = ("casadi_version", "casadi_int_size", "casadi_real_size")
-"""What CasADi says of a whole file."""
-
-
-def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does.
-
-    CasADi appends to each function a dozen others that describe it to ``casadi.external``. The library asks for none:
-    they are left out.
-
-    Args:
-        kernels: the kernels.
-        names: of the library.
-        stem: of the file names.
-    """
-    stem = stem or f"{names.name}_kernels"
-    functions = [kernel for kernel in kernels if isinstance(kernel, ca.Function)]
-    own = [kernel for kernel in kernels if isinstance(kernel, InFours)]
-    generated = sources(functions, stem, "int")
-    source = without_unused_tables(_without_queries(generated[f"{stem}.c"]))
-    prototypes = re.sub(rf"^[^#\n]*_({_queries()})\(.*\);\n", "", generated[f"{stem}.h"], flags=re.M)
-    files = {f"{stem}.c": QUIET + PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
-    if own:
-        written = sources_in_fours(own, stem)
-        files[f"{stem}.c"] += written.source
-        files[f"{stem}.h"] = files[f"{stem}.h"].replace(BEFORE_END, f"{written.prototypes}{BEFORE_END}")
-        files |= written.included
-    return files
-
-
-def _queries() -> str:
-    return "|".join([*(word for word in QUERIES.split() if word.islower()), *FILE_QUERIES])
-
-
-def _without_queries(source: str) -> str:
-    """A source without the functions that describe functions: on one line each, or up to a brace at its beginning."""
-    head = rf"^CASADI_SYMBOL_EXPORT [^\n]*_(?:{_queries()})\([^\n]*\) \{{"
-    return re.sub(rf"{head}(?:[^\n]*\}}|\n(?:[^}}\n][^\n]*\n)*\}})\n+", "", source, flags=re.M)

@@ -14,11 +14,15 @@ import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.columns import LANES
+from cosserat_casadi.codegen.fours import in_fours
+from cosserat_casadi.codegen.fours_sources import sources_in_fours
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
-from cosserat_casadi.codegen.kernels import kernel, kernel_sources
+from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
+from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.model.build import Model
 
@@ -29,29 +33,6 @@ STRAIGHT_IN_LANES = 60_000
 """Instructions of a kernel up to which rows are solved side by side. Its code is without loops, which has no memory to
 go through: what makes it slow, its length, four rows share. Loops in lanes are slower than rows one after the other,
 whose Jacobians have their columns in lanes (``benchmarks/row_cost.py``)."""
-
-NUMBER = r"-?(?:\d+\.?\d*(?:e[+-]?\d+)?|INFINITY|NAN)"
-
-LANEWISE = ("sqrt", "exp")
-"""Functions of the mathematical library that ``lanes_arithmetic.h`` has for lanes."""
-
-UNLIKE = re.compile(r"(?<![<>=!])(?:[<>]=?|[!=]=|!|&&|\|\|)(?![<>=])|\?")
-"""Comparisons, and choices between two values: what lanes would answer each in its own way."""
-
-CALL = re.compile(r"\b([a-z]\w*)\(")
-
-HARMLESS = (
-    re.compile(r"/\*.*?\*/"),
-    re.compile(r"\barg\[\d+\] ?\? ?arg\[\d+\](?:\[\d+\])? : (?:0|casadi_zeros)"),
-    re.compile(r"\bif \((?:res|arg)1?\[\d+\](?: ?!= ?0)?\)"),
-    re.compile(r"\bif \(casadi_f\d+\([^()]*\)\) return 1;"),
-    re.compile(r"\bfor \((?:[^()]|\([^()]*\))*\)"),
-)
-"""What CasADi asks of its arguments and of its loops, which is the same in all lanes."""
-
-OWN = re.compile(r"casadi_(?:f\d+|sq|fmax|fabs|copy|clear|fill|dot|densify|mtimes\w*)")
-"""Routines of CasADi's that are the same for lanes."""
-
 
 ROWS_TOGETHER = 16
 """Rows under way at a time: enough of them wait for the same."""
@@ -93,18 +74,19 @@ def in_lanes(model: Model, names: Names) -> InLanes | None:
     functions = [kernel(model, entry.function, entry.kernel, STRAIGHT_IN_LANES) for entry in entries]
     if not all(function.is_a("SXFunction") for function in functions):
         return None
-    stem = f"{names.name}_lanes"
-    generated = kernel_sources(functions, names, stem)
-    source_file, header_file = lanes_files(names.name)
-    bodies = re.findall(r"^(?:static int|CASADI_SYMBOL_EXPORT int) .*?^\}$", generated[source_file], re.M | re.S)
-    if not all(map(_alike, bodies)):
+    try:
+        written = [in_fours(function, function, LANES_OF_ROWS) for function in functions]
+    except UnknownOperationError:
         return None
+    source_file, header_file = lanes_files(names.name)
+    sources = sources_in_fours(written, f"{names.name}_lanes")
+    generated = {source_file: sources.source, header_file: sources.prototypes}
     words = {
         "name": names.name,
-        "kernels": _with_lanes(generated[source_file]),
+        "kernels": sources.functions,
         "functions": "".join(f"KERNEL({entry.kernel})\n" for entry in entries),
         "prototypes": "".join(f"KERNEL_IN_LANES({entry.kernel});\n" for entry in entries),
-        "sizes": _sizes(generated[header_file]),
+        "sizes": _sizes(sources.prototypes),
     }
     files = {
         source_file: render("lanes.c.in", words),
@@ -138,39 +120,3 @@ def _sizes(header: str) -> str:
     """What the kernels of a header ask for, as of kernels in lanes."""
     macros = re.findall(r"^#define (\w+)_(SZ_\w+ \d+)$", header, re.M)
     return "".join(f"#define {kernel}_in_lanes_{size}\n" for kernel, size in macros)
-
-
-def _alike(body: str) -> bool:
-    """Whether a function does the same in all lanes: no comparison of values, no function without a form for lanes."""
-    code = body.partition("\n")[2]
-    for harmless in HARMLESS:
-        code = harmless.sub("", code)
-    called = set(CALL.findall(code)) - set(LANEWISE)
-    return not UNLIKE.search(code) and all(OWN.fullmatch(name) for name in called)
-
-
-def _with_lanes(source: str) -> str:
-    """A source of CasADi's with numbers that stand alone spread to all lanes, and functions for lanes."""
-    # What is before the file's own beginning sets the type of single numbers.
-    source = source[source.index("/* This file was") :]
-    source = re.sub(rf"^(\s+\w+ ?= ?)({NUMBER});", r"\1IN_ALL(\2);", source, flags=re.M)
-    source = re.sub(r"(arg\[\d+\] ?\? ?arg\[\d+\]\[\d+\] : )0;", r"\1IN_ALL(0);", source)
-    source = re.sub(r"^(\s+(?:if .*\) )?res\[\d+\]\[\d+\]=)({NUMBER});", r"\1IN_ALL(\2);", source, flags=re.M)
-    source = re.sub(r"(\*[xy]\+\+ = )(0\.?);", r"\1IN_ALL(\2);", source)
-    source = re.sub(rf"(?<!\w)({'|'.join(LANEWISE)})\(", r"lanes_\1(", source)
-    source = source.replace("static casadi_real casadi_sq(", "IN_PLACE casadi_real casadi_sq(")
-    # CasADi has routines of its own around these.
-    body = r"(static casadi_real casadi_(fmax|fabs)\(casadi_real x(, casadi_real y)?\) \{\n).*?^\}"
-    source = re.sub(body, _routine, source, flags=re.M | re.S)
-
-    def spread(table: re.Match[str]) -> str:
-        numbers = re.sub(NUMBER, lambda number: f"ALIKE({number[0]})", table[2])
-        return f"{table[1]}{numbers}}};"
-
-    tables = r"^(static const casadi_real \w+\[\d+\] =\s*\{)(.*?)\};"
-    return re.sub(tables, spread, source, flags=re.M | re.S)
-
-
-def _routine(found: re.Match[str]) -> str:
-    given = "x, y" if found[3] else "x"
-    return f"{found[1]}  return lanes_{found[2]}({given});\n}}"

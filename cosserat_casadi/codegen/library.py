@@ -62,7 +62,8 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
+PROGRAM = ("program.h",)
+VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, *PROGRAM})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 COMMENT_WIDTH = 120
@@ -104,6 +105,7 @@ ROLES = {
     "{name}_kernels.h": "their prototypes",
     "{name}_kernels_in_fours.h": "those of them that compute four columns or intervals at once; included",
     "fours.h": "four numbers in a vector of the processor, or one after the other",
+    "program.h": "copies and sums of tables of numbers, for kernels in loops; included",
     "{name}_lanes.c": "the equations for four load cases at once: compile this too",
     "{name}_lanes.h": "their prototypes",
     "lanes.c": "the solver of many load cases side by side; included",
@@ -113,6 +115,7 @@ ROLES = {
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
+    "{name}_derivatives_in_fours.h": "those of them that compute four intervals at once; included",
     "{name}_demo.c": "solves once, times it, prints JSON",
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
     "CMakeLists.txt": "library, demo, install, `find_package`",

@@ -16,12 +16,16 @@ FUNCTIONS = {
     ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",
     ca.OP_ASIN: "asin", ca.OP_ACOS: "acos", ca.OP_ATAN: "atan", ca.OP_ATAN2: "atan2", ca.OP_TANH: "tanh",
     ca.OP_SINH: "sinh", ca.OP_COSH: "cosh", ca.OP_FABS: "fabs", ca.OP_POW: "pow", ca.OP_CONSTPOW: "pow",
-    ca.OP_FMIN: "fmin", ca.OP_FMAX: "fmax",
+    ca.OP_FMIN: "fmin", ca.OP_FMAX: "fmax", ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil", ca.OP_FMOD: "fmod",
+    ca.OP_COPYSIGN: "copysign", ca.OP_ERF: "erf", ca.OP_LOG1P: "log1p", ca.OP_EXPM1: "expm1", ca.OP_HYPOT: "hypot",
+    ca.OP_ASINH: "asinh", ca.OP_ACOSH: "acosh", ca.OP_ATANH: "atanh",
 }  # fmt: skip
 """Operations that single numbers have besides, as functions of the mathematical library."""
 
 CHOICES = {
-    ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_NOT: "!{0}", ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0",
+    ca.OP_LT: "{0} < {1}", ca.OP_LE: "{0} <= {1}", ca.OP_EQ: "{0} == {1}", ca.OP_NE: "{0} != {1}",
+    ca.OP_NOT: "!{0}", ca.OP_AND: "{0} && {1}", ca.OP_OR: "{0} || {1}", ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0",
+    ca.OP_SIGN: "{0} < 0 ? -1 : {0} > 0 ? 1 : {0}",
 }  # fmt: skip
 """Those that compare and choose: distances from obstacles have some."""
 

@@ -194,3 +194,53 @@ class Program:
     arguments: list[Argument]
     steps: list[Step]
     results: dict[str, Value]
+
+
+def function_of(program: Program) -> ca.Function:
+    """A program as a function of CasADi, whose instructions bring entries into order before each step."""
+    columns: dict[int, ca.MX] = {}
+    origins = program.origins
+
+    def keep(value: Value, computed: ca.MX) -> None:
+        if len(value.numbers):
+            (owner,) = set(origins.owners(value.numbers).tolist())
+            columns[owner] = ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz())))
+
+    def matrix(value: Value) -> ca.MX:
+        return ca.sparsity_cast(_gathered(origins, columns, value.numbers), value.pattern)
+
+    symbols = []
+    for argument in program.arguments:
+        pieces = [ca.MX.sym(argument.name, piece.pattern) for piece in argument.pieces]
+        for piece, symbol in zip(argument.pieces, pieces, strict=True):
+            keep(piece, symbol)
+        symbols.append(pieces[0] if len(pieces) == 1 else ca.vertcat(*pieces))
+    for step in program.steps:
+        for result, computed in zip(step.results, step.of([matrix(value) for value in step.operands]), strict=True):
+            keep(result, computed)
+    results = [matrix(value) for value in program.results.values()]
+    names = [argument.name for argument in program.arguments]
+    return ca.Function(program.name, symbols, results, names, list(program.results))
+
+
+def _gathered(origins: Origins, columns: dict[int, ca.MX], numbers: Numbers) -> ca.MX:
+    """A column of entries, which are taken out of the columns of things."""
+    if len(numbers) == 0:
+        return ca.MX(0, 1)
+    owners = origins.owners(numbers)
+    pool = []
+    places = np.empty(len(numbers), dtype=np.int64)
+    size = 0
+    for owner in np.unique(owners).tolist():
+        own = owners == owner
+        if owner:
+            column_of_owner = columns[owner]
+            within = numbers[own] - origins.numbers(owner)[0]
+        else:
+            column_of_owner = ca.MX(ca.DM(origins.constants(numbers[own])))
+            within = np.arange(np.count_nonzero(own))
+        pool.append(column_of_owner)
+        places[own] = size + within
+        size += column_of_owner.numel()
+    # Of one entry that is taken several times CasADi makes a row.
+    return ca.vec(ca.vertcat(*pool).nz[places.tolist()])

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.loops import in_loops, written
-from cosserat_casadi.codegen.numbered import Program
+from cosserat_casadi.codegen.numbered import Program, function_of
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
@@ -129,7 +128,7 @@ def _programs(function: ca.Function, places: Sequence[list[int]]) -> list[Partia
 
 def _short_or_in_loops(program: Program) -> ca.Function:
     """Straight-line code if that is short, else loops."""
-    in_loops = written(program)
+    in_loops = function_of(program)
     symbols = [ca.SX.sym(in_loops.name_in(i), in_loops.sparsity_in(i)) for i in range(in_loops.n_in())]
     results = ca.cse(list(in_loops.call(symbols)))
     straight = ca.Function(program.name, symbols, results, in_loops.name_in(), in_loops.name_out())
@@ -176,10 +175,11 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
     places = places_by_owner(owners)
     pieces = []
     kernels = []
-    for own in places:
+    for number, own in enumerate(places):
         piece = ca.vertcat(*[entries[i] for i in own])
-        pieces.append(ca.Function("piece", symbols, [piece], *names_of_part(function.name_in())))
-        kernels.append(ca.Function("piece", symbols, [ca.cse(piece)], *names_of_part(function.name_in())))
+        called = f"{name}_of_{number}"
+        pieces.append(ca.Function(called, symbols, [piece], *names_of_part(function.name_in())))
+        kernels.append(ca.Function(called, symbols, [ca.cse(piece)], *names_of_part(function.name_in())))
     arguments = function.mx_in()
     columns = [piece.call(arguments)[0] for piece in sharing(pieces, kernels, f"{name}_part")]
     order = [i for own in places for i in own]
@@ -218,7 +218,7 @@ def _whole(function: ca.Function, name: str) -> Parted:
     symbols = function.mx_in()
     result = function.call(symbols)[0].nz[:]
     no_constants = ca.MX(0, 1)
-    kernel = in_loops(ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"]))
+    kernel = ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"])
     part = Part(
         kernel=0,
         reads=[list(range(function.size1_in(i))) for i in range(3)],

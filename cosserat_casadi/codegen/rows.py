@@ -12,7 +12,8 @@ import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
-from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import in_lanes
 from cosserat_casadi.codegen.library import VERBATIM, library_sources
 from cosserat_casadi.codegen.names import Names, model_names

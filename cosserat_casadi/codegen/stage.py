@@ -17,8 +17,7 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
-from cosserat_casadi.codegen.kernels import sources
-from cosserat_casadi.codegen.loops import in_loops
+from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
@@ -89,7 +88,7 @@ def written_in_c(functions: Iterator[ca.Function], name: str, progress: Progress
         if progress is not None:
             progress(f"Writing {name} in C", done, PARTS)
         function = next(functions)
-        texts |= sources([function], function.name(), "long long int")
+        texts |= external_sources([function], function.name(), "long long int")
     return texts
 
 
@@ -182,8 +181,7 @@ def written(function: ca.Function, name: str) -> ca.Function:
     if straight.n_instructions() <= STRAIGHT:
         return straight
     arguments = function.mx_in()
-    whole = ca.Function(name, arguments, function.call(arguments), function.name_in(), function.name_out())
-    return in_loops(whole)
+    return ca.Function(name, arguments, function.call(arguments), function.name_in(), function.name_out())
 
 
 def poses_of(model: Model) -> dict[str, ca.Function]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf, isfinite
+
+import casadi as ca
 
 from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, UnknownOperationError
 
@@ -76,25 +79,58 @@ class Block:
         return [f"  {self.type} {', '.join(names[i : i + 16])};" for i in range(0, len(names), 16)]
 
 
-def on_numbers(operation: int, operands: Sequence[int], made: int) -> Statement:
-    """An operation on single numbers."""
-    if operation in BINARY:
-        return Statement(f"{{made}} = {{0}} {BINARY[operation]} {{1}};", operands, made)
-    if operation in CHOICES:
-        return Statement(f"{{made}} = {CHOICES[operation]};", operands, made)
-    places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
-    return Statement(f"{{made}} = {FUNCTIONS[operation]}({places});", operands, made)
+@dataclass(frozen=True)
+class Arithmetic:
+    """How numbers and operations on them are written.
 
-
-def on_fours(operation: int, operands: Sequence[int], made: int) -> Statement:
-    """An operation on fours.
-
-    Raises:
-        UnknownOperationError: fours do not have it.
+    Attributes:
+        functions: names of functions of the mathematical library, by operation.
+        choices: comparisons and choices, by operation.
+        spread: what a constant is written in.
+        together: calls of one function from which on they are made together; None for never.
     """
-    if operation not in BINARY:
-        raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
-    return on_numbers(operation, operands, made)
+
+    functions: Mapping[int, str]
+    choices: Mapping[int, str]
+    spread: str
+    together: int | None
+
+    def number(self, value: float) -> str:
+        """A constant."""
+        return self.spread.format(number_in_c(value))
+
+    def operation(self, operation: int, operands: Sequence[int], made: int) -> Statement:
+        """An operation.
+
+        Raises:
+            UnknownOperationError: it has no form here.
+        """
+        if operation in BINARY:
+            return Statement(f"{{made}} = {{0}} {BINARY[operation]} {{1}};", operands, made)
+        if operation in self.choices:
+            return Statement(f"{{made}} = {self.choices[operation]};", operands, made)
+        if operation not in self.functions:
+            raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
+        places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
+        return Statement(f"{{made}} = {self.functions[operation]}({places});", operands, made)
+
+
+FEWEST = 3
+"""Calls of one function from which on they are made together, four at a time."""
+
+SINGLE = Arithmetic(FUNCTIONS, CHOICES, "{}", FEWEST)
+"""Numbers one by one, and calls of intervals four at a time."""
+
+FOURS = Arithmetic({}, {}, "EACH({})", None)
+"""Four numbers at once."""
+
+LANES_OF_ROWS = Arithmetic(
+    {ca.OP_SQRT: "lanes_sqrt", ca.OP_EXP: "lanes_exp", ca.OP_FABS: "lanes_fabs", ca.OP_FMAX: "lanes_fmax"},
+    {},
+    "IN_ALL({})",
+    None,
+)
+"""Numbers of several rows at once, which have no comparison: lanes would answer it each in its own way."""
 
 
 def in_parts(
@@ -137,5 +173,7 @@ def _storing(part: Sequence[Statement], passed: dict[int, int], store: Callable[
 
 def number_in_c(value: float) -> str:
     """A constant in C; negative ones may follow an operation."""
+    if not isfinite(value):
+        return {inf: "INFINITY", -inf: "(-INFINITY)"}.get(value, "NAN")
     text = repr(value)
     return f"({text})" if value < 0 else text

@@ -36,6 +36,8 @@ WORTH_SPLITTING = 0.2
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
 SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
+MAPS = {"Map", "MapSum"}
+ADDING = {ca.OP_SETNONZEROS, ca.OP_ADDNONZEROS}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
@@ -123,17 +125,59 @@ class _Reading:
             function = node.which_function()
             if function.is_a("MXFunction"):
                 return self._read(function, operands)
-            return self._step(function, operands, _length(function), called=True)
+            if function.class_name() in MAPS:
+                return self._mapped(function, operands)
+            if not function.is_a("SXFunction"):
+                raise UnknownInstructionError
+            return self._called(function, operands)
         if node.is_unary() or node.is_binary():
             return [self._elementwise(code, node, operands)]
-        if code == ca.OP_SETNONZEROS:
+        if code in ADDING:
             return [self._added(node, *operands)]
         before = [node.dep(i) for i in range(node.n_dep())]
         if any(operand.is_output() for operand in before):
             raise UnknownInstructionError
         symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
         as_it_is = ca.Function("instruction", symbols, ca.graph_substitute([node], before, symbols))
-        return self._step(as_it_is, operands, np.inf)
+        try:
+            scalar = as_it_is.expand()
+        except RuntimeError as error:
+            raise UnknownInstructionError from error
+        return self._step(scalar, operands, _length(scalar), called=True)
+
+    def _mapped(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
+        """Results of a function that is called for one group of columns after the other.
+
+        Arguments as wide as those of a single call are the same in all calls, such results are sums over them.
+        """
+        (one,) = function.find_functions(0)
+        widths = [*map(function.size2_in, range(one.n_in())), *map(function.size2_out, range(one.n_out()))]
+        own_widths = [*map(one.size2_in, range(one.n_in())), *map(one.size2_out, range(one.n_out()))]
+        count = max(whole // own for whole, own in zip(widths, own_widths, strict=True) if own)
+        calls = []
+        for k in range(count):
+            given = []
+            for i, operand in enumerate(operands):
+                size = one.nnz_in(i)
+                first = k * size if len(operand.numbers) > size else 0
+                given.append(Value(one.sparsity_in(i), operand.numbers[first : first + size]))
+            calls.append(self._called(one, given))
+        results = []
+        for i in range(one.n_out()):
+            columns = [call[i].numbers for call in calls]
+            if function.size2_out(i) > one.size2_out(i):
+                numbers = np.concatenate(columns)
+            else:
+                numbers = columns[0]
+                for column_of_call in columns[1:]:
+                    numbers = self._sum(ca.OP_ADD, numbers, column_of_call)
+            results.append(Value(function.sparsity_out(i), numbers))
+        return results
+
+    def _called(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
+        """Results of a function that stays one of its own."""
+        length = _length(function) if function.is_a("SXFunction") else np.inf
+        return self._step(function, operands, length, called=True)
 
     def _step(
         self,

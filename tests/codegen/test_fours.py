@@ -13,7 +13,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
-from cosserat_casadi.codegen import fours, kernels
+from cosserat_casadi.codegen import fours, kernel_files, kernels
 from cosserat_casadi.codegen.columns import LANES, in_columns, on_path
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.fours_sources import InFours
@@ -147,7 +147,7 @@ def computed_in_c(kernel: InFours, given: FloatArray, size: int, folder: Path) -
     name = kernel.name()
     target = folder / f"{name}.so"
     if not target.exists():
-        for file, text in kernels.kernel_sources([kernel], library_names(name), name).items():
+        for file, text in kernel_files.kernel_sources([kernel], library_names(name), name).items():
             (folder / file).write_text(text)
         wrapper = folder / "wrapper.c"
         wrapper.write_text(
@@ -264,7 +264,7 @@ def test_results_that_nobody_asks_for(tmp_path: Path) -> None:
     # Sanitizers take the compiler long: it gets the one kernel that is called.
     (igm,) = [kernel for kernel in kernels.kernels(model, names, None) if kernel.name() == names.kernel("igm")]
     assert isinstance(igm, InFours)
-    for file, text in kernels.kernel_sources([igm], names).items():
+    for file, text in kernel_files.kernel_sources([igm], names).items():
         (tmp_path / file).write_text(text)
     flags = ["-std=c99", "-O0", "-g", "-fsanitize=address,undefined", f"-DSIZE={model.size}"]
     gcc(*flags, program, tmp_path / "wire_kernels.c", "-lm", "-o", tmp_path / "one")

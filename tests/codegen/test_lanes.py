@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Compiled, ExportError, Model, Outcome, Scene, build, export, load
 from cosserat_casadi.codegen import compiler, lanes, rows
+from cosserat_casadi.codegen.fours import in_fours
+from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
+from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
@@ -256,21 +261,25 @@ def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "alike"),
+    ("written", "has_a_form"),
     [
-        ("a01=(a02*a03);", True),
-        ("a01=arg[0]? arg[0][5] : 0;", True),
-        ("a01=casadi_fmax(a02,a03);", True),
-        ("if (res[0]!=0) res[0][1]=a01;", True),
-        ("for (rr=(&w1), cs=w2+8; cs!=w2+9; cs+=1) *rr++ = *cs;", True),
-        ("a01=(a02<a03);", False),
-        ("a01=(a02?a03:0);", False),
-        ("a01=(!a02);", False),
-        ("a01=tanh(a02);", False),
+        (lambda x: x[0] * x[1] - x[0] / 3.0, True),
+        (lambda x: ca.sqrt(x[0]) + ca.exp(x[1]), True),
+        (lambda x: ca.fmax(x[0], ca.fabs(x[1])), True),
+        (lambda x: x[0] < x[1], False),
+        (lambda x: ca.if_else(x[0], x[1], 0.0), False),
+        (lambda x: ca.logic_not(x[0]), False),
+        (lambda x: ca.tanh(x[0]), False),
     ],
 )
-def test_what_lanes_cannot_do_together_is_known(line: str, alike: bool) -> None:
-    assert lanes._alike(f"static int casadi_f1(const casadi_real** arg) {{\n  {line}\n}}") is alike
+def test_what_lanes_cannot_do_together_is_known(written: Callable[[ca.SX], ca.SX], has_a_form: bool) -> None:
+    x = ca.SX.sym("x", 2)
+    function = ca.Function("f", [x], [written(x)])
+    if has_a_form:
+        assert "IN_ALL" in in_fours(function, function, LANES_OF_ROWS).body
+        return
+    with pytest.raises(UnknownOperationError):
+        in_fours(function, function, LANES_OF_ROWS)
 
 
 def test_batches_of_a_library_may_have_any_name(tmp_path: Path) -> None:

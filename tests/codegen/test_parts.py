@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import build, discretise
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
-from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import in_one, parted, sharing
 from cosserat_casadi.codegen.streams import CONSTANT, Stream, same_but_for_rounding

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise
 from cosserat_casadi.codegen.blocks import INTERFACE, blocks
-from cosserat_casadi.codegen.kernels import kernel_sources, loops
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import loops
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.programs import partial_program

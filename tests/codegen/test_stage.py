@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import ExportError, Model, build, compiled_stage, discretise
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen import stage as stage_module
-from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.stage import stage_functions
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
@@ -145,8 +145,8 @@ def test_code_of_second_derivatives_does_not_grow_with_their_columns() -> None:
     assert second.nnz_out("jac_adj_inputs_inputs") == 0
     both = [second.nnz_out("jac_adj_x_inputs"), second.nnz_out("jac_adj_inputs_x")]
     assert both == [model.size, model.size]
-    size = len(sources([second], "second", "long long int")["second.c"])
-    of_adjoint = len(sources([adjoint], "adjoint", "long long int")["adjoint.c"])
+    size = len(external_sources([second], "second", "long long int")["second.c"])
+    of_adjoint = len(external_sources([adjoint], "adjoint", "long long int")["adjoint.c"])
     assert size < 6 * of_adjoint
 
 

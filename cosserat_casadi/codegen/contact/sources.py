@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
 from cosserat_casadi.codegen.contact.tables import Tables, described
-from cosserat_casadi.codegen.kernels import kernel_sources
+from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import PLAIN_BUILD, comment, input_words, version_words
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes

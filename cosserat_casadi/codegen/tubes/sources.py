@@ -13,7 +13,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
-from cosserat_casadi.codegen.kernels import kernel_sources
+from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
     SHARED,

@@ -1,0 +1,188 @@
+"""Kernels as files in C: those that a library calls, and functions that ``casadi.external`` loads.
+
+Functions of scalars are written by fours.py, functions of matrices by program_in_c.py. What has no form there, the
+literal linear system of a rotation with its pivoting, CasADi writes.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import tempfile
+import textwrap
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import casadi as ca
+
+from cosserat_casadi.codegen.fours import in_fours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
+from cosserat_casadi.codegen.listing import UnknownOperationError
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.program_in_c import program_in_c
+from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
+from cosserat_casadi.codegen.texts import fill, resource
+from cosserat_casadi.errors import WriteError
+
+QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+"""
+
+OF_A_LIBRARY = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "The solver looks for values that are not finite: compile without -ffast-math."
+#endif
+#ifdef {macro}_SINGLE
+#define casadi_real float
+#endif
+/* Kernels are seen by the library alone. */
+#if defined(__GNUC__) && !defined(_WIN32)
+#define CASADI_SYMBOL_EXPORT __attribute__((visibility("hidden")))
+#else
+#define CASADI_SYMBOL_EXPORT
+#endif
+"""
+
+OF_EXTERNALS = """#ifndef CASADI_SYMBOL_EXPORT
+#if defined(_WIN32)
+#define CASADI_SYMBOL_EXPORT __declspec(dllexport)
+#else
+#define CASADI_SYMBOL_EXPORT
+#endif
+#endif
+"""
+
+TYPES = """#ifndef casadi_real
+#define casadi_real double
+#endif
+#ifndef casadi_int
+#define casadi_int {integer}
+#endif
+"""
+
+BEGIN = """#ifdef __cplusplus
+extern "C" {
+#endif
+"""
+
+END = """#ifdef __cplusplus
+} /* extern "C" */
+#endif
+"""
+"""How every file ends, those of CasADi too."""
+
+GENERATOR = {"with_header": True, "static_aux": True}
+
+
+def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:
+    """Source and header of the kernels by file name; they compute in float when the library does.
+
+    Args:
+        kernels: the kernels.
+        names: of the library.
+        stem: of the file names.
+    """
+    return _files(kernels, stem or f"{names.name}_kernels", "int", QUIET + OF_A_LIBRARY.format(macro=names.macro))
+
+
+def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
+    """Source and header of functions that ``casadi.external`` loads, by file name.
+
+    Args:
+        functions: the functions.
+        stem: of the file names.
+        integer: type of whole numbers in C.
+    """
+    return _files(functions, stem, integer, QUIET + OF_EXTERNALS, described=True)
+
+
+def in_c(kernel: Kernel) -> Kernel:
+    """A kernel as C of this package; itself where it has no form in it."""
+    if not isinstance(kernel, ca.Function):
+        return kernel
+    try:
+        if kernel.is_a("SXFunction"):
+            return in_fours(kernel, kernel)
+        return program_in_c(program_of(kernel), kernel)
+    except (UnknownInstructionError, UnknownOperationError):
+        return kernel
+
+
+def _files(
+    kernels: Sequence[Kernel], stem: str, integer: str, prologue: str, *, described: bool = False
+) -> dict[str, str]:
+    """Source and header, with what the source includes.
+
+    Args:
+        kernels: what they hold.
+        stem: of the file names.
+        integer: type of whole numbers in C.
+        prologue: what the source begins with.
+        described: whether functions follow that tell ``casadi.external`` of arguments and results.
+    """
+    written = [in_c(kernel) for kernel in kernels]
+    own = [kernel for kernel in written if isinstance(kernel, InFours)]
+    by_casadi = [kernel for kernel in written if isinstance(kernel, ca.Function)]
+    sources = sources_in_fours(own, stem)
+    types = TYPES.format(integer=integer)
+    descriptions = "".join(_description(kernel) for kernel in own) if described else ""
+    source = f"#include <math.h>\n{types}{BEGIN}{sources.source}{descriptions}{END}"
+    header = f"{BEGIN}{types}{sources.prototypes}{END}"
+    if by_casadi:
+        generated = _by_casadi(by_casadi, stem, integer)
+        source = generated[f"{stem}.c"] + source
+        header = generated[f"{stem}.h"] + header
+    return {f"{stem}.c": prologue + source, f"{stem}.h": header, **sources.included}
+
+
+def _description(kernel: InFours) -> str:
+    """Functions in C that tell ``casadi.external`` of arguments and results."""
+    function = kernel.signature
+    arguments = [function.sparsity_in(i) for i in range(function.n_in())]
+    results = [function.sparsity_out(i) for i in range(function.n_out())]
+    words = {
+        "name": kernel.name(),
+        "arguments": len(arguments),
+        "results": len(results),
+        "names_in": _listed(f'"{name}"' for name in function.name_in()),
+        "names_out": _listed(f'"{name}"' for name in function.name_out()),
+        "sparsities_in": _patterns("in", arguments),
+        "sparsities_out": _patterns("out", results),
+        "reals": kernel.reals,
+    }
+    return fill(resource("templates", "external.c.in"), words)
+
+
+def _patterns(side: str, patterns: Sequence[ca.Sparsity]) -> str:
+    """Constant arrays of sparsity patterns, and one of pointers to them."""
+    tables = []
+    for i, pattern in enumerate(patterns):
+        numbers = [*pattern.shape, 1] if pattern.is_dense() else [*pattern.shape, *pattern.colind(), *pattern.row()]
+        tables.append(f"  static const casadi_int {side}_{i}[] = {{{_listed(map(str, numbers))}}};\n")
+    pointers = _listed(f"{side}_{i}" for i in range(len(patterns)))
+    return "".join(tables) + f"  static const casadi_int *const every[] = {{{pointers}}};\n"
+
+
+def _listed(texts: Iterable[str]) -> str:
+    return textwrap.fill(", ".join(texts) or "0", 110, subsequent_indent="    ", break_long_words=False)
+
+
+def _by_casadi(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
+    """Source and header as CasADi writes them.
+
+    Raises:
+        WriteError: the disk was full. CasADi does not look whether its files are written, and leaves them cut off.
+    """
+    generator = ca.CodeGenerator(stem, {**GENERATOR, "casadi_int": integer})
+    for function in functions:
+        generator.add(function)
+    files = {}
+    with tempfile.TemporaryDirectory() as folder:
+        generator.generate(f"{folder}/")
+        for name in (f"{stem}.c", f"{stem}.h"):
+            file = Path(folder) / name
+            files[name] = file.read_text(encoding="utf-8")
+            if not files[name].endswith(END):
+                raise WriteError(file, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
+    return files

@@ -1,0 +1,138 @@
+"""Routines in C for products of matrices, one for each number of rows.
+
+Some rows of a column stay in registers until all their products are summed, four in each register where the processor
+can. On x86 a routine is made twice, as functions in fours are (templates/fours.c.in): the wider one is taken where the
+processor has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+ROWS_AT_ONCE = 16
+"""Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
+
+TOGETHER_IN_REGISTER = 4
+"""Doubles in one of the widest registers: bunches are multiples of it, but for the last."""
+
+TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE) && \\
+    !defined(FOURS_ONE_BY_ONE)
+#define PRODUCT(name, given, passed)                                                                    \\
+  __attribute__((target("avx2"))) static void name##_wide given { name##_sums passed; }                 \\
+  static void name given {                                                                              \\
+    if (__builtin_cpu_supports("avx2")) name##_wide passed;                                             \\
+    else name##_sums passed;                                                                            \\
+  }
+#else
+#define PRODUCT(name, given, passed) static void name given { name##_sums passed; }
+#endif
+#ifdef __GNUC__
+#define SUMS static inline __attribute__((always_inline)) void
+#else
+#define SUMS static void
+#endif
+"""
+"""What makes a routine of its sums, for any processor and for the wider vectors of newer ones."""
+
+SPARSE = """SUMS product_sparse{alone}_{rows}_sums(const casadi_real* x,
+    const casadi_real* y, const int* colind, int columns, casadi_real* z) {{
+  const int *row = colind + columns + 1;
+  int c, k, r;
+  for (c = 0; c < columns; ++c, z += {rows}) {{
+    const int begin = colind[c], end = colind[c + 1];
+{sums}
+  }}
+}}
+PRODUCT(product_sparse{alone}_{rows}, (const casadi_real* x, const casadi_real* y,
+    const int* colind, int columns, casadi_real* z), (x, y, colind, columns, z))
+"""
+
+DENSE = """SUMS product_dense{alone}_{rows}_sums(const casadi_real* x, int inner,
+    const casadi_real* y, int columns, casadi_real* z) {{
+  int c, k, r;
+  for (c = 0; c < columns; ++c, y += inner, z += {rows}) {{
+    const int begin = 0, end = inner;
+{sums}
+  }}
+}}
+PRODUCT(product_dense{alone}_{rows}, (const casadi_real* x, int inner, const casadi_real* y,
+    int columns, casadi_real* z), (x, inner, y, columns, z))
+"""
+
+BUNCHES = """    for (r = {first}; r < {last}; r += {count}) {{
+      casadi_real {begun};
+      for (k = begin; k < end; ++k) {{
+        const casadi_real f = y[k], *s = x + {column} * {rows} + r;
+        {added}
+      }}
+      {stored}
+    }}"""
+
+
+@dataclass(frozen=True, order=True)
+class Product:
+    """A product X Y of a dense matrix X.
+
+    Attributes:
+        rows: of X.
+        dense: whether Y is dense; else it is stored column by column, with a table of its entries.
+        alone: whether it is the result itself; else it is added to what is there.
+    """
+
+    rows: int
+    dense: bool
+    alone: bool
+
+    @property
+    def name(self) -> str:
+        """Name in C."""
+        kind = "dense" if self.dense else "sparse"
+        return f"product_{kind}{'_alone' if self.alone else ''}_{self.rows}"
+
+    @property
+    def text(self) -> str:
+        """The routine."""
+        column = "k" if self.dense else "row[k]"
+        alone = "_alone" if self.alone else ""
+        sums = _sums(self.rows, column, self.alone)
+        return (DENSE if self.dense else SPARSE).format(rows=self.rows, alone=alone, sums=sums)
+
+
+def product_routines(products: Iterable[Product]) -> str:
+    """The routines of these products; nothing where there are none."""
+    wanted = sorted(set(products))
+    return TWICE + "".join(product.text for product in wanted) if wanted else ""
+
+
+def _sums(rows: int, column: str, alone: bool) -> str:
+    """The sums of the rows of one column of the result, in bunches of one size and what is left.
+
+    Args:
+        rows: their number.
+        column: the column of x that meets y[k].
+        alone: whether they begin at zero; else they are added to z.
+    """
+    bunches = -(-rows // ROWS_AT_ONCE)
+    in_each = -(-rows // bunches)
+    size = min(rows, -(-in_each // TOGETHER_IN_REGISTER) * TOGETHER_IN_REGISTER)
+    middle = rows // size * size
+    parts = []
+    for first, last, count in ((0, middle, size), (middle, rows, rows - middle)):
+        if first < last:
+            parts.append(_sum(rows, first, last, count, column, alone))
+    return "\n".join(parts)
+
+
+def _sum(rows: int, first: int, last: int, count: int, column: str, alone: bool) -> str:
+    begun = ["0" if alone else f"z[r + {i}]" for i in range(count)]
+    return BUNCHES.format(
+        rows=rows,
+        first=first,
+        last=last,
+        count=count,
+        column=column,
+        begun=", ".join(f"a{i} = {first_value}" for i, first_value in enumerate(begun)),
+        added=" ".join(f"a{i} += f * s[{i}];" for i in range(count)),
+        stored=" ".join(f"z[r + {i}] = a{i};" for i in range(count)),
+    )

@@ -1,0 +1,609 @@
+"""A program (numbered.py) as C: loops over tables, products of matrices, and functions of intervals four at a time.
+
+Everything that is computed has a place in the numbers ``w`` that the kernel works in, which begin with a zero. A step
+reads its operands where they lie; entries that lie apart are gathered by a table before. Small steps are written
+together without loops, and calls of one function that do not wait for each other are made four at a time.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.columns import LANES
+from cosserat_casadi.codegen.fours import callee, in_fours
+from cosserat_casadi.codegen.fours_sources import Callee, InFours
+from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.codegen.numbered import Numbers, Program, Step
+from cosserat_casadi.codegen.products import Product
+from cosserat_casadi.codegen.statements import FEWEST, FOURS, LONGEST_OF_NUMBERS, SINGLE, Block, Statement, in_parts
+from cosserat_casadi.codegen.steps import program_of
+
+LONGEST_BUNDLE = 3000
+"""Instructions of small steps that are written together at the most."""
+
+LONGEST_WITHOUT_LOOP = 100
+"""Entries up to which an operation on each of them is written without a loop."""
+
+FEW_RUNS = 8
+"""Runs of neighbours up to which entries that lie apart are moved run by run."""
+
+UNUSED = -1
+"""Place of what has none."""
+
+
+@dataclass
+class Unit:
+    """Steps that are written as one: small ones without loops, calls that are made together, or one other step.
+
+    Attributes:
+        steps: the steps.
+        is_bundle: whether they are written without loops.
+    """
+
+    steps: list[Step]
+    is_bundle: bool = False
+
+    @property
+    def is_batch(self) -> bool:
+        """Whether these are calls of a function of scalars that calls no other."""
+        return not self.is_bundle and self.steps[0].called and not _is_kernel(self.steps[0])
+
+    @property
+    def operands(self) -> list[Numbers]:
+        """Entries of the operands of all steps."""
+        return [operand.numbers for step in self.steps for operand in step.operands]
+
+
+class Memory:
+    """Places in the numbers that a kernel works in: free ones are used again.
+
+    Attributes:
+        size: numbers that are needed in all.
+    """
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self._free: list[tuple[int, int]] = []
+
+    def take(self, count: int) -> int:
+        """The first of so many neighbouring places."""
+        for k, (first, room) in enumerate(self._free):
+            if room >= count:
+                self._free[k : k + 1] = [(first + count, room - count)] if room > count else []
+                return first
+        self.size += count
+        return self.size - count
+
+    def give_back(self, first: int, count: int) -> None:
+        """Free so many neighbouring places."""
+        if not count:
+            return
+        self._free.append((first, count))
+        self._free.sort()
+        joined: list[tuple[int, int]] = []
+        for begin, room in self._free:
+            if joined and sum(joined[-1]) == begin:
+                joined[-1] = (joined[-1][0], joined[-1][1] + room)
+            else:
+                joined.append((begin, room))
+        self._free = joined
+
+
+@dataclass
+class Tables:
+    """Constant arrays of a kernel, each written once.
+
+    Attributes:
+        stem: what their names begin with.
+    """
+
+    stem: str
+    _names: dict[tuple[str, bytes], str] = field(default_factory=dict)
+    _texts: list[str] = field(default_factory=list)
+
+    def of_places(self, places: Numbers) -> str:
+        """Name of a table of whole numbers."""
+        return self._named("int", np.asarray(places, dtype=np.int64))
+
+    def of_numbers(self, values: Sequence[float]) -> str:
+        """Name of a table of numbers."""
+        return self._named("casadi_real", np.asarray(values, dtype=np.float64))
+
+    @property
+    def text(self) -> str:
+        """All tables in C."""
+        return "".join(self._texts)
+
+    def _named(self, kind: str, values: np.ndarray) -> str:
+        key = (kind, values.tobytes())
+        if key not in self._names:
+            name = f"{self.stem}_t{len(self._names)}"
+            numbers = [repr(value) for value in values.tolist()]
+            lines = [", ".join(numbers[first : first + 16]) for first in range(0, len(numbers), 16)]
+            self._texts.append(f"static const {kind} {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n")
+            self._names[key] = name
+        return self._names[key]
+
+
+def program_in_c(program: Program, signature: ca.Function) -> InFours:
+    """A program as C.
+
+    Args:
+        program: the program.
+        signature: a function with the name, arguments and results that it has in C.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form in C.
+    """
+    return _Writing(program, signature).result()
+
+
+class _Writing:
+    """A program on its way to C."""
+
+    def __init__(self, program: Program, signature: ca.Function) -> None:
+        self.program = program
+        self.origins = program.origins
+        self.signature = signature
+        self.name: str = signature.name()
+        self.tables = Tables(self.name)
+        self.lines: list[str] = []
+        self.functions: list[str] = []
+        self.callees: dict[str, Callee] = {}
+        self.callee_of: dict[int, str] = {}
+        self.products: dict[Product, None] = {}
+        self.kernels: dict[str, InFours] = {}
+        self.statements = 0
+        self.place = np.full(self.origins.count, UNUSED, dtype=np.int64)
+        self.place[0] = 0
+        self.memory = Memory(1)
+        self.units = _units(program)
+        self.last_use = self._last_uses()
+        self.blocks_until: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        self.gathered: dict[bytes, int] = {}
+        self.gathered_until = self._last_gathers()
+
+    def result(self) -> InFours:
+        """The kernel."""
+        self._write_arguments()
+        self._write_constants()
+        for k, unit in enumerate(self.units):
+            self._write_unit(k, unit)
+            for first, count in self.blocks_until.pop(k, []):
+                self.memory.give_back(first, count)
+        self._write_results()
+        head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
+        self.functions.append("\n".join([head, *self.lines, "  return 0;", "}\n"]))
+        return InFours(
+            self.signature,
+            self.tables.text,
+            "\n".join(self.functions),
+            False,
+            self.callees,
+            self.memory.size,
+            self.statements,
+            is_program=True,
+            products=tuple(self.products),
+            kernels=tuple(self.kernels.values()),
+        )
+
+    # What is read and written
+
+    def _write_arguments(self) -> None:
+        """Copy the arguments, pieces one behind the other, since none may be there."""
+        for number, argument in enumerate(self.program.arguments):
+            count = sum(len(piece.numbers) for piece in argument.pieces)
+            if not count:
+                continue
+            first = self.memory.take(count)
+            self.lines.append(f"  program_read(w + {first}, arg[{number}], {count});")
+            for piece in argument.pieces:
+                self.place[piece.numbers] = np.arange(first, first + len(piece.numbers))
+                first += len(piece.numbers)
+
+    def _write_constants(self) -> None:
+        """Copy the constants that are gathered together with what is computed."""
+        mixed: dict[int, None] = {}
+        wanted = [value.numbers for value in self.program.results.values()]
+        for unit in self.units:
+            if not unit.is_bundle:
+                wanted += self._operands_of(unit)
+        for numbers in wanted:
+            constant = self.origins.is_constant(numbers)
+            mixed |= dict.fromkeys(numbers[constant & (numbers != 0)].tolist())
+        if mixed:
+            numbers = np.array(list(mixed), dtype=np.int64)
+            values = self.origins.constants(numbers)
+            first = self.memory.take(len(values))
+            self.place[numbers] = np.arange(first, first + len(values))
+            self.lines.append(f"  program_read(w + {first}, {self.tables.of_numbers(values)}, {len(values)});")
+        self.lines.insert(0, "  w[0] = 0;")
+
+    def _write_results(self) -> None:
+        for number, value in enumerate(self.program.results.values()):
+            asked = f"  if (res[{number}]) " if self.signature.n_out() > 1 else "  "
+            places = self.place[value.numbers]
+            if len(places):
+                self.lines.append(f"{asked}{self._moved(f'res[{number}]', places)}")
+
+    def _moved(self, to: str, places: Numbers) -> str:
+        """Statement that brings entries together."""
+        starts = np.flatnonzero(np.diff(places, prepend=places[0] - 2) != 1)
+        lengths = np.diff(starts, append=len(places))
+        if len(starts) == 1:
+            return f"program_read({to}, w + {places[0]}, {len(places)});"
+        if len(starts) <= FEW_RUNS and len(places) >= 4 * len(starts):
+            moves = []
+            for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
+                moves.append(f"program_move({to} + {start}, w + {places[start]}, {length});")
+            return "{ " + " ".join(moves) + " }"
+        if lengths[0] > 1 and np.all(lengths == lengths[0]):
+            table = self.tables.of_places(places[starts])
+            return f"program_runs({to}, w, {table}, {len(starts)}, {lengths[0]});"
+        return f"program_gather({to}, w, {self.tables.of_places(places)}, {len(places)});"
+
+    def _pointer(self, k: int, numbers: Numbers) -> str:
+        """Where entries lie one behind the other; those that lie apart are gathered."""
+        if np.all(self.origins.is_constant(numbers)):
+            values = self.origins.constants(numbers)
+            return self.tables.of_numbers(values)
+        places = self.place[numbers]
+        if np.all(np.diff(places) == 1):
+            return f"w + {places[0]}"
+        key = numbers.tobytes()
+        if key not in self.gathered:
+            first = self.memory.take(len(numbers))
+            self.blocks_until[self.gathered_until[key]].append((first, len(numbers)))
+            self.lines.append(f"  {self._moved(f'w + {first}', places)}")
+            self.gathered[key] = first
+        return f"w + {self.gathered[key]}"
+
+    def _place_things(self, k: int, numbers: Numbers) -> int:
+        """Places for entries one behind the other until they are read for the last time."""
+        first = self.memory.take(len(numbers))
+        self.place[numbers] = np.arange(first, first + len(numbers))
+        self._free_after(k, numbers, first, len(numbers))
+        return first
+
+    def _free_after(self, k: int, numbers: Numbers, first: int, count: int) -> None:
+        last = max((self.last_use[owner] for owner in self._owners(numbers)), default=k)
+        self.blocks_until[max(last, k)].append((first, count))
+
+    # Lifetimes
+
+    def _owners(self, numbers: Numbers) -> list[int]:
+        return [owner for owner in np.unique(self.origins.owners(numbers)).tolist() if owner]
+
+    def _last_uses(self) -> dict[int, int]:
+        """For each thing the last unit that reads it."""
+        last: dict[int, int] = defaultdict(lambda: UNUSED)
+        for k, unit in enumerate(self.units):
+            for owner in self._owners(_joined(unit.operands)):
+                last[owner] = k
+        for value in self.program.results.values():
+            for owner in self._owners(value.numbers):
+                last[owner] = len(self.units)
+        return last
+
+    def _operands_of(self, unit: Unit) -> list[Numbers]:
+        """Entries that a unit with loops reads one behind the other."""
+        if unit.is_batch:
+            return [self._given(unit)]
+        return unit.operands
+
+    def _last_gathers(self) -> dict[bytes, int]:
+        last: dict[bytes, int] = {}
+        for k, unit in enumerate(self.units):
+            if not unit.is_bundle:
+                last |= {numbers.tobytes(): k for numbers in self._operands_of(unit)}
+        return last
+
+    # Units
+
+    def _write_unit(self, k: int, unit: Unit) -> None:
+        if unit.is_bundle:
+            self._write_bundle(k, unit.steps)
+        elif unit.is_batch:
+            self._write_calls(k, unit)
+        elif unit.steps[0].called:
+            self._write_kernel(k, unit.steps[0])
+        elif unit.steps[0].operation is not None:
+            self._write_entrywise(k, unit.steps[0])
+        else:
+            self._write_product(k, unit.steps[0])
+
+    def _write_entrywise(self, k: int, step: Step) -> None:
+        """Write a loop over entries."""
+        assert step.operation is not None
+        pointers = [self._pointer(k, operand.numbers) for operand in step.operands]
+        (result,) = step.results
+        count = len(result.numbers)
+        first = self._place_things(k, result.numbers)
+        names = ["x", "y"][: len(pointers)]
+        symbols = [ca.SX.sym(name) for name in names]
+        apply = ca.SX.unary if len(symbols) == 1 else ca.SX.binary
+        listing = Listing(ca.Function("entry", symbols, [apply(step.operation, *symbols)]))
+        block = Block("casadi_real", "a", [])
+        for number, value in enumerate(listing.values):
+            if not isinstance(value, Constant | Read):
+                block.statements.append(SINGLE.operation(value.operation, value.operands, number))
+        (made,) = listing.outputs[0].values()
+        block.statements.append(Statement("z[i] = {0};", [made]))
+
+        def text(number: int) -> str | None:
+            value = listing.values[number]
+            if isinstance(value, Constant):
+                return SINGLE.number(value.value)
+            if isinstance(value, Read):
+                scalar = step.operands[value.argument].pattern.numel() == 1
+                return f"{names[value.argument]}0" if scalar and count > 1 else f"{names[value.argument]}[i]"
+            return None
+
+        declared = [f"const casadi_real *{name} = {pointer};" for name, pointer in zip(names, pointers, strict=True)]
+        for name, operand in zip(names, step.operands, strict=True):
+            if operand.pattern.numel() == 1 and count > 1:
+                declared.append(f"const casadi_real {name}0 = {name}[0];")
+        declared.append(f"casadi_real *z = w + {first};")
+        body = " ".join(line.strip() for line in block.lines(text))
+        self.lines.append(f"  {{ {' '.join(declared)} int i; for (i = 0; i < {count}; i++) {{ {body} }} }}")
+        self.statements += len(block.statements)
+
+    def _write_product(self, k: int, step: Step) -> None:
+        """Write a product of matrices, which may be added to a third."""
+        left, right, *added = step.operands
+        (result,) = step.results
+        x, y = (self._pointer(k, operand.numbers) for operand in (left, right))
+        start = [self._pointer(k, operand.numbers) for operand in added]
+        first = self._place_things(k, result.numbers)
+        count = len(result.numbers)
+        if start:
+            self.lines.append(f"  program_move(w + {first}, {start[0]}, {count});")
+        self.statements += 1
+        if left.pattern.is_dense():
+            rows, inner = left.pattern.shape
+            dense = right.pattern.is_dense()
+            product = Product(rows, dense, not start)
+            self.products[product] = None
+            columns = right.pattern.size2()
+            if dense:
+                self.lines.append(f"  {product.name}({x}, {inner}, {y}, {columns}, w + {first});")
+                return
+            table = self.tables.of_places(np.array([*right.pattern.colind(), *right.pattern.row()]))
+            self.lines.append(f"  {product.name}({x}, {y}, {table}, {columns}, w + {first});")
+            return
+        if not start:
+            self.lines.append(f"  program_clear(w + {first}, {count});")
+        triples = _triples(left.pattern, right.pattern, result.pattern)
+        table = self.tables.of_places(triples.ravel())
+        self.lines.append(f"  program_sparse({x}, {y}, {table}, {len(triples)}, w + {first});")
+
+    def _write_bundle(self, k: int, steps: Sequence[Step]) -> None:
+        """Write small steps without loops."""
+        operands = np.unique(_joined([operand.numbers for step in steps for operand in step.operands]))
+        made = [result.numbers for step in steps for result in step.results]
+        inside = set(_joined(made).tolist())
+        constant = self.origins.is_constant(operands)
+        values = dict(zip(operands[constant].tolist(), self.origins.constants(operands[constant]), strict=True))
+        read = [number for number in operands[~constant].tolist() if number not in inside]
+        given = ca.SX.sym("given", len(read))
+        entry_of = {number: ca.SX(value) for number, value in values.items()}
+        entry_of |= zip(read, ca.vertsplit(given) if read else [], strict=True)
+        for step in steps:
+            arguments = [_matrix(operand.pattern, operand.numbers, entry_of) for operand in step.operands]
+            for result, computed in zip(step.results, step.function.call(arguments, True, False), strict=True):
+                entry_of |= zip(result.numbers.tolist(), ca.SX(computed).nonzeros(), strict=True)
+        kept = [numbers for numbers in made if any(self.last_use[owner] > k for owner in self._owners(numbers))]
+        for numbers in kept:
+            self._place_things(k, numbers)
+        stored = _joined(kept).tolist()
+        result = ca.cse(ca.vertcat(*[entry_of[number] for number in stored]))
+        self._write_straight(Listing(ca.Function("steps", [given], [result])), self.place[read], self.place[stored], k)
+
+    def _write_straight(self, listing: Listing, read: Numbers, stored: Numbers, k: int) -> None:
+        """Write scalars that read and store numbers at these places, in functions that are not too long."""
+        statements = []
+        for number, value in enumerate(listing.values):
+            if not isinstance(value, Constant | Read):
+                statements.append(SINGLE.operation(value.operation, value.operands, number))
+        # What is read may lie where nothing is stored: places are freed behind the unit alone.
+        outputs = listing.outputs[0]
+        for entry, place in enumerate(stored.tolist()):
+            if entry in outputs:
+                statements.append(Statement(f"w[{place}] = {{0}};", [outputs[entry]]))
+            else:
+                statements.append(Statement(f"w[{place}] = 0;", []))
+        # What one function passes on to others lies behind all else.
+        parts, passed = in_parts(statements, LONGEST_OF_NUMBERS, lambda place: f"passed[{place}] = {{0}};")
+        room = self.memory.take(len(passed)) if passed else 0
+        self.blocks_until[k].append((room, len(passed)))
+        for part in parts:
+            own = {statement.made for statement in part}
+            elsewhere = {value: place for value, place in passed.items() if value not in own}
+            block = Block("casadi_real", "a", part)
+            lines = block.lines(partial(_text, listing, read, elsewhere))
+            name = f"MADE({self.name}_steps_{len(self.functions)})"
+            self.functions.append(
+                "\n".join(
+                    [f"static void {name}(casadi_real *w, casadi_real *passed) {{", *lines, "  (void)passed;\n}\n"]
+                )
+            )
+            self.lines.append(f"  {name}(w, w + {room});")
+            self.statements += len(part)
+
+    def _given(self, unit: Unit) -> Numbers:
+        """Entries of the operands of calls, in the order in which they are handed over."""
+        width = self._width(unit)
+        of_calls = [_joined([operand.numbers for operand in step.operands]) for step in unit.steps]
+        # Lanes that are left over compute what the last call does.
+        of_calls += [of_calls[-1]] * (-len(of_calls) % width)
+        grouped = [np.array(of_calls[first : first + width]).T.ravel() for first in range(0, len(of_calls), width)]
+        return _joined(grouped)
+
+    def _write_calls(self, k: int, unit: Unit) -> None:
+        """Write calls of one function, four at a time where there are enough of them."""
+        function = unit.steps[0].function
+        width = self._width(unit)
+        turns = -(-len(unit.steps) // width)
+        given = self._pointer(k, self._given(unit))
+        count = sum(len(result.numbers) for result in unit.steps[0].results)
+        first = self.memory.take(width * turns * count)
+        owned = []
+        for i, step in enumerate(unit.steps):
+            turn, lane = divmod(i, width)
+            numbers = _joined([result.numbers for result in step.results])
+            self.place[numbers] = first + width * (turn * count + np.arange(count)) + lane
+            owned.append(numbers)
+        self._free_after(k, _joined(owned), first, width * turns * count)
+        word = self._callee(function, width)
+        self.lines.append(f"  MADE({self.name}_{word})({given}, w + {first}, {turns});")
+
+    def _write_kernel(self, k: int, step: Step) -> None:
+        """Write a call of a function that calls others, which is a kernel of its own."""
+        function = step.function
+        name: str = function.name()
+        if name not in self.kernels:
+            scalar = function.is_a("SXFunction")
+            written = in_fours(function, function) if scalar else program_in_c(program_of(function), function)
+            self.kernels[name] = written
+        kernel = self.kernels[name]
+        assert hash(kernel.signature) == hash(function), f"two functions are called {name}"
+        arguments = [self._pointer(k, operand.numbers) for operand in step.operands]
+        results = [f"w + {self._place_things(k, result.numbers)}" for result in step.results]
+        room = self.memory.take(kernel.reals)
+        self.blocks_until[k].append((room, kernel.reals))
+        given = ", ".join(arguments or ["w"])
+        made = ", ".join(results)
+        self.lines.append(f"  {{ const casadi_real *given[] = {{{given}}}; casadi_real *made[] = {{{made}}};")
+        self.lines.append(f"    MADE({name})(given, made, w + {room}); }}")
+
+    def _width(self, unit: Unit) -> int:
+        """How many calls are made at once."""
+        if len(unit.steps) < FEWEST:
+            return 1
+        try:
+            self._callee(unit.steps[0].function, LANES)
+        except UnknownOperationError:
+            return 1
+        return LANES
+
+    def _callee(self, function: ca.Function, width: int) -> str:
+        key = hash((hash(function), width))
+        if key not in self.callee_of:
+            word = f"{function.name()}{'s' if width == LANES else ''}"
+            if word in self.callees:
+                word = f"{word}_{len(self.callees)}"
+            written, statements = callee(Listing(function), FOURS if width == LANES else SINGLE)
+            self.callees[word] = written
+            self.statements += statements
+            self.callee_of[key] = word
+        return self.callee_of[key]
+
+
+def _units(program: Program) -> list[Unit]:
+    """Steps in layers: in each the small ones without loops, then the others, which do not wait for each other."""
+    calls = Counter(hash(step.function) for step in program.steps if step.called)
+    layer_of = defaultdict[int, int](int)
+    large_in = set[int]()
+    layers: list[tuple[list[Step], list[Step]]] = []
+    for step in program.steps:
+        together = step.called and (calls[hash(step.function)] >= FEWEST or _stays(step))
+        small = step.small and not together and not _is_long(step)
+        needed = _owners_of(program, [operand.numbers for operand in step.operands])
+        layer = max((layer_of[owner] + int(owner in large_in) for owner in needed), default=0)
+        while len(layers) <= layer:
+            layers.append(([], []))
+        layers[layer][0 if small else 1].append(step)
+        for owner in _owners_of(program, [result.numbers for result in step.results]):
+            layer_of[owner] = layer
+            if not small:
+                large_in.add(owner)
+    units = []
+    for small_ones, large_ones in layers:
+        units += [Unit(steps, True) for steps in _bundles(small_ones) if steps]
+        batches: dict[int, list[Step]] = {}
+        for step in large_ones:
+            if step.called and not _is_kernel(step):
+                batches.setdefault(hash(step.function), []).append(step)
+            else:
+                units.append(Unit([step]))
+        units += [Unit(steps) for steps in batches.values()]
+    return units
+
+
+def _stays(step: Step) -> bool:
+    """Whether a step calls a function that cannot be written out where it is called."""
+    if _is_kernel(step):
+        return True
+    try:
+        step.function.call(step.function.sx_in(), True, False)
+    except RuntimeError:
+        # It is never to be inlined.
+        return True
+    return False
+
+
+def _is_kernel(step: Step) -> bool:
+    """Whether a step calls a function that calls others."""
+    return step.called and bool(not step.function.is_a("SXFunction") or step.function.find_functions(0))
+
+
+def _is_long(step: Step) -> bool:
+    """Whether a step on entries takes less code in a loop, and about as long."""
+    return step.operation is not None and step.instructions > LONGEST_WITHOUT_LOOP
+
+
+def _owners_of(program: Program, vectors: Sequence[Numbers]) -> list[int]:
+    owners = program.origins.owners(_joined(vectors))
+    return [owner for owner in np.unique(owners).tolist() if owner]
+
+
+def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
+    """Small steps in bundles that are written together."""
+    bundles: list[list[Step]] = [[]]
+    length = 0.0
+    for step in steps:
+        length += step.instructions
+        if length > LONGEST_BUNDLE:
+            bundles.append([])
+            length = step.instructions
+        bundles[-1].append(step)
+    return bundles
+
+
+def _joined(vectors: Sequence[Numbers]) -> Numbers:
+    return np.concatenate([np.zeros(0, dtype=np.int64), *vectors])
+
+
+def _matrix(pattern: ca.Sparsity, numbers: Numbers, entry_of: dict[int, ca.SX]) -> ca.SX:
+    entries = [entry_of[number] for number in numbers.tolist()]
+    return ca.SX(pattern, ca.vertcat(*entries)) if entries else ca.SX(pattern)
+
+
+def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: int) -> str | None:
+    """What a value is called outside of variables."""
+    value = listing.values[number]
+    if number in elsewhere:
+        return f"passed[{elsewhere[number]}]"
+    if isinstance(value, Constant):
+        return SINGLE.number(value.value)
+    if isinstance(value, Read):
+        return f"w[{read[value.entry]}]"
+    return None
+
+
+def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:
+    """For each multiplication of a sparse product the entries of left, right and result, shape (count, 3)."""
+    place_of = {entry: k for k, entry in enumerate(zip(*result.get_triplet(), strict=True))}
+    of_column: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for k, (i, j) in enumerate(zip(*left.get_triplet(), strict=True)):
+        of_column[j].append((k, i))
+    triples = []
+    for k, (j, column) in enumerate(zip(*right.get_triplet(), strict=True)):
+        triples += [(entry, k, place_of[i, column]) for entry, i in of_column[j] if (i, column) in place_of]
+    return np.array(sorted(triples, key=lambda triple: triple[2]), dtype=np.int64).reshape(-1, 3)
