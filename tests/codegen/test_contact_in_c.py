@@ -21,7 +21,7 @@ from tests.codegen.contact_libraries import (
     on_table,
     over_bar,
 )
-from tests.codegen.libraries import C99, QUICK
+from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
 from tests.scenes import rod, scene
 
 LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
@@ -160,10 +160,10 @@ def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: Cont
     for library in (bar, table):
         name = library.folder.name
         for file in (f"{name}.c", f"{name}_demo.c"):
-            subprocess.run(["gcc", *LINT, "-c", library.folder / file, "-o", tmp_path / "object.o"], check=True)
+            gcc(*LINT, "-fsyntax-only", library.folder / file)
     kernels = bar.folder / "bar_kernels.c"
     objects = [bar.folder / "bar_demo.c", bar.folder / "bar.c", kernels]
-    subprocess.run(["gcc", "-std=c99", *QUICK, *objects, "-o", tmp_path / "demo", "-lm"], check=True)
+    compile_quickly("-std=c99", *QUICK, *objects, "-o", tmp_path / "demo", "-lm")
     printed = subprocess.run([tmp_path / "demo", "0", "0", "-5"], check=True, capture_output=True, text=True).stdout
     answer = json.loads(printed)
     assert answer["status"] == "converged"
