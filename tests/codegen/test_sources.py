@@ -30,7 +30,7 @@ FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail", "__cpu_model"}
 MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "pinned", "fixed", "tendons", "loops", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["pinned", "fixed", "robot"]))
 def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
     made = library(name)
     for stem in (name, f"{name}_demo"):

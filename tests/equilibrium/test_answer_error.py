@@ -15,6 +15,7 @@ from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, p
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import load_values
 from tests.conftest import CASES, ROOT
+from tests.families import mostly_slow
 from tests.pose_errors import pose_error
 from tests.scenes import push, scene
 
@@ -65,7 +66,7 @@ def tendon_robot() -> Model:
     [
         {"north.tension": 9.0, "east.tension": 0.5},
         {"payload.force": [0.0, 0.5, 0.0]},
-        {"payload.force": [0.0, 2.0, 0.0]},
+        pytest.param({"payload.force": [0.0, 2.0, 0.0]}, marks=pytest.mark.slow),
     ],
 )
 def test_modes_of_a_planar_load_know_their_error_under_others(tendon_robot: Model, values: dict[str, Any]) -> None:
@@ -92,7 +93,7 @@ def test_a_grip_beside_the_plane_of_the_choice() -> None:
     assert aside.error_estimate > 1e3 * read.accuracy.tolerance
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", mostly_slow(range(3), quick=[0]))
 def test_robot_of_six_tendons(seed: int) -> None:
     read = read_scene(AWAY / "six_tendons.toml")
     # Those that the robot takes at its own inputs.
@@ -103,6 +104,7 @@ def test_robot_of_six_tendons(seed: int) -> None:
     assert away.within_tolerance is False
 
 
+@pytest.mark.slow
 def test_platform_that_its_modes_lock() -> None:
     read = read_scene(AWAY / "platform_locks.toml")
     model = build(read, discretise(read, (2, 2, 1), 4, "magnus4"))

@@ -31,6 +31,7 @@ from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
+from tests.families import mostly_slow
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -95,7 +96,7 @@ def agrees(robot: Robot, found: CompiledTubesSolution) -> None:
         assert_allclose(derivatives[tube][:3], expected.tip_jacobian[index, 3:], rtol=0, atol=1e-9 * largest)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", mostly_slow(range(12), quick=range(4)))
 def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
     found = robot.compiled.solve(robot.inputs(seed))
     agrees(robot, found)
@@ -170,7 +171,7 @@ def turned(robot: Robot, step: float) -> tuple[CompiledTubesSolution, CompiledTu
     return last, last
 
 
-@pytest.mark.parametrize("step", [0.003, 0.05, 0.4])
+@pytest.mark.parametrize("step", mostly_slow([0.003, 0.05, 0.4], quick=[0.05]))
 def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
     snap = follow_scene_path(robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(robot, step)
@@ -271,7 +272,7 @@ def test_an_unstable_equilibrium_has_a_negative_determinant(robot: Robot) -> Non
     assert not robot.in_python(opposed).stable
 
 
-@pytest.mark.parametrize("turn", [3.0, 3.1, 3.14])
+@pytest.mark.parametrize("turn", mostly_slow([3.0, 3.1, 3.14], quick=[3.14]))
 @pytest.mark.parametrize("reach", [0.14, 0.16, 0.24])
 def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, turn: float, reach: float) -> None:
     """The branch from straight tubes is the one that a robot is on which was turned there from aligned ones."""
