@@ -115,7 +115,7 @@ def may_be_locked(model: Model) -> bool:
     False in exact contact too, whose forces are inputs of another model for every arrangement.
     """
     scene = model.scene
-    if scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for:
+    if scene.touches_exactly or not scene.accuracy.fixed_by_hand:
         return False
     return degrees_of_freedom(model) is not None
 

@@ -11,7 +11,7 @@ from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
@@ -30,6 +30,7 @@ from cosserat_casadi.tubes.robot import robot_of
 
 def check(
     scene: SceneFile,
+    ranges: Ranges = None,
     settings: Settings = None,
     timed: Annotated[
         bool,
@@ -40,10 +41,13 @@ def check(
     overrides = tuple(settings or ())
     checked_scene = read_scene(scene, overrides)
     if checked_scene.tubes:
+        if ranges:
+            raise SceneError(Problem("--range", "is of rods, and the scene has tubes", "leave it out"))
         if timed:
             raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
         print_tubes_check(Console(), robot_of(checked_scene))
         return
+    asked = asked_ranges(ranges, checked_scene)
     if timed:
         # A compiler that is missing is reported before anything is printed.
         find_compiler()
@@ -58,12 +62,12 @@ def check(
         show_count("Counting the operations of residual and Jacobian", 0, 0)
         cost = price(model)
         show_count("Choosing the ranges of inputs", 0, 0)
-        ranges = input_ranges(checked_scene)
+        of_inputs = input_ranges(checked_scene, asked)
         show_count("Looking for constraints that lock", 0, 0)
         # An equilibrium tells.
         locking = locking_note(solve(model, estimate_error=False)) if may_be_locked(model) else ""
     print_check(Console(), model, varying, cost, of_effects)
-    print_ranges(Console(), ranges)
+    print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
     if timed:
         _print_times(checked_scene)
