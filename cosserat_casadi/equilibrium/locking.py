@@ -99,6 +99,13 @@ def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
     return np.concatenate([part.full().ravel() for part in model.watched(x, inputs)])
 
 
+NOT_KNOWN = (
+    "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
+    "inputs, and an equilibrium tells."
+)
+"""What a user must know where there is no equilibrium at which to look."""
+
+
 def locking_sentence(locked: Sequence[str]) -> str:
     """What a user must know of modes that leave these inputs no motion; empty where there is none of them."""
     if not locked:

@@ -16,10 +16,10 @@ from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.equilibrium.locking import locking_note, may_be_locked
+from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import build
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
@@ -64,8 +64,7 @@ def check(
         show_count("Choosing the ranges of inputs", 0, 0)
         of_inputs = input_ranges(checked_scene, asked)
         show_count("Looking for constraints that lock", 0, 0)
-        # An equilibrium tells.
-        locking = locking_note(solve(model, estimate_error=False)) if may_be_locked(model) else ""
+        locking = _locking(model)
     print_check(Console(), model, varying, cost, of_effects)
     print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
@@ -73,6 +72,14 @@ def check(
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
+
+
+def _locking(model: Model) -> str:
+    """The sentence on locking, which an equilibrium tells; empty where nothing locks."""
+    if not may_be_locked(model):
+        return ""
+    solution = solve(model, estimate_error=False)
+    return locking_note(solution) if solution.converged else NOT_KNOWN
 
 
 def _print_times(scene: Scene) -> None:
