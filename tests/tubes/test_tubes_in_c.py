@@ -15,6 +15,7 @@ from cosserat_casadi import (
     ExportError,
     Outcome,
     Scene,
+    SceneError,
     TubeSolution,
     export,
     follow_scene_path,
@@ -28,6 +29,7 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
@@ -35,6 +37,18 @@ from tests.commands import cosserat
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 DIFFERENCE = 1e-6
+
+LIMITS = """
+[ranges]
+"push.force" = [[-1, 1], [-2, 2], [-3, 0]]
+"inner.translation" = [0.1, 9.0]
+[[bounds]]
+input = "inner.rotation"
+lower = -1.5
+[[bounds]]
+input = "push.force"
+upper = [1, 0.5, 0]
+"""
 
 
 class Robot:
@@ -76,8 +90,9 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
 
 @pytest.fixture(scope="module")
 def loaded_robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
-    """Two tubes with a force at the tip and their weight."""
-    return Robot(read_scene(EXAMPLES / "loaded_tubes.toml"), tmp_path_factory.mktemp("c") / "robot")
+    """Two tubes with a force at the tip and their weight, with ranges of their inputs."""
+    text = (EXAMPLES / "loaded_tubes.toml").read_text() + LIMITS
+    return Robot(parse_scene(text), tmp_path_factory.mktemp("c") / "robot")
 
 
 def agrees(robot: Robot, found: CompiledTubesSolution) -> None:
@@ -253,6 +268,53 @@ def test_translations_have_ranges_in_c_and_in_python(robot: Robot, inputs: list[
     assert_allclose(moved, clamped, rtol=1e-15, atol=0)
     assert_allclose(robot.compiled.clamp(inputs), moved, rtol=0, atol=0)
     assert robot.compiled.solve(moved).outcome is not Outcome.OUT_OF_RANGE
+
+
+def test_bounds_and_ranges_of_the_scene_are_those_of_the_inputs(loaded_robot: Robot) -> None:
+    """In Python and in C, of drives and loads; no range leads a tube beyond its length."""
+    layout = loaded_robot.solution.robot.layout
+    lower, upper = ranges_of_inputs(loaded_robot.scene, layout)
+    inner = loaded_robot.solution.robot.names.index("inner")
+    length = loaded_robot.solution.robot.length[inner]
+    for name, low, high in (
+        ("inner.rotation", [-1.5], [np.inf]),
+        ("inner.translation", [0.1], [length]),
+        ("outer.rotation", [-np.inf], [np.inf]),
+        ("push.force", [-1, -2, -3], [1, 0.5, 0]),
+    ):
+        assert_allclose(lower[layout.slices[name]], low, rtol=1e-15, atol=0)
+        assert_allclose(upper[layout.slices[name]], high, rtol=1e-15, atol=0)
+    compiled = loaded_robot.compiled
+    beyond = {"inner.rotation": -2.0, "inner.translation": 0.05, "push.force": [0.0, 3.0, -4.0]}
+    moved = layout.pack(beyond)
+    clamped = layout.pack({"inner.rotation": -1.5, "inner.translation": 0.1, "push.force": [0.0, 0.5, -3.0]})
+    assert not compiled.in_range(moved)
+    assert not compiled._function("in_range")(pointer(moved))
+    assert_allclose(compiled.clamp(beyond), clamped, rtol=1e-15, atol=0)
+    assert compiled._function("clamp")(pointer(moved)) == 4
+    assert_allclose(moved, clamped, rtol=1e-15, atol=0)
+    assert compiled.in_range(moved)
+    kept = parse_scene((loaded_robot.folder / "scene.toml").read_text())
+    assert kept.bounds == loaded_robot.scene.bounds
+    assert kept.ranges == loaded_robot.scene.ranges
+
+
+@pytest.mark.parametrize(
+    ("table", "sentence"),
+    [
+        ('[ranges]\n"outer.push" = [0, 1]', "is not free at run time"),
+        ('[ranges]\n"outer.rotation" = [[0, 1], [0, 1]]', "must have 1 pair"),
+        ('[ranges]\n"outer.rotation" = [1, 1]', "two different ends"),
+        ('[[bounds]]\ninput = "outer.rotation"\nlower = [0, 1]', "must have 1 number"),
+        ('[[bounds]]\ninput = "middle.rotation"\nlower = 0', "is not free at run time"),
+        ("inputs = []", "beside tubes may stand title, accuracy, loads, ranges, bounds"),
+    ],
+)
+def test_limits_of_no_input_of_tubes_are_refused(table: str, sentence: str) -> None:
+    text = (EXAMPLES / "loaded_tubes.toml").read_text()
+    first, _, rest = text.partition("\n")
+    with pytest.raises(SceneError, match=sentence):
+        parse_scene(f"{first}\n{table}\n{rest}" if table.startswith("inputs") else f"{text}\n{table}\n")
 
 
 def test_other_inputs_without_an_equilibrium(robot: Robot) -> None:

@@ -50,8 +50,9 @@ OTHERS = ("solver_sensitivity.c", "solver_recover.c")
 """Files of the solver that tubes do without."""
 
 RANGES = (
-    "a translation from zero to the length of its tube. The solver refuses a translation\n"
-    "   beyond that, and inputs at which no tube stands out of the plate, each of which is in its range."
+    "a translation from zero to the length of its tube, and by the bounds and ranges of\n"
+    "   the scene. The solver refuses a translation beyond its tube, and inputs at which no tube\n"
+    "   stands out of the plate, each of which is in its range; at bounds and ranges it does not look."
 )
 """Which ranges inputs have, and what the solver does beyond them, for the header."""
 
