@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
-from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
 from cosserat_casadi.model.input_ranges import ranges_of_inputs
 from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
@@ -117,6 +117,37 @@ def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
     # Without loads both come from straight tubes in the same way.
     expected = solve_scene(robot.scene, found.inputs)
     assert_allclose(found.tips["inner"][:3], expected.tip("inner").position, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("which", ["robot", "loaded_robot"])
+def test_the_error_is_told_by_half_of_the_steps(which: str, seed: int, request: pytest.FixtureRequest) -> None:
+    """As Python tells it with a solve of both, at any inputs; steps of order eight leave far less than that."""
+    made: Robot = request.getfixturevalue(which)
+    found = made.compiled.solve(made.inputs(seed))
+    assert found.converged
+    exact = made.in_python(found)
+    robot, steps = exact.robot, made.solution.model.steps
+    half, double = (solution_near(model_of(robot, count), exact.inputs, exact.x) for count in (steps // 2, 2 * steps))
+    assert found.error_estimate is not None
+    # A step of Newton's method in place of a solve; what is found is right to 1e-11.
+    assert_allclose(found.error_estimate, tip_error(half, exact), rtol=0.02, atol=1e-10)
+    assert tip_error(exact, double) <= found.error_estimate + 1e-10
+    assert found.within_tolerance is (found.error_estimate <= robot.tolerance)
+
+
+def test_a_turn_leaves_the_error_to_a_call_of_its_own(loaded_robot: Robot) -> None:
+    compiled = loaded_robot.compiled
+    found = compiled.solve()
+    turn = compiled.track(found.inputs + 0.01, found)
+    assert turn.converged
+    assert turn.error_estimate is None
+    assert turn.within_tolerance is None
+    again = compiled.solve(turn.inputs, turn)
+    assert_allclose(compiled.error_estimate(turn), again.error_estimate, rtol=1e-4, atol=1e-12)
+    assert compiled.follow(found, turn.inputs).error_estimate is not None
+    elsewhere = CompiledTubesSolution(**{**vars(found), "inputs": found.inputs + 0.3})
+    assert compiled.error_estimate(elsewhere) is None
 
 
 def test_batch_vs_single_solves(robot: Robot) -> None:
@@ -353,15 +384,16 @@ def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, 
 def test_too_few_steps_are_told(robot: Robot) -> None:
     """Two steps a piece are enough for some inputs only: those within tolerance of many steps, and not all of them."""
     tubes = robot.solution.robot
-    resolution = TubeKernels(model_of(tubes, 2), "k").all()[3]
-    assert resolution.name() == "k_resolution_index"
+    halved_residual = TubeKernels(model_of(tubes, 2), "k").all()[3]
+    assert halved_residual.name() == "k_halved_residual"
     enough = []
     for seed in range(16):
         inputs = robot.inputs(seed)
         inputs[1::2] = (0.5 + seed / 32) * tubes.length
         few = solve_at(model_of(tubes, 2), inputs)
         twist = few.x - tubes.rotations(inputs)
-        enough.append(float(resolution(twist, inputs)) <= 1.0)
+        missed = np.abs(halved_residual(twist, inputs).full()).max()
+        enough.append(missed <= RESOLVED * tubes.tolerance)
         many = solution_near(model_of(tubes, 16), inputs, few.x)
         if enough[-1]:
             assert tip_error(few, many) <= tubes.tolerance
