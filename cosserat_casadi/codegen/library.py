@@ -45,6 +45,7 @@ from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.functions import TubeFunctions
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
@@ -151,7 +152,8 @@ def library_sources(
         rows: what solves batches side by side, where the folder has it.
         budget: what a turn of a control loop may take by default.
     """
-    words = _words(model, names, parts, generated, _accuracy_note(model, error_estimate, verified), motion, rows)
+    accuracy = accuracy_words(model.scene, error_estimate, verified)
+    words = _words(model, names, parts, generated, accuracy, motion, rows)
     words |= {
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
@@ -219,7 +221,7 @@ def _words(
     names: Names,
     parts: Assembled | None,
     generated: Mapping[str, str],
-    accuracy_note: str,
+    accuracy: dict[str, str],
     motion: MotionInC | None,
     rows: InLanes | None,
 ) -> dict[str, Any]:
@@ -258,8 +260,7 @@ def _words(
         "version": version("cosserat-casadi"),
         **version_words(),
         "casadi_version": ca.CasadiMeta.version(),
-        "accuracy_note": accuracy_note,
-        "accuracy_comment": _wrapped(comment(accuracy_note)),
+        **accuracy,
     }
 
 
@@ -455,9 +456,21 @@ def _file_rows(
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 
 
-def _accuracy_note(model: Model, error_estimate: float | None, verified: Verified | None) -> str:
-    tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
-    if not model.scene.accuracy.binds:
+def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, str]:
+    """What a README, and the comment at the top of a header, say of the error that the discretisation leaves.
+
+    Args:
+        scene: what is exported.
+        error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
+        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+    """
+    note = _accuracy_note(scene, error_estimate, verified)
+    return {"accuracy_note": note, "accuracy_comment": _wrapped(comment(note))}
+
+
+def _accuracy_note(scene: Scene, error_estimate: float | None, verified: Verified | None) -> str:
+    tolerance = f"The scene asks for a tip pose within {scene.accuracy.tolerance:g} of the length."
+    if not scene.accuracy.binds:
         tolerance = "The scene fixes what it is computed with, and asks for no tolerance."
     if verified is not None:
         return f"{tolerance} {verified.sentence}"

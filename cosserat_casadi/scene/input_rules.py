@@ -10,6 +10,7 @@ from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, sho
 from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.tubes import Tube
 from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
@@ -70,9 +71,10 @@ def _numbers(count: int) -> str:
 def owners_of(scene: SceneTables) -> Owners:
     """What may have inputs, by name, with its record where the kind is known."""
     owners = _causes(scene)
-    for name, (_, table) in scene.named("rods").items():
-        # Inputs of a load or an actuator hide those of a rod of the same name.
-        owners.setdefault(name, (Rod, table))
+    # Inputs of a load or an actuator hide those of a rod or a tube of the same name.
+    for key, record in (("rods", Rod), ("tubes", Tube)):
+        for name, (_, table) in scene.named(key).items():
+            owners.setdefault(name, (record, table))
     return owners
 
 
@@ -173,8 +175,9 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the magnitudes that actuators and loads give: what is free where the scene lists no inputs."""
-    return [
+    """Names of what is free where the scene lists no inputs: all of tubes, and what actuators and loads give."""
+    of_tubes = [f"{name}.{field}" for name in scene.named("tubes") for field in Tube.inputs]
+    return of_tubes + [
         f"{name}.{field}"
         for name, (record, table) in _causes(scene).items()
         if record is not None

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import CompiledContact, ExportError, build, discretise, export, load, read_scene, solve
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import (
     BAR,
@@ -176,6 +177,17 @@ def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
     """In contact and without, of a bar whose distance is chosen between its ends and its middle."""
     columns = (bar.folder / "bar_kernels_in_fours.h").read_text()
     assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
+
+
+def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp_path: Path) -> None:
+    """In header, README and manifest, as folders without contact do."""
+    verified = Verified(("push.force.z=-4:-2",), 7, 0.25, 0, False)
+    model = build(over_bar(), discretise(over_bar(), 2, 4))
+    folder = export(model, tmp_path / "verified", verified=verified)
+    assert json.loads((folder / "manifest.json").read_text())["verified"] == verified.plain()
+    for file in ("verified.h", "README.md"):
+        assert verified.sentence in " ".join((folder / file).read_text().split())
+    assert "was not estimated" in " ".join((bar.folder / "bar.h").read_text().split())
 
 
 def test_bytes_of_a_library(bar: ContactLibrary) -> None:

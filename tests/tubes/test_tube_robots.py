@@ -393,7 +393,7 @@ stiffness = { bending_y = 1.0 }
         (TWO.replace("stiffness = { bending = 0.03, torsion = 0.022 }", ""), ["tubes[1].material", "tubes[1].section"]),
         (TWO.replace("0.03,", "0.0,"), ["tubes[1].stiffness.bending"]),
         (TWO + ROD, ["rods"]),
-        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs", "inputs[0]"]),
+        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs"]),
         (TWO.replace("accuracy = {", "accuracy = { modes = 4,"), ["accuracy.modes"]),
         ("schema = 1", ["rods"]),
         (
