@@ -62,7 +62,8 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
+LEAST_MISFIT = "least_misfit.c"
+VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, LEAST_MISFIT})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 COMMENT_WIDTH = 120
