@@ -63,8 +63,11 @@ DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
 LEAST_MISFIT = "least_misfit.c"
-VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, LEAST_MISFIT})
-"""Files of the folder ``c`` that the library's own source includes, as they are."""
+SECOND_VARIATION = "second_variation.c"
+VERBATIM = frozenset(
+    {*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, LEAST_MISFIT, SECOND_VARIATION}
+)
+"""Files of the folder ``c`` that sources of a library include, as they are."""
 
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
@@ -113,6 +116,7 @@ ROLES = {
     "lanes_linear.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
+    "second_variation.c": "eigenvalues over admissible variations, the same in every folder; included",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_demo.c": "solves once, times it, prints JSON",
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
@@ -451,7 +455,7 @@ def _file_rows(
     if not derivatives:
         absent.add("{name}_derivatives.c")
     if not stability:
-        absent |= {"{name}_stability.c", "{name}_stability.h"}
+        absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 

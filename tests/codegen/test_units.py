@@ -34,7 +34,7 @@ def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:
     run(made.whole_program(harness, *SANITIZED, defaults, f"-I{HARNESS}"))
 
 
-@pytest.mark.parametrize("harness", ["units_misfit.c"])
+@pytest.mark.parametrize("harness", ["units_misfit.c", "units_second_variation.c"])
 def test_algorithm_with_equations_of_the_test(harness: str, tmp_path: Path) -> None:
     include = f"-I{ROOT / 'cosserat_casadi' / 'codegen' / 'c'}"
     gcc(*C99, *SANITIZED, include, HARNESS / harness, "-lm", "-o", tmp_path / "units")
