@@ -72,10 +72,8 @@ VERBATIM = frozenset(
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
-PLAIN_BUILD = dict.fromkeys(
-    ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
-)
-"""Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
+PLAIN_BUILD: dict[str, Any] = {"plain_build": True, "more_sources": "", "more_compiled": "", "more_headers": ""}
+"""Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 RANGES_OF_RODS = (
     "a tension not below zero and a length above, and by the bounds of the scene. The\n"
@@ -173,8 +171,6 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
-    for part in ("cmake_options", "cmake_definitions", "cmake_dependencies"):
-        words[part] = render(f"{part}.in", words)
     words["more_compiled"] = ""
     if rows is not None:
         words["more_sources"] += f" {name}_lanes.c"
@@ -239,6 +235,7 @@ def _words(
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
+        **dict.fromkeys(("of_rods", "with_axes", "judged"), True),
         **_solver_constants(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
