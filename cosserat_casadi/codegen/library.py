@@ -63,16 +63,18 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
-"""Files of the folder ``c`` that the library's own source includes, as they are."""
+LEAST_MISFIT = "least_misfit.c"
+SECOND_VARIATION = "second_variation.c"
+VERBATIM = frozenset(
+    {*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, LEAST_MISFIT, SECOND_VARIATION}
+)
+"""Files of the folder ``c`` that sources of a library include, as they are."""
 
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
-PLAIN_BUILD = dict.fromkeys(
-    ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
-)
-"""Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
+PLAIN_BUILD: dict[str, Any] = {"plain_build": True, "more_sources": "", "more_compiled": "", "more_headers": ""}
+"""Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 RANGES_OF_RODS = (
     "a tension not below zero and a length above, and by the bounds of the scene. The\n"
@@ -113,6 +115,7 @@ ROLES = {
     "lanes_linear.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
+    "second_variation.c": "eigenvalues over admissible variations, the same in every folder; included",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_demo.c": "solves once, times it, prints JSON",
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
@@ -170,8 +173,6 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
-    for part in ("cmake_options", "cmake_definitions", "cmake_dependencies"):
-        words[part] = render(f"{part}.in", words)
     words["more_compiled"] = ""
     if rows is not None:
         words["more_sources"] += f" {name}_lanes.c"
@@ -236,6 +237,7 @@ def _words(
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
+        **dict.fromkeys(("of_rods", "with_axes"), True),
         **_solver_constants(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
@@ -451,7 +453,7 @@ def _file_rows(
     if not derivatives:
         absent.add("{name}_derivatives.c")
     if not stability:
-        absent |= {"{name}_stability.c", "{name}_stability.h"}
+        absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 

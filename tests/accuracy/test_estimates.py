@@ -14,9 +14,7 @@ from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import FURTHER_MODES, HIDDEN_SAFETY, NEGLIGIBLE, Resolution
 from cosserat_casadi.accuracy.scene_solver import corrected_from
-from cosserat_casadi.bench.shooting import shoot
 from cosserat_casadi.equilibrium.metrics import cable_distance, largest_turn, pose_distance, prolong
-from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.model.watched import SAMPLES
 from tests.families import mostly_slow
 from tests.pose_errors import pose_error
@@ -24,6 +22,7 @@ from tests.reference.assembled_scenes import assembled_scene
 from tests.reference.random_scenes import random_scene
 from tests.reference.routed_scenes import rich_scene
 from tests.scenes import push, scene
+from tests.shooting_near import shoot
 
 Table = dict[str, Any]
 
@@ -66,11 +65,7 @@ def drawn_tolerance(seed: int) -> float:
 
 def by_shooting(solution: Solution) -> Errors:
     """Against DOP853 from the clamp of a rod, which shares no polynomial with the solution."""
-    model = solution.model
-    base = solution.base_wrench("rod")
-    start = np.concatenate([base.force, base.moment])
-    values = load_values(model.scene, model.inputs, solution.inputs)
-    truth = shoot(model.scene, model.discrete.rods["rod"].properties, values, list(ALONG), start)
+    truth = shoot(solution, ALONG)
     pose = solution.pose(ALONG)
     errors = []
     for section in range(len(ALONG)):

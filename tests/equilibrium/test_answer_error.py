@@ -9,15 +9,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, discretise, read_scene, solve, solve_scene
-from cosserat_casadi.bench.shooting import shoot
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.inputs import load_values
 from tests.conftest import CASES, ROOT
 from tests.families import mostly_slow
 from tests.pose_errors import pose_error
 from tests.scenes import push, scene
+from tests.shooting_near import shoot
 
 AWAY = CASES / "away"
 
@@ -131,15 +130,9 @@ def test_estimate_of_a_rod_beside_shooting() -> None:
     pushed = scene(push(force=[3.0, 2.0, -1.0], moment=[0.0, 0.5, 0.3]))
     for modes in (2, 3, 4, 5):
         solution = solve(build(pushed, discretise(pushed, modes, 2 * modes + 4)))
-        clamp = solution.base_wrench()
-        start = np.concatenate([clamp.force, clamp.moment])
-        loads = load_values(pushed, solution.model.inputs, solution.inputs)
-        properties = solution.model.discrete.rods["rod"].properties
-        truth = shoot(pushed, properties, loads, [1.0], start)
+        truth = shoot(solution, [1.0])
         tip = solution.tip()
-        error = pose_error(
-            (tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), properties.length
-        )
+        error = pose_error((tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), truth.length)
         assert solution.error_estimate is not None
         assert LEAST * error < solution.error_estimate < MOST_ABOVE * error
 

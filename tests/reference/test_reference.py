@@ -263,6 +263,24 @@ def test_the_end_of_a_path_is_told() -> None:
         solve_by_shooting(scene)
 
 
+def test_start_at_the_wrench_of_the_clamp() -> None:
+    scene = scene_of(tip_wrench(force=[0.3, 0.8, -0.4], moment=[-0.7, 0.9, 0.4]))
+    wanted = solve_by_shooting(scene)
+    clamp = np.concatenate([wanted.base_force, wanted.base_moment])
+    solution = solve_by_shooting(scene, base_wrench=clamp + 1e-4)
+    assert solution.steps == 0
+    assert_allclose(solution.tip_position, wanted.tip_position, **EXACT)
+    assert_allclose(solution.base_moment, wanted.base_moment, **EXACT)
+    with pytest.raises(NoEquilibriumError, match="near the base wrench"):
+        solve_by_shooting(scene, base_wrench=clamp + 0.1)
+
+
+def test_kinds_that_shooting_does_not_know_are_refused() -> None:
+    scene = scene_of(tip_wrench(force=[0.3, 0.8, -0.4]), {"kind": "magnet"})
+    with pytest.raises(ValueError, match="magnet, tendon"):
+        solve_by_shooting(scene | {"actuators": [{"kind": "tendon"}]})
+
+
 @pytest.mark.parametrize("seeds", [range(10), pytest.param(range(10, 60), marks=pytest.mark.slow)])
 def test_random_scenes(seeds: range) -> None:
     """Each is solved to the last digits; sections stay orthogonal, strains that are not admitted intrinsic."""

@@ -100,7 +100,7 @@ def contact_files(
         f"{name}_config.h": render("contact_config.h.in", words),
         f"{name}_demo.c": render("contact_demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("contact_readme.md.in", words),
+        "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
         "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
@@ -124,6 +124,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
     return {
         "name": names.name,
         **PLAIN_BUILD,
+        **dict.fromkeys(("in_contact", "with_axes"), True),
         "MACRO": names.macro,
         "title": comment(chosen.scene.title or names.name),
         "version": version("cosserat-casadi"),
