@@ -45,8 +45,8 @@ from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.constraints.held_directions import NONE, across
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint, Support
-from cosserat_casadi.control.targets import Gap, Target, length_of
-from cosserat_casadi.identification.quantities import Site, StateQuantity
+from cosserat_casadi.control.targets import Target, TargetMiss, length_of
+from cosserat_casadi.identification.quantities import MeasurementSite, StateQuantity
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -251,9 +251,9 @@ class Height(Target[HeightRecord]):
         position: Matrix = model.tip[target.rod](x, inputs)[0]
         return (position[2] - target.height) / length_of(model, target)
 
-    def gap(self, target: HeightRecord, solution: Solution) -> Gap:
+    def gap(self, target: HeightRecord, solution: Solution) -> TargetMiss:
         height = solution.tip(target.rod).position[0, 2]
-        return Gap(f"height of {target.rod}", abs(float(height - target.height)), None)
+        return TargetMiss(f"height of {target.rod}", abs(float(height - target.height)), None)
 
 
 class AltitudeRecord(MovingMeasurement):
@@ -275,7 +275,7 @@ class Altitude(StateQuantity[AltitudeRecord]):
 
     record = AltitudeRecord
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         heights = [position[2] for position, _ in site.frames()]
         return ca.horzcat(*heights) - site.measured
 

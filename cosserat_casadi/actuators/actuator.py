@@ -15,7 +15,7 @@ from cosserat_casadi.loads.load import EFFECTS
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.actuation import Quantity
+from cosserat_casadi.rod.actuation import ShapeQuantity
 from cosserat_casadi.scene.actuators import ACTUATORS, ActuatorRecord
 from cosserat_casadi.scene.families import Kind
 
@@ -51,10 +51,10 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return self.record.inputs[self.effort].unit
 
     @abstractmethod
-    def quantity(self, actuator: RecordType, grid: Grid) -> Quantity:
+    def quantity(self, actuator: RecordType, grid: Grid) -> ShapeQuantity:
         """The conjugate quantity on the grid of the rod."""
 
-    def worked_on(self, actuator: RecordType, grid: Grid, values: Mapping[str, Matrix]) -> Quantity:
+    def worked_on(self, actuator: RecordType, grid: Grid, values: Mapping[str, Matrix]) -> ShapeQuantity:
         """The conjugate quantity for these inputs, 1×1 each; by default it does not depend on them."""
         return self.quantity(actuator, grid)
 

@@ -55,7 +55,7 @@ class HeldDirections:
         return self.turn_with_place and self.positions.shape[1] < 3
 
 
-class Variations(NamedTuple):
+class PoseVariations(NamedTuple):
     """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
 
     The section moves in the axes of the rod's base, the other two in world axes.
@@ -66,7 +66,7 @@ class Variations(NamedTuple):
     frame: Matrix
 
 
-class Poses(NamedTuple):
+class ConstraintPoses(NamedTuple):
     """The poses that a constraint reads.
 
     Attributes:
@@ -89,7 +89,7 @@ class Poses(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Target:
+class HeldPose:
     """What a section is held to.
 
     Attributes:
@@ -105,7 +105,7 @@ class Target:
         """The same as a matrix, 3×3."""
         return None if self.turn is None else quaternion_to_matrix(self.turn)
 
-    def seen_from(self, poses: Poses) -> Pose:
+    def seen_from(self, poses: ConstraintPoses) -> Pose:
         """The pose that the section is held to, in the rod's base."""
         return poses.base.seen(poses.frame.then(self.place))
 
@@ -136,21 +136,21 @@ class SectionConstraint:
         """Number of multipliers."""
         return self.held.size
 
-    def residual(self, poses: Poses) -> Matrix:
+    def residual(self, poses: ConstraintPoses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
         residual: Matrix = self._kernels.residual(*poses.stacked, *self._free_target)[0]
         return residual
 
-    def residual_variation(self, poses: Poses) -> Variations:
+    def residual_variation(self, poses: ConstraintPoses) -> PoseVariations:
         """Derivative of the residual with the poses, size×6 each."""
         _, *by_poses = self._kernels.residual(*poses.stacked, *self._free_target)
-        return Variations(*by_poses)
+        return PoseVariations(*by_poses)
 
-    def wrench_basis(self, poses: Poses) -> Matrix:
+    def wrench_basis(self, poses: ConstraintPoses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
         return self._wrench_basis(poses, self._given_target)
 
-    def _wrench_basis(self, poses: Poses, target: Target) -> Matrix:
+    def _wrench_basis(self, poses: ConstraintPoses, target: HeldPose) -> Matrix:
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
@@ -166,23 +166,23 @@ class SectionConstraint:
             rotation = rotation @ target.axes
         return ca.diagcat(rotation, rotation) @ in_given_axes
 
-    def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
+    def wrench_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> PoseVariations:
         """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
         if not self.held.turn_with_place:
             zero = ca.DM(6, 6)
-            return Variations(zero, zero, zero)
+            return PoseVariations(zero, zero, zero)
         _, *by_poses = self._kernels.wrench(*poses.stacked, *self._free_target, multipliers)
-        return Variations(*by_poses)
+        return PoseVariations(*by_poses)
 
-    def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
+    def reaction(self, poses: ConstraintPoses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
         reaction: Matrix = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)[0]
         return reaction
 
-    def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
+    def reaction_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> tuple[Matrix, PoseVariations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
         _, by_multipliers, *by_poses = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)
-        return by_multipliers, Variations(*by_poses)
+        return by_multipliers, PoseVariations(*by_poses)
 
     @cached_property
     def _kernels(self) -> _Kernels:
@@ -197,10 +197,10 @@ class SectionConstraint:
         return _shared(_Kernels((self.rod.length, self.unit, held, place, turn), self))
 
     @property
-    def _given_target(self) -> Target:
+    def _given_target(self) -> HeldPose:
         """What the section is held to, as expressions."""
         place = self.place if isinstance(self.place, Pose) else self.place.pose
-        return Target(place, self.turn)
+        return HeldPose(place, self.turn)
 
     @property
     def _free_target(self) -> list[Matrix]:
@@ -210,7 +210,7 @@ class SectionConstraint:
             arguments.append(self.turn)
         return arguments
 
-    def target_symbols(self) -> tuple[Target, list[ca.SX]]:
+    def target_symbols(self) -> tuple[HeldPose, list[ca.SX]]:
         """The target that the kernels are written in, and its symbols."""
         target = self._given_target
         symbols = []
@@ -222,7 +222,7 @@ class SectionConstraint:
             target = replace(target, turn=symbols[-1])
         return target, symbols
 
-    def residual_of(self, poses: Poses, target: Target) -> Matrix:
+    def residual_of(self, poses: ConstraintPoses, target: HeldPose) -> Matrix:
         """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
         section = poses.section
         held_to = target.seen_from(poses)
@@ -241,11 +241,11 @@ class SectionConstraint:
         about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
 
-    def wrench_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
+    def wrench_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
         """The wrench on the section, base axes of the rod, 6×1."""
         return self._wrench_basis(poses, target) @ multipliers
 
-    def reaction_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
+    def reaction_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
         """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
         wrench = self.wrench_of(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
@@ -318,22 +318,22 @@ def _exact(matrix: Matrix | FloatArray) -> Hashable:
     return (numbers.shape, numbers.tobytes())
 
 
-def _symbols() -> tuple[Poses, list[ca.SX]]:
+def _symbols() -> tuple[ConstraintPoses, list[ca.SX]]:
     """Symbols of the three poses and of their motions."""
     poses = []
     motions = []
-    for name in Poses._fields:
+    for name in ConstraintPoses._fields:
         position = ca.SX.sym(f"{name}_position", 3)
         quaternion = ca.SX.sym(f"{name}_quaternion", 4)
         poses.append(Pose(position, quaternion))
         motions.append(ca.SX.sym(f"{name}_motion", 6))
-    return Poses(*poses), motions
+    return ConstraintPoses(*poses), motions
 
 
-def _moved(poses: Poses, motions: list[ca.SX]) -> Poses:
+def _moved(poses: ConstraintPoses, motions: list[ca.SX]) -> ConstraintPoses:
     """The poses after small motions."""
     moved = [pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)]
-    return Poses(*moved)
+    return ConstraintPoses(*moved)
 
 
 def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:

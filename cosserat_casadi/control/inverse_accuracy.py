@@ -14,7 +14,7 @@ from cosserat_casadi.control.inverse import STARTS, check_targets, first_solutio
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses
-from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
+from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -172,7 +172,7 @@ def _refined(
     return found
 
 
-def _distance(gaps: Sequence[Gap], lengths: FloatArray) -> float:
+def _distance(gaps: Sequence[TargetMiss], lengths: FloatArray) -> float:
     """How far a solution is from targets: the largest of distances over the lengths of their rods, and angles."""
     distances = [0.0]
     for gap, length in zip(gaps, lengths, strict=True):

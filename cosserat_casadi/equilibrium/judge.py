@@ -13,8 +13,8 @@ from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import (
+    ConstrainedVariations,
     Stability,
-    Variations,
     admissible_spectrum,
     second_variation,
     stability_of,
@@ -183,7 +183,7 @@ def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatA
     return second_variation(jacobian, allowed).neutral
 
 
-def _multipliers_along(jacobian: FloatArray, allowed: Variations, variation: FloatArray) -> FloatArray:
+def _multipliers_along(jacobian: FloatArray, allowed: ConstrainedVariations, variation: FloatArray) -> FloatArray:
     """Rates of the multipliers, shape (m,), with which a variation that costs no energy leaves all in balance."""
     forces = jacobian[np.ix_(allowed.free, allowed.free)] @ variation
     by_multipliers = jacobian[np.ix_(allowed.free, allowed.held)]

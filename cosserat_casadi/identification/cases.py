@@ -18,7 +18,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.quantities import QUANTITIES
-from cosserat_casadi.identification.table import Table, read_table, table_of
+from cosserat_casadi.identification.table import DataFile, read_table, table_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.load_cases import column_indices
@@ -119,13 +119,13 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
     return _joined(rows, layout, per_row)
 
 
-def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, Table], list[Problem]]:
+def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile], list[Problem]]:
     """The table of each measurement by its number, and what is wrong with others."""
     given = dict(data or {})
     names = [name for measurement in scene.measurements for name in (measurement.title, measurement.file)]
     problems = [Problem(name, "is no measurement of this scene") for name in given if name not in names]
-    tables: dict[int, Table] = {}
-    files: dict[str, Table | None] = {}
+    tables: dict[int, DataFile] = {}
+    files: dict[str, DataFile | None] = {}
     for number, measurement in enumerate(scene.measurements):
         name = measurement.title if measurement.title in given else measurement.file
         if name not in files:
@@ -155,7 +155,7 @@ class _Reader:
 
     number: int
     measurement: scenes.MeasurementRecord
-    table: Table
+    table: DataFile
     layout: InputLayout
     duration: float
     problems: list[Problem] = field(default_factory=list)

@@ -36,7 +36,7 @@ LEAST = 1e-6
 
 
 @dataclass(frozen=True)
-class Choice:
+class FitDiscretisation:
     """A scene on modes and nodes that were chosen, and what is to be said of them.
 
     Attributes:
@@ -48,7 +48,7 @@ class Choice:
     warnings: tuple[str, ...] = ()
 
 
-def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case], report: Report) -> Choice:
+def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case], report: Report) -> FitDiscretisation:
     """The scene on modes and nodes that serve those cases that lie farthest apart.
 
     Args:
@@ -58,7 +58,7 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
         report: told the stage.
     """
     if scene.accuracy.fixed:
-        return Choice(scene)
+        return FitDiscretisation(scene)
     tolerance = _tolerance(scene, cases)
     baked = unfixed(scene.baked(), tolerance)
     warnings: list[str] = []
@@ -85,10 +85,10 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
         if not motion.converged:
             warnings.append(f"The discretisation for motions: {motion.message}")
     if not chosen:
-        return Choice(scene)
+        return FitDiscretisation(scene)
     # Written out: a tolerance that nobody has written asks nothing of modes that are fixed.
     asked = with_accuracy(scene, tolerance=tolerance)
-    return Choice(fixed_alike(asked, union_of(chosen)), tuple(warnings))
+    return FitDiscretisation(fixed_alike(asked, union_of(chosen)), tuple(warnings))
 
 
 def _tolerance(scene: scenes.Scene, cases: Sequence[Case]) -> float:

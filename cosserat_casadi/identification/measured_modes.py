@@ -37,7 +37,7 @@ PARTED = 1e-6
 
 
 @dataclass(frozen=True)
-class Cluster:
+class ModeCluster:
     """Modes that have one eigenvalue.
 
     Attributes:
@@ -74,7 +74,9 @@ class Vibrations:
         self.model = model
         self._slope: ca.Function | None = None
 
-    def clusters(self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]) -> dict[int, Cluster]:
+    def clusters(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]
+    ) -> dict[int, ModeCluster]:
         """The modes of some numbers, each with those that have its eigenvalue; what does not swing is left out.
 
         Args:
@@ -92,7 +94,7 @@ class Vibrations:
         conservative = self.model.has_potential(inputs)
         pairs = eigenpairs(motions.free_stiffness, motions.free_damping, motions.free_mass, conservative=conservative)
         swinging = pairs.values[pairs.values.imag > 0.0]
-        found: dict[int, Cluster] = {}
+        found: dict[int, ModeCluster] = {}
         for number in numbers:
             if number in found or number > len(swinging):
                 continue
@@ -100,7 +102,7 @@ class Vibrations:
             found.update(dict.fromkeys(cluster.numbers, cluster))
         return found
 
-    def derivatives(self, cluster: Cluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
+    def derivatives(self, cluster: ModeCluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
         """The matrices −l_i (λ² dM + λ dC + dK) z_j by x, inputs and p, stacked, shape (r, r, arguments), 1/s."""
         function = self._slope_function()
         given = [x, inputs, p] if self.model.parameters.size else [x, inputs]
@@ -156,7 +158,7 @@ class Vibrations:
         return self._slope
 
 
-def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> Cluster:
+def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeCluster:
     """The modes that have the eigenvalue of one of them.
 
     Args:
@@ -185,7 +187,7 @@ def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> Clust
         left[algebraic] = -np.linalg.lstsq(gradients, inside.T @ left[moving], rcond=None)[0]
     slope = 2.0 * value * motions.mass + motions.damping
     normalised = np.linalg.solve(left.T @ slope @ right, left.T)
-    return Cluster(value, int(chosen[0]) + 1, right, normalised)
+    return ModeCluster(value, int(chosen[0]) + 1, right, normalised)
 
 
 def _pencil(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, value: complex) -> ComplexArray:

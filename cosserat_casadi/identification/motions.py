@@ -29,7 +29,7 @@ from cosserat_casadi.motion.simulate import EXACT, STAGES
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 
 FIRST_STEPS = 16
 """Steps that the longest motion is first divided into; they are halved until their error is small enough."""
@@ -285,7 +285,7 @@ class _StageResponse:
 
 
 def _stage_response(
-    step: Step,
+    step: TimeStep,
     method: Collocation,
     differential: Flags,
     stiffness: FloatArray,

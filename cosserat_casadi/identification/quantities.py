@@ -1,6 +1,6 @@
 """Measured quantities as expressions of the model: how far the model is from what was measured.
 
-A quantity is one class: it gives :meth:`Quantity.difference`, or of a vibration its value over the eigenvalue.
+A quantity is one class: it gives :meth:`MeasuredQuantity.difference`, or of a vibration its value over the eigenvalue.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ RecordType = TypeVar("RecordType", bound=MeasurementRecord)
 
 
 @dataclass(frozen=True)
-class Site:
+class MeasurementSite:
     """What an expression of a quantity is written in.
 
     Attributes:
@@ -101,7 +101,7 @@ class Site:
         return sections.stacked, sections.by_unknowns
 
 
-class Quantity(Kind, ABC, Generic[RecordType]):
+class MeasuredQuantity(Kind, ABC, Generic[RecordType]):
     """One measured quantity.
 
     Attributes:
@@ -131,15 +131,15 @@ class Quantity(Kind, ABC, Generic[RecordType]):
         return values
 
 
-QUANTITIES = Quantity.kinds
+QUANTITIES = MeasuredQuantity.kinds
 """Measured quantities by the word of the scene format."""
 
 
-class StateQuantity(Quantity[RecordType]):
+class StateQuantity(MeasuredQuantity[RecordType]):
     """One measured quantity that follows from the unknowns of an equilibrium, or of an instant."""
 
     @abstractmethod
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """Model minus measurement, a column for each section, in the units of the record's `differences`."""
 
 
@@ -151,7 +151,7 @@ class Position(StateQuantity[MeasuredPosition]):
     record = MeasuredPosition
     coordinates = 3
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A distance, 3×k, m."""
         positions = [position for position, _ in site.frames()]
         return ca.horzcat(*positions) - site.measured
@@ -167,7 +167,7 @@ class MarkerPose(StateQuantity[MeasuredPose]):
     # A quaternion has a length, also where none was measured.
     unmeasured = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A distance, m, and the rotation vector from the measured orientation, 6×k."""
         differences = []
         for k, (position, quaternion) in enumerate(site.frames()):
@@ -202,7 +202,7 @@ class Tension(StateQuantity[MeasuredTension]):
 
     record = MeasuredTension
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A force, 1×k, N."""
         tension = site.system.actuators.state(site.record.actuator)[0]
         return ca.repmat(tension, 1, site.sections) - site.measured
@@ -215,7 +215,7 @@ class TendonLength(StateQuantity[MeasuredLength]):
 
     record = MeasuredLength
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A length, 1×k, m."""
         length = site.system.actuators.state(site.record.actuator)[1]
         return ca.repmat(length, 1, site.sections) - site.measured
@@ -223,12 +223,12 @@ class TendonLength(StateQuantity[MeasuredLength]):
 
 @final
 @register
-class BaseWrench(StateQuantity[MeasuredBaseWrench]):
+class ClampWrench(StateQuantity[MeasuredBaseWrench]):
     """Force and moment of the clamp."""
 
     record = MeasuredBaseWrench
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A force, N, and a moment, N m, world axes, 6×k."""
         rotation = quaternion_to_matrix(site.system.base(site.record.rod).quaternion)
         statics = site.system.rods[site.record.rod].statics
@@ -243,7 +243,7 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
 
     record = MeasuredStrain
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         """A strain, 1×k."""
         rod = site.record.rod
         system = site.system
@@ -261,7 +261,7 @@ class FibreStrain(StateQuantity[MeasuredStrain]):
         return stretch / unloaded_stretch - 1 - site.measured
 
 
-class VibrationQuantity(Quantity[RecordType]):
+class VibrationQuantity(MeasuredQuantity[RecordType]):
     """One measured quantity of a vibration: a function of its eigenvalue λ, 1/s."""
 
     @abstractmethod
@@ -348,7 +348,7 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
     place = getattr(record, "at", None)
     # A place that is unknown is a number of p, whatever the rows say.
     places = ca.repmat(place, 1, sections) if is_symbolic(place) else at
-    site = Site(System(discrete, Arguments(x, inputs)), record, places, measured)
+    site = MeasurementSite(System(discrete, Arguments(x, inputs)), record, places, measured)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
     derivatives = [ca.jacobian(stacked, argument) for argument in (x, inputs, p)]
     results = [stacked, *derivatives]

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arrow_least_squares import Arrow
+from cosserat_casadi.numerics.arrow_least_squares import ArrowStep
 
 BLIND = 1e-10
 """Share of the largest singular value below which a direction is one that the data do not see: rounding."""
@@ -83,7 +83,7 @@ class Statistics:
 
 
 def statistics(
-    arrow: Arrow,
+    arrow: ArrowStep,
     labels: tuple[str, ...],
     scales: tuple[FloatArray, FloatArray],
     *,
@@ -202,7 +202,7 @@ def _directions(rows: FloatArray) -> _Directions:
 
 
 def _own_deviations(
-    arrow: Arrow, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
+    arrow: ArrowStep, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
 ) -> FloatArray:
     """Standard deviations of the unknowns of each case, with what the shared ones add; NaN where not determined."""
     n, k = arrow.sizes

@@ -19,7 +19,7 @@ NOT_MEASURED = ("", "nan", "na", "none", "null")
 
 
 @dataclass(frozen=True)
-class Table:
+class DataFile:
     """Rows of named cells.
 
     Attributes:
@@ -73,7 +73,7 @@ class Table:
         return all(self.holds(column, row, value) for column, value in values.items())
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path) -> DataFile:
     """The rows of a CSV file with a header.
 
     Raises:
@@ -86,10 +86,10 @@ def read_table(path: Path) -> Table:
     if problems:
         raise SceneError(*problems)
     columns = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
-    return Table(str(path), columns, tuple(line for line, _ in rows))
+    return DataFile(str(path), columns, tuple(line for line, _ in rows))
 
 
-def table_of(name: str, columns: Mapping[str, npt.ArrayLike]) -> Table:
+def table_of(name: str, columns: Mapping[str, npt.ArrayLike]) -> DataFile:
     """Columns that are given in Python, as the rows of a file.
 
     Args:
@@ -106,4 +106,4 @@ def table_of(name: str, columns: Mapping[str, npt.ArrayLike]) -> Table:
         raise SceneError(Problem(name, f"must have columns of one length, got {shapes or 'none'}"))
     texts = {key: [str(value) for value in array.tolist()] for key, array in arrays.items()}
     (count,) = next(iter(counts))
-    return Table(name, texts, tuple(range(1, count + 1)))
+    return DataFile(name, texts, tuple(range(1, count + 1)))

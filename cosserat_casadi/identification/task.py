@@ -23,7 +23,7 @@ from cosserat_casadi.identification.time_steps import STEP_ERROR, error_of_steps
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.arrow_least_squares import Arrow, ArrowFit, Fit, Limits
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fit, Limits
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
@@ -104,7 +104,7 @@ class Task:
     model: Model
     layout: UnknownLayout
     loss: Loss
-    options: scenes.Identification
+    options: scenes.IdentificationSettings
     starts: int
     report: Report
     progress: Progress | None
@@ -298,7 +298,7 @@ class Task:
             points.append(limits.clipped(point))
         return points
 
-    def _statistics(self, arrow: Arrow, fit: Fit[MisfitState], misfit: Misfit) -> Statistics:
+    def _statistics(self, arrow: ArrowStep, fit: Fit[MisfitState], misfit: Misfit) -> Statistics:
         """What the data say at the optimum."""
         n, k = arrow.sizes
         unknowns = n + k * len(misfit.cases)

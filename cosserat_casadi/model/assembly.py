@@ -32,7 +32,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.section_constraint import Variations
+from cosserat_casadi.constraints.section_constraint import PoseVariations
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
@@ -169,7 +169,7 @@ class Assembly:
         tangent = self.system.tangents[placed.rod]
         return ca.vertcat(tangent.rotation_of(placed.node), tangent.position(placed.node))
 
-    def _of_floating(self, placed: PlacedConstraint, variations: Variations) -> list[tuple[FrameName, Matrix]]:
+    def _of_floating(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[FrameName, Matrix]]:
         """Derivatives with the motions of those frames of a constraint that float: its rod's base, its other side."""
         base = self.discrete.unloaded.floating_base(placed.rod)
         derivatives = []

@@ -30,7 +30,7 @@ from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.signals import signal_modes
-from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
+from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
@@ -210,9 +210,9 @@ class DiscreteScene:
         ]
         return Unknowns(tuple(blocks))
 
-    def _strain_blocks(self) -> Iterator[Block]:
+    def _strain_blocks(self) -> Iterator[UnknownBlock]:
         for name, rod in self.rods.items():
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.STRAIN,
                 owner=name,
                 rod=name,
@@ -221,9 +221,9 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
-    def _multiplier_blocks(self) -> Iterator[Block]:
+    def _multiplier_blocks(self) -> Iterator[UnknownBlock]:
         for placed in self.constraints:
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.MULTIPLIER,
                 owner=placed.where,
                 rod=placed.rod,
@@ -232,10 +232,10 @@ class DiscreteScene:
                 step_weight=placed.step_weight,
             )
 
-    def _pose_blocks(self) -> Iterator[Block]:
+    def _pose_blocks(self) -> Iterator[UnknownBlock]:
         for name, frame in self.frames.items():
             # Several rods may meet in a frame, so that it is solved with none of them.
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.POSE,
                 owner=str(name),
                 rod=None,
@@ -244,10 +244,10 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
-    def _tension_blocks(self) -> Iterator[Block]:
+    def _tension_blocks(self) -> Iterator[UnknownBlock]:
         for cable in self.cables:
             tendon = cable.tendon
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.TENSION,
                 owner=tendon.name,
                 rod=tendon.rod,

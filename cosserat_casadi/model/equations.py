@@ -21,7 +21,7 @@ from cosserat_casadi.model.system import System
 
 
 @dataclass(frozen=True)
-class Equations:
+class SceneEquations:
     """The equations of a scene in given arguments.
 
     Attributes:

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.contact_depth import contact_depths
 from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
-from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import (
     PARAMETERS,
@@ -82,18 +82,18 @@ class ModelFunctions:
     @scene_function(Output("residual"), differentiable=True)
     def residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return [Equations(written.system).residual]
+        return [SceneEquations(written.system).residual]
 
     @scene_function(Output("jacobian"), Output("residual"))
     def jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        equations = Equations(written.system)
+        equations = SceneEquations(written.system)
         return [equations.jacobian, equations.residual]
 
     @scene_function(Output("input_jacobian"))
     def input_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        residual = Equations(written.system).residual
+        residual = SceneEquations(written.system).residual
         return [ca.jacobian(residual, written["inputs"])]
 
     @scene_function(Output("parameter_jacobian"))
@@ -101,18 +101,18 @@ class ModelFunctions:
         """(x, inputs, p) ↦ derivative of the residual with respect to the parameters; None without parameters."""
         if not written.discrete.parameters.size:
             return None
-        residual = Equations(written.system).residual
+        residual = SceneEquations(written.system).residual
         return [ca.jacobian(residual, written["p"])]
 
     @scene_function(Output("residual"), arguments=PATH, kernel="residual")
     def path_residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return [Equations(written.system).residual]
+        return [SceneEquations(written.system).residual]
 
     @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
     def path_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return [Equations(written.system).jacobian]
+        return [SceneEquations(written.system).jacobian]
 
     @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
     def path_rate(self, written: Expressions) -> list[Matrix]:
@@ -122,7 +122,7 @@ class ModelFunctions:
         # One symbol for all that moves, so that one derivative in one direction is taken.
         joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
         arguments = Arguments(written["x"], joined[:-1], joined[-1])
-        equations = Equations(System(written.discrete, arguments))
+        equations = SceneEquations(System(written.discrete, arguments))
         rate = ca.jtimes(equations.residual, joined, speed)
         return [ca.substitute(rate, joined, moving)]
 
@@ -165,7 +165,7 @@ class ModelFunctions:
         below the other, at x + correction and the missing coordinates; docs/theory.md, section 10.
         """
         richer, system = _enriched(written)
-        residual, lacking = richer.split(Equations(system).residual)
+        residual, lacking = richer.split(SceneEquations(system).residual)
         step, missing_step = richer.split(richer.elastic_step(lacking))
         return [ca.densify(ca.vertcat(step, missing_step, residual))]
 

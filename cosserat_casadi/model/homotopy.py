@@ -14,7 +14,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
 
 LoadFactor = Matrix | None
 """λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
@@ -53,7 +53,7 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
     return _scaled_wrench(load, load_factor)
 
 
-def _scaled_wrench(load: PointWrench | LineWrench, load_factor: Matrix) -> PointWrench | LineWrench:
+def _scaled_wrench(load: WrenchAt | LineWrench, load_factor: Matrix) -> WrenchAt | LineWrench:
     force = load.force
     moment = load.moment
     # An absent force or moment stays absent, so that it adds no instruction.

@@ -31,7 +31,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class RodLoads:
         moment = self.base.in_base_axes(given_moment, follower=kernel.follower)
         at = member.abscissa(load)
         if at is not None:
-            return [PointWrench(at, force, moment, kernel.follower)]
+            return [WrenchAt(at, force, moment, kernel.follower)]
         # Profiles of force and of moment may differ: a line wrench for each.
         force_line = self._line_wrench(kernel, site, force, None)
         moment_line = self._line_wrench(kernel, site, None, moment)

@@ -13,7 +13,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
-from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import BlockKind
@@ -23,7 +23,7 @@ from cosserat_casadi.rod.motion_tangent import MotionTangent
 
 
 @dataclass(frozen=True)
-class MotionEquations:
+class SceneMotionEquations:
     """The equations of motion of a scene in given arguments.
 
     Attributes:
@@ -45,7 +45,7 @@ class MotionEquations:
         for name, frame_motion in self.system.frame_motions.items():
             number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
             added[number] = frame_motion.norm_rows
-        return Equations(self.system).residual + ca.vertcat(*added)
+        return SceneEquations(self.system).residual + ca.vertcat(*added)
 
     @cached_property
     def matrices(self) -> MotionMatrices:
@@ -76,7 +76,7 @@ class MotionEquations:
             stiffness.add(entries, entries, viscosity.stiffness)
             damping.add(entries, entries, viscosity.damping)
         return MotionMatrices(
-            stiffness=Equations(self.system).jacobian + stiffness.matrix(),
+            stiffness=SceneEquations(self.system).jacobian + stiffness.matrix(),
             damping=damping.matrix(),
             mass=mass.matrix(),
         )

@@ -19,7 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.spins import free_spins
 from cosserat_casadi.model.system import Arguments, System
@@ -77,7 +77,7 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
 def _constraint_rows(system: System) -> FloatArray:
     """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
-    jacobian = ca.evalf(Equations(system).jacobian).full()
+    jacobian = ca.evalf(SceneEquations(system).jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))

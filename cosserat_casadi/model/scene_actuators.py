@@ -19,7 +19,7 @@ from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor, scaled_effort, smoothing_at
 from cosserat_casadi.model.load_inputs import input_value, input_values
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
+from cosserat_casadi.rod.actuation import Actuation, Conjugate, ShapeQuantity
 from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.kinematics import Shape
 
@@ -82,11 +82,11 @@ class SceneActuators:
         """Equations of the cables of given length by the names of their tendons."""
         return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
 
-    def _quantity(self, actuator: scenes.Actuator) -> Quantity:
+    def _quantity(self, actuator: scenes.Actuator) -> ShapeQuantity:
         """What an actuator works on, for the inputs."""
         values = input_values(self.discrete.layout, actuator, self.inputs)
         grid = self.discrete.rods[actuator.rod].grid
-        quantity: Quantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
+        quantity: ShapeQuantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
         return quantity
 
     def _effort(self, actuator: scenes.Actuator) -> Matrix:

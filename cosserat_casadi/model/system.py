@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.section_constraint import Poses
+from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
@@ -36,7 +36,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
-from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
 
 ROUNDING = 1e-16
 """Entry of a rotation matrix below which it is rounding."""
@@ -249,11 +249,11 @@ class System:
             return vectors
         return self.body(body).rotation.T @ vectors
 
-    def poses(self, placed: PlacedConstraint) -> Poses:
+    def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
         section = self.section(placed.rod, placed.node)
         base = self.base(placed.rod)
-        return Poses(section, base, self._frame_of(placed))
+        return ConstraintPoses(section, base, self._frame_of(placed))
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
@@ -386,7 +386,7 @@ class System:
         loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
         return InverseGeometricModel(Statics(self.shapes[name], loads), self.actuators.on_rod(name))
 
-    def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:
+    def _constraint_wrench(self, placed: PlacedConstraint) -> WrenchAt:
         """Wrench of a constraint on its section, in the axes of the rod's base."""
         constraint = placed.constraint
         held = constraint.held
@@ -394,22 +394,22 @@ class System:
         if held.turn_with_place:
             poses = self._poses_but_section(placed)
             wrench = constraint.wrench_basis(poses) @ multipliers
-            return PointWrench(constraint.at, wrench[3:], wrench[:3], follower=False)
+            return WrenchAt(constraint.at, wrench[3:], wrench[:3], follower=False)
         # Constant directions: the constraint costs its rod no more than a load of fixed direction.
         displacements = held.positions.shape[1]
         force_unit = constraint.unit / constraint.rod.length
         force = force_unit * (_sparse(held.positions) @ multipliers[:displacements])
         if not held.rotations.size:
-            return PointWrench(constraint.at, force, None, follower=False)
+            return WrenchAt(constraint.at, force, None, follower=False)
         moment = constraint.unit * (_sparse(held.rotations) @ multipliers[displacements:])
-        return PointWrench(constraint.at, force, moment, follower=False)
+        return WrenchAt(constraint.at, force, moment, follower=False)
 
-    def _poses_but_section(self, placed: PlacedConstraint) -> Poses:
+    def _poses_but_section(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that the direction of a constraint's wrench depends on; the section's is not among them.
 
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
-        return Poses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
+        return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
 
     def _base_R_world(self, rod: str) -> Matrix:
         """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""

@@ -12,7 +12,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.facing import FLATTEST, Facing
 from cosserat_casadi.motion.meeting_ends import MeetingEnds
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.touching import Follower, Touch, Touches
+from cosserat_casadi.motion.touching import Follower, MovingContact, Touches
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant
 
@@ -49,7 +49,7 @@ class GuardKind(IntEnum):
 
 
 @dataclass(frozen=True)
-class Arrangement:
+class ContactPhase:
     """What touches during a stretch of a motion.
 
     Attributes:
@@ -86,7 +86,7 @@ class ContactGuards:
     facings: Sequence[Facing]
     meeting_ends: MeetingEnds
 
-    def of(self, piece: Piece, arrangement: Arrangement) -> Guards:
+    def of(self, piece: Piece, arrangement: ContactPhase) -> Guards:
         """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
         touches = arrangement.touches
         follower = arrangement.follower
@@ -124,7 +124,7 @@ class ContactGuards:
 
         return values
 
-    def _within(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> float:
+    def _within(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> float:
         """How far a place is from the ends of the rod; of an end, how fast the gap rises towards all rods there."""
         if touch.slides:
             return min(touch.place, 1.0 - touch.place)
@@ -132,7 +132,7 @@ class ContactGuards:
             return 1.0
         return self.meeting_ends.rise(touch, x, inputs)
 
-    def lowest(self, number: int, nodes: FloatArray, touches: Sequence[Touch]) -> float:
+    def lowest(self, number: int, nodes: FloatArray, touches: Sequence[MovingContact]) -> float:
         """The least gap, over the length, of a rod that does not lie or of a body, but for what touches.
 
         Args:

@@ -11,7 +11,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.facing import Facing
 from cosserat_casadi.motion.moving_inputs import InputState, Piece
-from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
+from cosserat_casadi.motion.touching import Follower, MovingContact, Touches, with_touches
 from cosserat_casadi.numerics.complementarity import least_pushes
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, response, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -188,7 +188,7 @@ class Onset:
     def _gradients(self, touches: Touches) -> FloatArray:
         return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
 
-    def _follower(self, touches: Sequence[Touch]) -> Follower:
+    def _follower(self, touches: Sequence[MovingContact]) -> Follower:
         return Follower(self.facings, tuple(touches))
 
 

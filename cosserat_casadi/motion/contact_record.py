@@ -16,7 +16,7 @@ from cosserat_casadi.motion.facing import Facing
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.touching import Follower, Touches
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Stretch:
 
     piece: Piece
     touches: Touches
-    steps: Sequence[Step]
+    steps: Sequence[TimeStep]
     laid: frozenset[int]
 
 

@@ -20,7 +20,7 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.facing import FAR, Facing, Gap, Minimum, Rows
+from cosserat_casadi.motion.facing import FAR, Facing, Minimum, Rows, SectionGap
 from cosserat_casadi.motion.laid_sections import laid_sections
 from cosserat_casadi.motion.meeting_ends import watched_ends
 from cosserat_casadi.motion.moving_points import centre_of, nodes_of
@@ -94,7 +94,7 @@ class RodFacing(Facing):
         radii = section_radius(self.model.discrete.rods[self.owner].properties, self.laid_at)
         return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
-    def at(self, nodes: FloatArray, X: float) -> Gap:
+    def at(self, nodes: FloatArray, X: float) -> SectionGap:
         """The gap at a section, a little beyond the ends of the rod too."""
         rows = self._rows(X)
         tangent = rows.first @ nodes
@@ -103,7 +103,7 @@ class RodFacing(Facing):
         gap = distance.value - self._radii[0] - X * taper
         slope = distance.slope - taper
         length = self.length
-        return Gap(
+        return SectionGap(
             gap / length,
             slope / length,
             distance.bend / length,

@@ -15,7 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.history import History, Leg
 from cosserat_casadi.motion.trajectory import Energies
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 
 Place = tuple[Leg, Instant]
 """An instant of a motion, and the piece of the inputs that it belongs to."""
@@ -110,7 +110,7 @@ def _up_to(history: History, times: FloatArray, powers: FloatArray) -> tuple[Flo
     return results[0], results[1]
 
 
-def _stage_places(leg: Leg, step: Step) -> list[Place]:
+def _stage_places(leg: Leg, step: TimeStep) -> list[Place]:
     stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
     rows = zip(stages.times, stages.x, stages.v, stages.a, strict=True)
     return [(leg, Instant(float(time), x, v, a)) for time, x, v, a in rows]

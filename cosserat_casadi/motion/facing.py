@@ -35,7 +35,7 @@ class Rows(NamedTuple):
     second: FloatArray
 
 
-class Gap(NamedTuple):
+class SectionGap(NamedTuple):
     """A gap at one section, over the length of the rod, and what its derivatives are made of.
 
     Attributes:
@@ -109,7 +109,7 @@ class Facing(ABC):
         return self.points.positions(x, inputs).reshape(-1, 3)
 
     @abstractmethod
-    def at(self, nodes: FloatArray, X: float) -> Gap:
+    def at(self, nodes: FloatArray, X: float) -> SectionGap:
         """The gap at a section."""
 
     @abstractmethod
@@ -137,15 +137,15 @@ class Facing(ABC):
     def deepest(self, nodes: FloatArray) -> Minimum:
         """The section whose gap is the least of all, sections that are held included."""
 
-    def gradient(self, x: FloatArray, inputs: FloatArray, gap: Gap) -> FloatArray:
+    def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the unknowns, shape (n,)."""
         return self.points.gradient(x, inputs, self._weights(gap)) / self.length
 
-    def by_inputs(self, x: FloatArray, inputs: FloatArray, gap: Gap) -> FloatArray:
+    def by_inputs(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the inputs, shape (m,)."""
         return self.points.by_inputs(x, inputs, self._weights(gap)) / self.length
 
-    def hessian(self, x: FloatArray, inputs: FloatArray, gap: Gap, *, slides: bool) -> FloatArray:
+    def hessian(self, x: FloatArray, inputs: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
         """Second derivative of a gap with the unknowns, shape (n, n).
 
         Args:
@@ -164,7 +164,7 @@ class Facing(ABC):
         return np.asarray(second / self.length)
 
     def rates(
-        self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: Gap, *, slides: bool
+        self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray], gap: SectionGap, *, slides: bool
     ) -> tuple[float, float]:
         """Rate of a gap, 1/s, and its second derivative without the part of the accelerations of the unknowns, 1/s².
 
@@ -187,6 +187,6 @@ class Facing(ABC):
             second += self.length * float(self.by_inputs(x, value, gap) @ acceleration)
         return first / self.length, second / self.length
 
-    def _weights(self, gap: Gap) -> FloatArray:
+    def _weights(self, gap: SectionGap) -> FloatArray:
         """Weights of the positions of the points, stacked point by point, whose sum varies as the gap does."""
         return np.outer(gap.rows.value, gap.normal).ravel()

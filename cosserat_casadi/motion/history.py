@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.closing import Closing
-from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -132,7 +132,7 @@ class History:
         return self.legs[-1].integration.next_size
 
     @cached_property
-    def steps(self) -> list[tuple[Leg, Step]]:
+    def steps(self) -> list[tuple[Leg, TimeStep]]:
         """All steps in their order, with the pieces that they belong to."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
@@ -215,7 +215,7 @@ class History:
         stretches = []
         for leg in self.legs:
             phases = leg.restart.phases
-            assert isinstance(phases, Arrangement), "where rods touch exactly no cable goes slack"
+            assert isinstance(phases, ContactPhase), "where rods touch exactly no cable goes slack"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches)
 
@@ -237,7 +237,7 @@ def integrated(
     settings: StepSettings,
     after_step: AfterStep | None = None,
     p: FloatArray | None = None,
-    phases: Arrangement | None = None,
+    phases: ContactPhase | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -297,7 +297,7 @@ def _switched(
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
-                touches = isinstance(phases, Arrangement) and len(phases.touches) > 0
+                touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 _check_start(restart.start, pieces[-1].end, touches=touches)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant

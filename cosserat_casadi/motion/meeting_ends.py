@@ -17,7 +17,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.facing import Facing
-from cosserat_casadi.motion.touching import Touch, Touches
+from cosserat_casadi.motion.touching import MovingContact, Touches
 
 BASE = 0.0
 """Abscissa of the base of a rod."""
@@ -122,7 +122,7 @@ class MeetingEnds:
                     and candidate.obstacle.name == facing.obstacle.name
                 ]
 
-    def beside(self, touch: Touch, near: float) -> list[tuple[int, float]]:
+    def beside(self, touch: MovingContact, near: float) -> list[tuple[int, float]]:
         """Ends of other rods that a contact is next to, numbers of facings and abscissae.
 
         Args:
@@ -135,11 +135,11 @@ class MeetingEnds:
                 found += self._others.get((touch.facing, X), [])
         return found
 
-    def rise(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> float:
+    def rise(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> float:
         """How fast, over arc length, the gap rises at an end that touches, along the rod where it does so least."""
         return min(slope for slope, _ in self._rises(touch, x, inputs))
 
-    def gone_on(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> Touch:
+    def gone_on(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> MovingContact:
         """What becomes of a contact that has come to an end of a rod, or leaves it.
 
         Args:
@@ -156,7 +156,7 @@ class MeetingEnds:
                 return end._replace(slides=False)
         _, (number, X) = min(rises)
         height = touch.height * self._facings[touch.facing].length / self._facings[number].length
-        return Touch(number, X, True, height)
+        return MovingContact(number, X, True, height)
 
     def distinct(self, known: Touches, found: Touches, near: float) -> Touches:
         """Known contacts, and found ones that are no others seen from the next rod.
@@ -174,7 +174,7 @@ class MeetingEnds:
                 kept.append(touch)
         return tuple(kept)
 
-    def _rises(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> list[tuple[float, tuple[int, float]]]:
+    def _rises(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> list[tuple[float, tuple[int, float]]]:
         """Slopes of the gaps away from an end, over arc length, along its own rod and then along all others there."""
         own = (touch.facing, touch.place)
         found = []

@@ -20,7 +20,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 from cosserat_casadi.scene import Scene
 
 MOMENTA = 6
@@ -83,7 +83,7 @@ class MomentumKeeper:
         self._momentum = RepeatedCall(momentum)
         self._momenta = momentum.map(MOMENTA)
 
-    def settled(self, step: Step, piece: Piece) -> Instant:
+    def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
         wanted = self._momentum_of(self._to_model(step.start), piece) + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
@@ -99,7 +99,7 @@ class MomentumKeeper:
             end = replace(end, v=end.v + motions @ (inverse @ missing))
         return end
 
-    def _impulse(self, step: Step, piece: Piece) -> FloatArray:
+    def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:
         """Impulse of the loads in a step, shape (6,), N s and N m s; nothing else acts from outside."""
         if not self._loaded:
             return np.zeros(6)

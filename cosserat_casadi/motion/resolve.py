@@ -78,7 +78,7 @@ LEFT_BY_FINER = 1.4
 
 
 @dataclass(frozen=True)
-class Level:
+class ResolvedMotion:
     """A motion on one set of modes.
 
     Attributes:
@@ -116,12 +116,12 @@ class _Search:
     start: Solution | None
     tell: Tell | None
     tolerance: float
-    levels: list[Level] = field(default_factory=list)
+    levels: list[ResolvedMotion] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
 
     @property
-    def last(self) -> Level:
+    def last(self) -> ResolvedMotion:
         """The finest motion so far."""
         return self.levels[-1]
 
@@ -205,7 +205,7 @@ def _with_fixed(search: _Search) -> Motion:
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
-    level = Level(simulator, timed.history, simulator.paths(timed.history))
+    level = ResolvedMotion(simulator, timed.history, simulator.paths(timed.history))
     search.levels.append(level)
 
     finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
@@ -255,7 +255,7 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(Level(simulator, history, found, rung, distance))
+        search.levels.append(ResolvedMotion(simulator, history, found, rung, distance))
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)
@@ -303,7 +303,7 @@ def _timed(search: _Search) -> TimedHistory:
     return exact_in_time(level, search.step_tolerance, allowed)
 
 
-def exact_in_time(level: Level, step_tolerance: float, allowed: float) -> TimedHistory:
+def exact_in_time(level: ResolvedMotion, step_tolerance: float, allowed: float) -> TimedHistory:
     """The motion of a level with steps that are told to be exact enough, and their error.
 
     Args:
@@ -327,7 +327,7 @@ def _tighter(simulator: Simulator, told: TimedHistory) -> TimedHistory:
     return TimedHistory(history, error, tolerance, tolerance)
 
 
-def told_by_coarser(level: Level, step_tolerance: float) -> TimedHistory:
+def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistory:
     """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
 
     Args:
@@ -376,7 +376,7 @@ def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
     return chosen
 
 
-def _felt(level: Level, duration: float) -> dict[str, list[FloatArray]]:
+def _felt(level: ResolvedMotion, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     model = level.simulator.model
     times = watched_times(level.history, duration)
@@ -393,7 +393,7 @@ def _felt(level: Level, duration: float) -> dict[str, list[FloatArray]]:
     return felt
 
 
-def _judged(search: _Search, level: Level, error: float) -> Motion:
+def _judged(search: _Search, level: ResolvedMotion, error: float) -> Motion:
     """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
     bound = search.tolerance
     if search.scene.accuracy.fixed or search.simulation.step is not None:

@@ -13,7 +13,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start_in_contact import resting
 
@@ -52,7 +52,7 @@ class Start:
     x: FloatArray
     sentence: str
     found: bool = True
-    phases: Arrangement | None = None
+    phases: ContactPhase | None = None
     asks_for_modes: bool = False
 
 

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import FAR, FLATTEST, Facing, Gap
+from cosserat_casadi.motion.facing import FAR, FLATTEST, Facing, SectionGap
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
 
-class Touch(NamedTuple):
+class MovingContact(NamedTuple):
     """A contact.
 
     Attributes:
@@ -35,12 +35,12 @@ class Touch(NamedTuple):
     height: float = 0.0
 
 
-Touches = tuple[Touch, ...]
+Touches = tuple[MovingContact, ...]
 """The contacts of a stretch of a motion, with the places where it begins."""
 
 
 @dataclass(frozen=True)
-class State:
+class ContactsAtState:
     """The contacts at one state.
 
     Attributes:
@@ -50,7 +50,7 @@ class State:
     """
 
     places: list[float]
-    gaps: list[Gap]
+    gaps: list[SectionGap]
     gradients: list[FloatArray]
 
 
@@ -64,7 +64,7 @@ class Followed(NamedTuple):
     """
 
     places: list[float]
-    gaps: list[Gap]
+    gaps: list[SectionGap]
     gone: list[bool]
 
 
@@ -113,7 +113,7 @@ class Follower:
             found.append(is_far and facing.at(facing.nodes(x, inputs), old).bend <= FLATTEST)
         return found
 
-    def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[Gap]]:
+    def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[SectionGap]]:
         """Places and gaps of the contacts."""
         gaps = []
         places = []
@@ -124,11 +124,11 @@ class Follower:
             gaps.append(facing.at(nodes, place))
         return places, gaps
 
-    def state(self, x: FloatArray, inputs: FloatArray) -> State:
+    def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:
         """The contacts, with gradients."""
         places, gaps = self.gaps(x, inputs)
         gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
-        return State(places, gaps, gradients)
+        return ContactsAtState(places, gaps, gradients)
 
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².

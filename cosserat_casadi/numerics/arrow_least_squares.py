@@ -47,7 +47,7 @@ ROUNDING = 1e-9
 """Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
 
 
-class State(Protocol):
+class FitState(Protocol):
     """What a problem knows at some unknowns.
 
     Attributes:
@@ -59,10 +59,10 @@ class State(Protocol):
         """Differences in standard deviations, shape (m,)."""
 
 
-StateType = TypeVar("StateType", bound=State)
+StateType = TypeVar("StateType", bound=FitState)
 
 
-class Problem(Protocol[StateType]):
+class BlockResiduals(Protocol[StateType]):
     """Residuals of blocks.
 
     Attributes:
@@ -166,7 +166,7 @@ class Fit(Generic[StateType]):
 
 
 @dataclass
-class Arrow:
+class ArrowStep:
     """A weighted least-squares problem, linear in the changes of the unknowns.
 
     Attributes:
@@ -281,7 +281,7 @@ class Arrow:
         own: FloatArray,
         shared_held: npt.NDArray[np.bool_],
         own_held: npt.NDArray[np.bool_],
-    ) -> Arrow:
+    ) -> ArrowStep:
         """The problem where some unknowns have changed by what is given, and are held there.
 
         Args:
@@ -358,7 +358,7 @@ class BoundedStep:
         damping: rows that are added to the unknowns.
     """
 
-    arrow: Arrow
+    arrow: ArrowStep
     values: Pair
     boxes: tuple[Limits, Limits]
     damping: Pair
@@ -476,7 +476,7 @@ class ArrowFit(Generic[StateType]):
         settings: limits of the search.
     """
 
-    problem: Problem[StateType]
+    problem: BlockResiduals[StateType]
     shared: Limits
     own: Limits
     loss: Loss = field(default_factory=Loss)
@@ -516,7 +516,7 @@ class ArrowFit(Generic[StateType]):
                 break
         return Fit(search.shared, search.own, search.state, search.cost, tried, outcome)
 
-    def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> Arrow:
+    def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> ArrowStep:
         """The problem in the changes of the unknowns, its rows weighted by the loss."""
         by_shared, by_own = self.problem.jacobians(state)
         roots = np.sqrt(self.loss.weights(state.residual))
@@ -525,7 +525,7 @@ class ArrowFit(Generic[StateType]):
         by_own = roots[:, None] * by_own
         shared_prior = (self.shared.weight, self.shared.residual(shared))
         own_prior = (self.own.weight, self.own.residual(own))
-        free = Arrow(
+        free = ArrowStep(
             residual,
             by_shared,
             by_own,
@@ -544,7 +544,7 @@ class ArrowFit(Generic[StateType]):
         priors = np.concatenate([self.shared.residual(shared), self.own.residual(own).ravel()])
         return self.loss.cost(state.residual) + float(priors @ priors) / 2
 
-    def _rescale(self, search: _Search[StateType], arrow: Arrow) -> None:
+    def _rescale(self, search: _Search[StateType], arrow: ArrowStep) -> None:
         """Let the scales of the unknowns grow with the columns; what no datum sees has the scale 1."""
         shared = np.sqrt(np.sum(arrow.by_shared**2, axis=0) + arrow.shared_prior[0] ** 2)
         search.shared_scale = np.maximum(search.shared_scale, shared)
@@ -553,7 +553,7 @@ class ArrowFit(Generic[StateType]):
             own = np.sqrt(np.sum(arrow.by_own**2, axis=0) / blocks + arrow.own_prior[0] ** 2)
             search.own_scale = np.maximum(search.own_scale, own)
 
-    def _try_step(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool | None:
+    def _try_step(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool | None:
         """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
         root = np.sqrt(search.damping)
         shared_damping = root * np.where(search.shared_scale > 0, search.shared_scale, 1.0)
@@ -578,7 +578,7 @@ class ArrowFit(Generic[StateType]):
         return self._more_damping(search, arrow)
 
     def _stepped(
-        self, search: _Search[StateType], arrow: Arrow, shared_damping: FloatArray, own_damping: FloatArray
+        self, search: _Search[StateType], arrow: ArrowStep, shared_damping: FloatArray, own_damping: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Shared unknowns, (n,), and own ones, (blocks, k), after the step that lessens the damped sum most."""
         step = BoundedStep(
@@ -593,7 +593,7 @@ class ArrowFit(Generic[StateType]):
         """Predicted decrease below which there is nothing left to gain."""
         return max(self.settings.decrease, self.settings.relative * search.cost)
 
-    def _more_damping(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool:
+    def _more_damping(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool:
         """Let the next step be shorter; an outcome where it would be too short to change anything."""
         search.damping *= search.growth
         search.growth *= 2
@@ -601,7 +601,7 @@ class ArrowFit(Generic[StateType]):
             return self._ended(search, arrow)
         return False
 
-    def _ended(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome:
+    def _ended(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome:
         """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
         shared_scale = np.where(search.shared_scale > 0, search.shared_scale, 1.0)
         own_scale = np.where(search.own_scale > 0, search.own_scale, 1.0)

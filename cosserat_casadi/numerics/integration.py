@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 
 
 class StepOutcome(Enum):
@@ -54,7 +54,7 @@ class StepSettings:
 
 
 @dataclass(frozen=True)
-class StepStatistics:
+class IntegrationCost:
     """What an integration cost.
 
     Attributes:
@@ -86,10 +86,10 @@ class Integration:
     """
 
     start: Instant
-    steps: tuple[Step, ...]
+    steps: tuple[TimeStep, ...]
     outcome: StepOutcome
     next_size: float
-    statistics: StepStatistics
+    statistics: IntegrationCost
     guard: int | None = None
 
     @property
@@ -110,11 +110,11 @@ class Integration:
 
 def stalled_at(start: Instant) -> Integration:
     """A piece without a step: there are no equations to go on with."""
-    return Integration(start, (), StepOutcome.STALLED, float("nan"), StepStatistics(0, 0, 0, 0, 0))
+    return Integration(start, (), StepOutcome.STALLED, float("nan"), IntegrationCost(0, 0, 0, 0, 0))
 
 
 AfterStep = Callable[[float, float], None]
 """Called after each step with the time reached and the size of the step, s; KeyboardInterrupt ends the motion."""
 
-Settle = Callable[[Step], Instant]
+Settle = Callable[[TimeStep], Instant]
 """The end of a step, put right by what the method misses of an invariant: at most as much as the step is inexact by."""

@@ -10,10 +10,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
 from cosserat_casadi.numerics.guards import Guards, crossing
-from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
+from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -75,7 +75,7 @@ class StepRun:
     guards: Guards | None = None
     settled: Settle | None = None
     guard: int | None = None
-    steps: list[Step] = field(default_factory=list)
+    steps: list[TimeStep] = field(default_factory=list)
     size: float = 0.0
     linearisation: Linearisation | None = None
     fresh: bool = False
@@ -101,7 +101,7 @@ class StepRun:
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""
-        statistics = StepStatistics(
+        statistics = IntegrationCost(
             steps=len(self.steps),
             rejected=self.rejected,
             iterations=self.iterations,
@@ -191,7 +191,7 @@ class StepRun:
         differential = self.equations.differential
         now = self.now
         arrived = end_of(self.method, differential, now, self.size, solution.unknowns, end)
-        step = Step(
+        step = TimeStep(
             method=self.method,
             differential=differential,
             start=now,
@@ -228,12 +228,12 @@ class StepRun:
         self.size = wanted
         return True
 
-    def _open(self, step: Step) -> bool:
+    def _open(self, step: TimeStep) -> bool:
         """Whether the end of a step leaves constraints open."""
         rows = self.equations.residual_at(step.end)[~self.equations.differential]
         return not float(np.abs(rows).max(initial=0.0)) <= CLOSED
 
-    def _step_to(self, cut: Step, guard: int) -> None:
+    def _step_to(self, cut: TimeStep, guard: int) -> None:
         """Take a step that ends where a guard vanishes.
 
         Args:

@@ -11,7 +11,7 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Plane
+from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Hyperplane
 from cosserat_casadi.numerics.branches import switch
 from cosserat_casadi.numerics.events import Arc, Event, events_between
 from cosserat_casadi.numerics.progress import Progress
@@ -180,7 +180,7 @@ def _end(arc: Arc) -> ArcPoint:
     # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
     across_loads = np.append(np.zeros_like(near.x), 1.0)
     guess = np.append(near.x, 1.0)
-    corrected = arc.curve.correct(guess, Plane(across_loads, 1.0))
+    corrected = arc.curve.correct(guess, Hyperplane(across_loads, 1.0))
     if corrected is None:
         return near
     x = corrected.y[:-1]

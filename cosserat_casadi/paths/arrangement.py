@@ -22,8 +22,8 @@ from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.state import ContactState, Touch, continuations
 from cosserat_casadi.equilibrium.contact.verdict import FLAT
-from cosserat_casadi.equilibrium.solution import Pose, rotations
-from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, restricted, variations
+from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
+from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, restricted, variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -277,13 +277,13 @@ class Arrangement:
         quaternions = ca.horzcat(*[pose.quaternion for pose in poses])
         return ca.Function("body_poses", written.arguments, [positions, quaternions])
 
-    def bodies(self, z: FloatArray, load_factor: float) -> dict[str, Pose]:
+    def bodies(self, z: FloatArray, load_factor: float) -> dict[str, SolvedPoses]:
         """Poses of the bodies of the scene by name, each as that of one section."""
         if not self.scene.bodies:
             return {}
         outputs = self._body_poses(*self.equations.parts(z), self.inputs(load_factor))
         positions, quaternions = (output.full().T[:, None, :] for output in outputs)
-        poses = [Pose(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
+        poses = [SolvedPoses(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
         return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
 
     def body_gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], float]:
@@ -335,7 +335,7 @@ class Arrangement:
             return positions
         return in_axes_of(self.bodies(z, load_factor)[obstacle.body], positions)
 
-    def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> Pose:
+    def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> SolvedPoses:
         """Poses of sections at abscissae X."""
         nodes = self._nodes(z, load_factor)[rod]
         breaks = self.equations.nominal.model.discretisation[rod].breaks
@@ -343,10 +343,10 @@ class Arrangement:
         interpolation = Grid(breaks, intervals, tuple(self.ends(rod, z).tolist())).interpolation_matrix(X)
         quaternions = interpolation @ nodes.quaternions
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
-        return Pose(interpolation @ nodes.positions, rotations(quaternions), quaternions)
+        return SolvedPoses(interpolation @ nodes.positions, rotations(quaternions), quaternions)
 
     @cached_property
-    def _variations(self) -> Variations:
+    def _variations(self) -> ConstrainedVariations:
         return variations(self.equations.nominal.model)
 
     def _eigenvalues(self, y: FloatArray, jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:

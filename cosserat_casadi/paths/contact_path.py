@@ -16,7 +16,7 @@ from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
 from cosserat_casadi.equilibrium.contact.state import TIP, Touch, load_sections, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
-from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
+from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -28,7 +28,7 @@ from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
 from cosserat_casadi.paths.arrangement import Arrangement
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.paths.margins import Key, margins, violated
-from cosserat_casadi.paths.transitions import Entry, changes, entered
+from cosserat_casadi.paths.transitions import ArrangementEntry, changes, entered
 
 MOST_CHANGES = 100
 """Most changes of the arrangement along a path."""
@@ -64,17 +64,17 @@ class ContactPath(EquilibriumPath):
             contacts.append(_path_contact(touch, forces, inside))
         return tuple(contacts)
 
-    def tip(self, rod: str | None = None) -> Pose:
+    def tip(self, rod: str | None = None) -> SolvedPoses:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
         name = self.model.rod_name(rod)
         poses = [self._pose(index, TIP, name) for index in range(len(self.factor))]
-        return Pose(
+        return SolvedPoses(
             position=np.array([pose.position[0] for pose in poses]).reshape(-1, 3),
             rotation=np.array([pose.rotation[0] for pose in poses]).reshape(-1, 3, 3),
             quaternion=np.array([pose.quaternion[0] for pose in poses]).reshape(-1, 4),
         )
 
-    def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
+    def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip at an event, shapes (1, …)."""
         name = self.model.rod_name(rod)
         return self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([TIP]), name)
@@ -98,7 +98,7 @@ class ContactPath(EquilibriumPath):
         found = arrangement.found(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
-    def _pose(self, index: int, X: float, rod: str) -> Pose:
+    def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:
         arrangement: Arrangement = self.arrangements[self.arrangement[index]]
         return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
 
@@ -246,7 +246,7 @@ class Travel:
             self.branch = 0
         self.outcome = traced.outcome
 
-    def _change(self, guard: Guard) -> Entry | None:
+    def _change(self, guard: Guard) -> ArrangementEntry | None:
         """Enter the next arrangement; None where none is valid."""
         assert guard.crossed is not None
         key, X = guard.crossed
@@ -261,7 +261,7 @@ class Travel:
             return entry
         return None
 
-    def _keep_change(self, entry: Entry, last: ArcPoint) -> None:
+    def _keep_change(self, entry: ArrangementEntry, last: ArcPoint) -> None:
         """Add the event of a change: its equilibrium is the last point before it, or the first one beyond."""
         number = len(self.arrangements) - 1
         point = last

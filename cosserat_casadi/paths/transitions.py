@@ -18,7 +18,7 @@ from cosserat_casadi.equilibrium.contact.equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.projection import projected
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch, load_sections
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcPoint, Plane, plane_through
+from cosserat_casadi.numerics.arclength import ArcPoint, Hyperplane, plane_through
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.arrangement import Arrangement
 from cosserat_casadi.paths.margins import OPEN, OVER_JOINT, Key, Watch, margins, violated
@@ -34,7 +34,7 @@ MOST_PROBES = 40
 
 
 @dataclass(frozen=True)
-class Change:
+class Transition:
     """What an arrangement may turn into.
 
     Attributes:
@@ -57,7 +57,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Entry:
+class ArrangementEntry:
     """Where a path enters an arrangement.
 
     Attributes:
@@ -67,13 +67,13 @@ class Entry:
         is_event: whether it is the change itself; else the last point of the arrangement before is.
     """
 
-    change: Change
+    change: Transition
     arrangement: Arrangement
     point: ArcPoint
     is_event: bool
 
 
-def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Change]:
+def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Transition]:
     """What an arrangement may turn into where a margin vanishes, the likeliest first.
 
     Args:
@@ -95,7 +95,7 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
     others = [other for number, other in enumerate(state.touches) if number != key.number]
     if key.watch is Watch.FORCE and not touch.is_line:
         gap = Watch.BODY_GAP if touch.of_body else Watch.GAP
-        yield Change("lift_off", touch, ContactState.of(others), Key(gap, -1, key.pair))
+        yield Transition("lift_off", touch, ContactState.of(others), Key(gap, -1, key.pair))
     elif key.watch is Watch.CURVATURE:
         half = WIDER * OPEN / 2
         yield _opened("point_to_line", touch, others, replace(touch, start=X - half, end=X + half, is_line=True))
@@ -122,50 +122,50 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         for option in instead_of_pulling(touch):
             following = ContactState.of([*others, *option])
             kind = "slide_from_tip" if any(other.is_line for other in option) else "line_to_point"
-            yield Change(kind, touch, following, Key(Watch.GAP, -1, key.pair))
+            yield Transition(kind, touch, following, Key(Watch.GAP, -1, key.pair))
 
 
 def _number(state: ContactState, touch: Touch) -> int:
     return state.touches.index(touch)
 
 
-def _added(state: ContactState, touch: Touch) -> Change:
+def _added(state: ContactState, touch: Touch) -> Transition:
     """A contact more, whose force grows from zero."""
     following = ContactState.of([*state.touches, touch])
     grows = Key(Watch.FORCE, _number(following, touch), (touch.owner, touch.obstacle))
-    return Change("touch", touch, following, grows)
+    return Transition("touch", touch, following, grows)
 
 
-def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Change:
+def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
     """A contact of another kind, which begins where a margin of its own vanishes."""
     following = ContactState.of([*others, new])
     last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
     grows = Key(watch, _number(following, new), (new.owner, new.obstacle), last)
-    return Change(kind, old, following, grows, located=True)
+    return Transition(kind, old, following, grows, located=True)
 
 
-def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Change:
+def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
     """A point on the next rod of a chain, met a little beyond the joint."""
     following = ContactState.of([*others, new])
     grows = Key(watch, _number(following, new), (new.owner, new.obstacle))
-    return Change("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
+    return Transition("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
 
 
-def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Change:
+def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Transition:
     """A contact with one place more to be sought, met where it is a little away from the others, or from the tip."""
     following = ContactState.of([*others, new])
     number = _number(following, new)
     pair = (new.owner, new.obstacle)
     if new.is_line and not new.reaches_tip and old.kind == "point":
         opens = ((new, 0, -1.0), (new, 1, 1.0))
-        return Change(kind, old, following, Key(Watch.WIDTH, number, pair), opens, WIDER * OPEN)
+        return Transition(kind, old, following, Key(Watch.WIDTH, number, pair), opens, WIDER * OPEN)
     # The last place that is sought, counted from the tip.
     last = len(new.moving) - 1
     watch = Watch.WIDTH if new.is_line and new.reaches_tip else Watch.TO_TIP
-    return Change(kind, old, following, Key(watch, number, pair), ((new, last, 1.0),), TIP - WIDER * OPEN)
+    return Transition(kind, old, following, Key(watch, number, pair), ((new, last, 1.0),), TIP - WIDER * OPEN)
 
 
-def entered(arrangement: Arrangement, point: ArcPoint, change: Change) -> Entry | None:
+def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> ArrangementEntry | None:
     """The next arrangement where the path enters it; None where it is not valid there.
 
     Args:
@@ -196,31 +196,31 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Change) -> Entry 
     if met is None or not _is_valid(following, met):
         return None
     start = replace(met, length=0.0)
-    return Entry(change, following, start, change.located)
+    return ArrangementEntry(change, following, start, change.located)
 
 
-def _split(change: Change, sections: Mapping[str, Sequence[float]]) -> Change:
+def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
     """The same change, with seams in lines where loads act."""
     opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 
 
-def _plane(arrangement: Arrangement, change: Change, load_factor: float) -> Plane:
+def _plane(arrangement: Arrangement, change: Transition, load_factor: float) -> Hyperplane:
     """Where the next arrangement is met: at a load factor, or at an opening."""
     size = len(arrangement.scale)
     normal = np.zeros(size + 1)
     if not change.opens:
         normal[-1] = 1.0
-        return Plane(normal, load_factor)
+        return Hyperplane(normal, load_factor)
     first = size - len(change.state.places)
     for touch, number, factor in change.opens:
         earlier = change.state.touches[: _number(change.state, touch)]
         before = sum(len(other.moving) for other in earlier)
         normal[first + before + number] = factor
-    return Plane(normal, change.level)
+    return Hyperplane(normal, change.level)
 
 
-def _met(arrangement: Arrangement, guess: FloatArray, plane: Plane) -> ArcPoint | None:
+def _met(arrangement: Arrangement, guess: FloatArray, plane: Hyperplane) -> ArcPoint | None:
     """The point of an arrangement in a plane; its tangent leads to either side."""
     corrected = arrangement.curve.correct(guess, plane)
     if corrected is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.maths.typing import FloatArray
@@ -24,6 +24,6 @@ def scene_arrows(solution: Solution) -> list[Arrow]:
     return arrows.all()
 
 
-def _columns(pose: Pose) -> Poses:
+def _columns(pose: SolvedPoses) -> Poses:
     # Kernels take columns, (3, k); results hold a row for each section.
     return pose.position.T, pose.rotation

@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.modes import Mode, Modes
-from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
+from cosserat_casadi.plots.animation import FRAME_RATE, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import WORLD, Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
@@ -134,7 +134,7 @@ def save_mode_animation(
     phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
     # From the equilibrium on, so that the first picture is known.
     swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * mode.vector)
-    frames = Frames(
+    frames = AnimationFrames(
         model=modes.model,
         x=modes.solution.x + swing,
         inputs=np.tile(modes.solution.inputs, (PERIOD_FRAMES, 1)),

@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
 from cosserat_casadi.equilibrium.contact.surfaces import distances
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.plots.canvas import SPACE, Canvas
@@ -36,7 +36,7 @@ def draw_surfaces(
     canvas: Canvas,
     obstacles: Sequence[ObstacleRecord],
     points: FloatArray,
-    bodies: Mapping[str, Pose],
+    bodies: Mapping[str, SolvedPoses],
     *,
     strength: float = 1.0,
     named: bool = True,
@@ -61,7 +61,7 @@ def draw_surfaces(
             canvas.legend_entry(obstacle.name, color=OBSTACLES, linewidth=6, alpha=0.5)
 
 
-def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body: Pose | None) -> FloatArray:
+def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body: SolvedPoses | None) -> FloatArray:
     """Points of the surface of an obstacle about points that are shown, world axes, shape (m, n, 3), m."""
     member = SURFACES[obstacle.kind]
     near = points.mean(axis=0)
@@ -78,7 +78,9 @@ def _draw_net(canvas: Canvas, mesh: FloatArray, strength: float) -> None:
         canvas.line(row, **style)
 
 
-def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: Pose | None, strength: float) -> None:
+def _draw_cut(
+    canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None, strength: float
+) -> None:
     """Fill what of the plane that is shown is inside an obstacle, about the rods."""
     points = _points_of_plane(canvas, shown)
     columns, rows, values = _cut(canvas, obstacle, points, body)
@@ -90,7 +92,9 @@ def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body:
     canvas.axes.contour(columns, rows, values, levels=[0.0], **outline)
 
 
-def surface_lines(canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: Pose | None) -> list[FloatArray]:
+def surface_lines(
+    canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None
+) -> list[FloatArray]:
     """Lines that show an obstacle, world axes, shape (k, 3) each, m: about a cut, or of a net in space."""
     if canvas.plane is None:
         mesh = surface_net(obstacle, shown, canvas.size, body)
@@ -125,7 +129,7 @@ def _points_of_plane(canvas: Canvas, shown: FloatArray) -> FloatArray:
 
 
 def _cut(
-    canvas: Canvas, obstacle: ObstacleRecord, points: FloatArray, body: Pose | None
+    canvas: Canvas, obstacle: ObstacleRecord, points: FloatArray, body: SolvedPoses | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Coordinates to the right and upwards of points of a plane, and the distances of these from an obstacle, m."""
     assert canvas.plane is not None, "asked for in a plane"

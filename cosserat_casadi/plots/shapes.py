@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 
 SAMPLES = np.linspace(0.0, 1.0, 201)
@@ -50,7 +50,7 @@ def rod_shapes(solution: Solution) -> RodShapes:
     )
 
 
-def in_world(pose: Pose, points: FloatArray) -> FloatArray:
+def in_world(pose: SolvedPoses, points: FloatArray) -> FloatArray:
     """World coordinates of points given in the axes of a body, shape (k, 3), m."""
     world_R_body = pose.rotation[0]
     return np.asarray(pose.position[0] + points @ world_R_body.T)

@@ -7,7 +7,7 @@ import io
 from dataclasses import dataclass
 from typing import Any
 
-from cosserat_casadi.equilibrium.solution import Pose
+from cosserat_casadi.equilibrium.solution import SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
@@ -29,7 +29,7 @@ class _RodPoints:
         positions: of that section, shape (k, 3), m.
     """
 
-    tip: Pose
+    tip: SolvedPoses
     X: float
     positions: FloatArray
 

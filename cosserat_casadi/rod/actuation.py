@@ -74,7 +74,7 @@ class Lossless:
         return rate_of(self.value)
 
 
-class Quantity(Protocol):
+class ShapeQuantity(Protocol):
     """What an effort works on, before the strain of the rod is known."""
 
     def on(self, shape: Shape) -> Conjugate:
@@ -90,7 +90,7 @@ class Actuation:
         effort: 1×1; the energy is effort times quantity, so a pressure is negative and a tension positive.
     """
 
-    quantity: Quantity
+    quantity: ShapeQuantity
     effort: Matrix
 
     def __post_init__(self) -> None:

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.blocks import block_diagonal, unstack
 from cosserat_casadi.maths.numbers import Numbers, as_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ class LoadedSections:
         """A dead wrench on the loaded sections from its values there, 3×k each."""
         at = self.load.at
         if at is not None:
-            return PointWrench(at, force, moment, follower=False)
+            return WrenchAt(at, force, moment, follower=False)
         return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
 
     def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:

@@ -31,7 +31,7 @@ from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.pose_load import LoadedSections
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class Statics:
     def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
         rod = self.shape.rod
         grid = rod.grid
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             # δr of the node is this row of S times the variations of the tangents.
             row = grid.integration_matrix[grid.node_at(wrench.at)]
             return self._resultant(wrench, force) @ ca.DM(row).T
@@ -216,7 +216,7 @@ class Statics:
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
         grid = self.shape.rod.grid
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             node = grid.node_at(wrench.at)
             # The couple stands at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
@@ -242,7 +242,7 @@ class Statics:
             vector = part(wrench)
             if vector is None:
                 continue
-            if isinstance(wrench, PointWrench):
+            if isinstance(wrench, WrenchAt):
                 # The node at the tip side of a break does not carry what acts on the break.
                 loaded = grid.node_at(wrench.at)
                 before = (np.arange(grid.size) <= loaded).astype(float)

@@ -50,7 +50,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.turned_wrenches import TurnedWrenches
-from cosserat_casadi.rod.wrenches import PointWrench
+from cosserat_casadi.rod.wrenches import WrenchAt
 
 
 @dataclass(frozen=True)
@@ -341,7 +341,7 @@ class Tangent:
         """Whether points alone carry wrenches without a potential."""
         for wrench in self.igm.statics.wrenches:
             follows = wrench.follower and wrench.force is not None
-            if (follows or wrench.moment is not None) and not isinstance(wrench, PointWrench):
+            if (follows or wrench.moment is not None) and not isinstance(wrench, WrenchAt):
                 return False
         return True
 
@@ -355,7 +355,7 @@ class Tangent:
                 commutator = self.rotation.T @ (hat_operator(couple) @ self.rotation)
                 difference = difference + (commutator if follower else -commutator)
         for wrench in statics.wrenches:
-            if isinstance(wrench, PointWrench) and wrench.follower and wrench.force is not None:
+            if isinstance(wrench, WrenchAt) and wrench.follower and wrench.force is not None:
                 node = self.rod.grid.node_at(wrench.at)
                 moved = self.position(node)[:, : self.angular_size]
                 turned = self.rotation_of(node)[:, : self.angular_size]

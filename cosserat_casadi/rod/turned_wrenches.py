@@ -15,7 +15,7 @@ from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class TurnedWrenches:
             return self._force_per_length(wrench, force)
         return self._force_at_point(wrench, force)
 
-    def _force_at_point(self, wrench: PointWrench, force: Matrix) -> Matrix:
+    def _force_at_point(self, wrench: WrenchAt, force: Matrix) -> Matrix:
         shape = self.statics.shape
         grid = shape.rod.grid
         node = grid.node_at(wrench.at)

@@ -16,7 +16,7 @@ from cosserat_casadi.rod.section_kernel import SectionKernel
 
 
 @dataclass(frozen=True)
-class PointWrench:
+class WrenchAt:
     """Force and moment on one section.
 
     Attributes:
@@ -56,7 +56,7 @@ class LineWrench:
         _check_vectors(self.force, self.moment, None if self.profiles is None else self.profiles.shape[0])
 
 
-Wrench = PointWrench | LineWrench
+Wrench = WrenchAt | LineWrench
 """A wrench whose direction does not depend on where its section is."""
 
 

@@ -60,7 +60,7 @@ from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
 from cosserat_casadi.scene.tubes import Tube, TubeSection, TubeStiffness
-from cosserat_casadi.scene.unknowns import Identification, Prior, Unknown
+from cosserat_casadi.scene.unknowns import IdentificationSettings, Prior, Unknown
 
 __all__ = [
     "ACTUATORS",
@@ -92,7 +92,7 @@ __all__ = [
     "FreeInput",
     "Gravity",
     "Helix",
-    "Identification",
+    "IdentificationSettings",
     "InputColumn",
     "InputField",
     "InputMotion",

@@ -26,7 +26,7 @@ from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
 from cosserat_casadi.scene.tubes import Tube
-from cosserat_casadi.scene.unknowns import Identification, Unknown
+from cosserat_casadi.scene.unknowns import IdentificationSettings, Unknown
 from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 
 
@@ -109,8 +109,8 @@ inputs = ["push.force", "cable.tension"]
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
     measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")
     unknowns: tuple[Unknown, ...] = Field((), description="what is to be found; for `cosserat identify` alone")
-    identification: Identification = Field(
-        Identification(), description="how the unknowns are looked for; for `cosserat identify` alone"
+    identification: IdentificationSettings = Field(
+        IdentificationSettings(), description="how the unknowns are looked for; for `cosserat identify` alone"
     )
     estimation: Estimation = Field(
         Estimation(), description="how the unknowns of each row are looked for; for `cosserat estimate` alone"

@@ -115,7 +115,7 @@ per_row = true
             yield Fault(path, problem, "leave it out, or move it by a wave")
 
 
-class Identification(Record):
+class IdentificationSettings(Record):
     """How `cosserat identify` looks for the unknowns; all other commands leave it aside."""
 
     example: ClassVar[str] = """\

@@ -32,7 +32,7 @@ from cosserat_casadi.tubes.stages import Staged
 
 
 @dataclass(frozen=True)
-class State:
+class FlowState:
     """What is integrated along the robot.
 
     Attributes:
@@ -63,7 +63,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Section:
+class PieceConstants:
     """What is the same all along a piece of the robot.
 
     Attributes:
@@ -78,14 +78,14 @@ class Section:
     bending: Matrix
     own: Matrix
 
-    def turned(self, state: State, length: Matrix) -> State:
+    def turned(self, state: FlowState, length: Matrix) -> FlowState:
         """Along a length the torques turn the tubes."""
         rates = state.torques / self.torsion
         angles = state.angles + length * rates
         energy = state.energy + length * ca.dot(state.torques, rates) / 2
-        return State(angles, state.torques, state.pose, energy)
+        return FlowState(angles, state.torques, state.pose, energy)
 
-    def bent(self, state: State, length: Matrix) -> State:
+    def bent(self, state: FlowState, length: Matrix) -> FlowState:
         """Along a length the angles bend the centre line, and change the torques."""
         cosines = self.moments * ca.cos(state.angles)
         sines = self.moments * ca.sin(state.angles)
@@ -97,9 +97,9 @@ class Section:
         # To bend towards x is to turn about y, towards y is to turn back about x.
         arc = increment(length * ca.vertcat(-y, x, 0))
         chord = length * arc.tangent[:, 2]
-        return State(state.angles, torques, state.pose.then(Pose(chord, arc.quaternion)), energy)
+        return FlowState(state.angles, torques, state.pose.then(Pose(chord, arc.quaternion)), energy)
 
-    def stage(self, state: State, before: Matrix, length: Matrix) -> State:
+    def stage(self, state: FlowState, before: Matrix, length: Matrix) -> FlowState:
         """A stage of a step along a length, without the last half of what the torques do: the next stage takes it.
 
         Args:
@@ -109,7 +109,7 @@ class Section:
         """
         return self.bent(self.turned(state, (before + length) / 2), length)
 
-    def step(self, state: State, length: Matrix) -> State:
+    def step(self, state: FlowState, length: Matrix) -> FlowState:
         """A step of order eight along a length, which is negative towards the base."""
         stages = [share * length for share in SHARES]
         for before, own in itertools.pairwise([ca.DM(0.0), *stages]):
@@ -126,7 +126,7 @@ def whole_step(size: int) -> ca.Function:
     state = ca.SX.sym("state", 2 * size + 8)
     length = ca.SX.sym("length")
     section = ca.SX.sym("section", 2 * size + 2)
-    after = _section(section).step(State.of(state), length)
+    after = _section(section).step(FlowState.of(state), length)
     return ca.Function("whole_step", [state, length, section], [after.stacked])
 
 
@@ -136,7 +136,7 @@ def twist_step(size: int) -> ca.Function:
     twist = ca.SX.sym("twist", 2 * size)
     length = ca.SX.sym("length")
     section = ca.SX.sym("section", 2 * size + 2)
-    state = State.of(ca.vertcat(twist, START))
+    state = FlowState.of(ca.vertcat(twist, START))
     after = _section(section).step(state, length)
     return ca.Function("twist_step", [twist, length, section], [ca.vertcat(after.angles, after.torques)])
 
@@ -149,7 +149,7 @@ def whole_stages(size: int) -> Staged:
     length = ca.SX.sym("length")
     stacked = ca.SX.sym("section", 2 * size + 2)
     section = _section(stacked)
-    begun = State.of(state)
+    begun = FlowState.of(state)
     return Staged(
         stage=ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked]),
         last=ca.Function("last", [state, length, stacked], [section.turned(begun, length / 2).stacked]),
@@ -162,7 +162,7 @@ START = ca.DM([0, 0, 0, 1, 0, 0, 0, 0])
 """Position, quaternion and energy at the tip of the robot."""
 
 
-def _section(stacked: ca.SX) -> Section:
+def _section(stacked: ca.SX) -> PieceConstants:
     size = (stacked.size1() - 2) // 2
     torsion, moments, bending, own = ca.vertsplit(stacked, [0, size, 2 * size, 2 * size + 1, 2 * size + 2])
-    return Section(torsion, moments, bending, own)
+    return PieceConstants(torsion, moments, bending, own)

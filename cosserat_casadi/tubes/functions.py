@@ -24,7 +24,7 @@ from cosserat_casadi.tubes.changes import Directions, changing_step, with_change
 from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stages import Staged
-from cosserat_casadi.tubes.variations import Variations
+from cosserat_casadi.tubes.variations import TipVariations
 
 NEWTON_TOLERANCE = 1e-12
 """Angle missed, rad, at which the steps of `equilibrium` end."""
@@ -81,7 +81,7 @@ class TubeFunctions(ABC):
         """Number of unknowns."""
 
     @abstractmethod
-    def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the configuration changes along the robot; where loads act, all of them have an energy."""
 
     @property

@@ -23,7 +23,7 @@ from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad
 from cosserat_casadi.tubes.march import March
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.stages import Staged
-from cosserat_casadi.tubes.variations import Variations, of_loaded
+from cosserat_casadi.tubes.variations import TipVariations, of_loaded
 
 FRAME = 4
 """Unknowns of the frame at the tip, a quaternion, and its equations."""
@@ -70,7 +70,7 @@ class LoadedTubeModel(TubeFunctions):
         _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
-    def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the tubes and the tangent turn along the robot; all loads have an energy."""
         stations, along, of_steps = self.variations(x, inputs)
         return of_loaded(self.size, stations.full(), along.full(), of_steps.full())

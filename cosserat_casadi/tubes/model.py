@@ -12,11 +12,11 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.flow import START, State, twist_step, whole_stages, whole_step
+from cosserat_casadi.tubes.flow import START, FlowState, twist_step, whole_stages, whole_step
 from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.march import March
 from cosserat_casadi.tubes.stages import Staged
-from cosserat_casadi.tubes.variations import Variations, of_angles
+from cosserat_casadi.tubes.variations import TipVariations, of_angles
 
 
 class TubeModel(TubeFunctions):
@@ -27,7 +27,7 @@ class TubeModel(TubeFunctions):
         """Number of unknowns: one a tube."""
         return self.size
 
-    def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the angles and torques change along the robot."""
         along, of_steps = self.variations(x, inputs)
         return of_angles(self.size, along.full(), of_steps.full())
@@ -92,8 +92,8 @@ class TubeModel(TubeFunctions):
         angles, torques, _ = ca.vertsplit(plate, [0, self.size, 2 * self.size, plate.size1()])
         return angles - self._compliance * torques - self.robot.rotations(inputs)
 
-    def _state(self, stacked: Matrix) -> State:
-        return State.of(stacked)
+    def _state(self, stacked: Matrix) -> FlowState:
+        return FlowState.of(stacked)
 
     @property
     def _staged(self) -> Staged:

@@ -19,7 +19,7 @@ from cosserat_casadi.tubes.stability import TubeStability, stability_of
 
 
 @dataclass(frozen=True)
-class Shape:
+class TubeShape:
     """A robot at k places from the plate to its tip.
 
     Attributes:
@@ -105,10 +105,10 @@ class TubeSolution:
         return float(self.model.energy(self.x, self.inputs))
 
     @cached_property
-    def shape(self) -> Shape:
+    def shape(self) -> TubeShape:
         """The robot at the ends of all steps."""
         distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs)
-        return Shape(
+        return TubeShape(
             distance=np.ravel(distance.full()),
             position=position.full().T,
             quaternion=quaternion.full().T,

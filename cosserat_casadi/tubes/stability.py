@@ -16,7 +16,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.tubes.functions import TubeFunctions
-from cosserat_casadi.tubes.variations import Variations
+from cosserat_casadi.tubes.variations import TipVariations
 
 NEUTRAL = 1e-9
 """Singular value of the derivative of the drives' angles, relative to the largest, below which it is zero."""
@@ -71,7 +71,7 @@ def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Tub
     )
 
 
-def _falling(model: TubeFunctions, variations: Variations, inputs: FloatArray) -> int:
+def _falling(model: TubeFunctions, variations: TipVariations, inputs: FloatArray) -> int:
     """Directions in which the energy falls: negative eigenvalues of all pivots."""
     falling = 0
     configuration = variations.configuration

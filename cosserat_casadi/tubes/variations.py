@@ -19,7 +19,7 @@ DIRECTIONS = 2
 
 
 @dataclass(frozen=True)
-class Variations:
+class TipVariations:
     """Changes with m degrees of freedom of the tip, at k stations from the tip to the plate.
 
     Attributes:
@@ -35,7 +35,7 @@ class Variations:
     of_steps: FloatArray
 
 
-def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> Variations:
+def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> TipVariations:
     """Variations of a robot without loads.
 
     Args:
@@ -45,14 +45,14 @@ def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> Variations:
     """
     # Of each station the changes of angles, then those of torques.
     changes = along.reshape(-1, 2 * size, size)
-    return Variations(
+    return TipVariations(
         configuration=changes[:, :size],
         at_plate=changes[-1, size:],
         of_steps=of_steps.reshape(size, -1, size).transpose(1, 0, 2),
     )
 
 
-def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> Variations:
+def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> TipVariations:
     """Variations of a robot under loads that have an energy.
 
     Args:
@@ -80,7 +80,7 @@ def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: Floa
         conjugate[size:, size:] = frame[:, :DIRECTIONS]
         responses.append(_configuration(size, step @ conjugate, end))
     torques = changes[-1, size : 2 * size]
-    return Variations(np.array(configuration), torques, np.array(responses))
+    return TipVariations(np.array(configuration), torques, np.array(responses))
 
 
 def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatArray:

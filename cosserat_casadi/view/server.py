@@ -26,7 +26,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.questions import Question, QuestionError
-from cosserat_casadi.view.session import Session
+from cosserat_casadi.view.session import ViewSession
 
 HOST = "127.0.0.1"
 """Nobody else's machine reaches it."""
@@ -69,7 +69,7 @@ class Desk:
         policy: what the page may do, as the header Content-Security-Policy says it.
     """
 
-    session: Session | ContactSession
+    session: ViewSession | ContactSession
     page: bytes = field(init=False)
     policy: str = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
@@ -92,10 +92,10 @@ class Desk:
             QuestionError: there is no such question, or something it needs is missing or wrong.
         """
         session = self.session
-        if name == "motion" and isinstance(session, Session):
+        if name == "motion" and isinstance(session, ViewSession):
             # It may take a minute, in which the robot can be moved: it has a model of its own.
             return _refusable(session.motion)
-        if name == "refined" and isinstance(session, Session):
+        if name == "refined" and isinstance(session, ViewSession):
             # The robot can be moved while modes are chosen: what it is then refined for counts no more.
             inputs = question.inputs(session.input_count)
             with self._lock:
@@ -112,16 +112,16 @@ class Desk:
                 return session.eigenvalues()
             if name == "accuracy":
                 return session.accuracy()
-            if name == "reach" and isinstance(session, Session):
+            if name == "reach" and isinstance(session, ViewSession):
                 pose = question.pose(_pose_names(session))
                 position = question.position()
                 return _refusable(lambda: session.reach(pose, position))
-            if name == "modes" and isinstance(session, Session):
+            if name == "modes" and isinstance(session, ViewSession):
                 return _refusable(session.modes)
         raise QuestionError("the page asks no such question")
 
 
-def _pose_names(session: Session) -> dict[str, list[str]]:
+def _pose_names(session: ViewSession) -> dict[str, list[str]]:
     """Names of what can be led to a point, by kind."""
     scene = session.first.model.scene
     return {"rod": [rod.name for rod in scene.rods], "body": [body.name for body in scene.bodies]}
@@ -164,7 +164,7 @@ class RobotServer(ThreadingHTTPServer):
         desk: who answers.
     """
 
-    def __init__(self, session: Session | ContactSession, port: int = 0) -> None:
+    def __init__(self, session: ViewSession | ContactSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
         self._secret = secrets.token_urlsafe(SECRET_BYTES)

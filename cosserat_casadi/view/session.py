@@ -66,7 +66,7 @@ ELSEWHERE = "These inputs have an equilibrium at the point, and lead the robot t
 
 
 @dataclass
-class Session:
+class ViewSession:
     """A robot that is moved from a browser: the equilibrium it is in, and what can be asked about it.
 
     Attributes:
@@ -286,7 +286,7 @@ def is_compiled(scene: scenes.Scene) -> bool:
     return True
 
 
-def opened(solution: Solution, progress: Progress | None = None) -> Session | ContactSession:
+def opened(solution: Solution, progress: Progress | None = None) -> ViewSession | ContactSession:
     """A session of a solved scene, with its library compiled, or found compiled, where it has one.
 
     Args:
@@ -303,7 +303,7 @@ def opened(solution: Solution, progress: Progress | None = None) -> Session | Co
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)
         library = load(sources, progress=progress)
     assert isinstance(library, Compiled)
-    return Session(solution, library)
+    return ViewSession(solution, library)
 
 
 def _packed(pictures: FloatArray) -> str:

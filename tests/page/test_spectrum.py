@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues
+from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues
 from tests.page.pages_made import run_node
 
 
@@ -37,7 +37,7 @@ def test_eigenvalues_over_the_admissible_variations(tmp_path: Path) -> None:
             jacobian[-1, -1] = 1.0
         if spoil == "units":
             units[: free // 2] = 0.01
-        allowed = Variations(np.arange(free), np.arange(free, n), units)
+        allowed = ConstrainedVariations(np.arange(free), np.arange(free, n), units)
         expected.append(admissible_eigenvalues(jacobian, allowed))
         plain = {"free": allowed.free.tolist(), "held": allowed.held.tolist(), "units": units.tolist()}
         cases.append({"jacobian": jacobian.tolist(), "allowed": plain})

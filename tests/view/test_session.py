@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Scene, SceneError, build, scene_from_dict, solve, solve_scene
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.page.ranges import sliders
-from cosserat_casadi.view.session import ELSEWHERE, PERIOD_FRAMES, Session, opened
+from cosserat_casadi.view.session import ELSEWHERE, PERIOD_FRAMES, ViewSession, opened
 from tests.page.pages_made import FEW
 from tests.scenes import rod
 
@@ -36,12 +36,12 @@ def strip(**changes: Any) -> Scene:
 
 
 @pytest.fixture(scope="module")
-def shared() -> Session:
+def shared() -> ViewSession:
     return opened(solve(build(strip())))
 
 
 @pytest.fixture
-def session(shared: Session) -> Iterator[Session]:
+def session(shared: ViewSession) -> Iterator[ViewSession]:
     shared.reset(shared.first.inputs.tolist())
     yield shared
 
@@ -50,7 +50,7 @@ def tip(answer: dict[str, Any]) -> np.ndarray:
     return np.array(answer["drawn"][TIP])
 
 
-def test_moving_finds_what_solve_finds(session: Session) -> None:
+def test_moving_finds_what_solve_finds(session: ViewSession) -> None:
     model = session.first.model
     for force in ([0.3, 0, -0.2], [1.0, 0, 0.5], [-4.0, 0, -2.0]):
         inputs = model.pack({"push.force": force})
@@ -60,7 +60,7 @@ def test_moving_finds_what_solve_finds(session: Session) -> None:
         assert_allclose(tip(answer), solve(model, {"push.force": force}).tip().position[0], rtol=0, atol=1e-8)
 
 
-def test_moving_stays_on_the_branch_and_starting_anew_does_not(session: Session) -> None:
+def test_moving_stays_on_the_branch_and_starting_anew_does_not(session: ViewSession) -> None:
     # Pressed down while it is pushed aside the strip leans over, and leans on when it is pushed back a little.
     def inputs(sideways: float, down: float) -> list[float]:
         values = {"push.force": [sideways, 0.0, -down], "front.tension": 0.0}
@@ -73,7 +73,7 @@ def test_moving_stays_on_the_branch_and_starting_anew_does_not(session: Session)
     assert tip(session.reset(inputs(-0.05, 7.0)))[0] < 0.1
 
 
-def test_a_number_that_is_none_is_said_and_forgotten(session: Session) -> None:
+def test_a_number_that_is_none_is_said_and_forgotten(session: ViewSession) -> None:
     inputs = session.first.inputs.tolist()
     answer = session.move([None, *inputs[1:]])
     assert not answer["found"]
@@ -83,7 +83,7 @@ def test_a_number_that_is_none_is_said_and_forgotten(session: Session) -> None:
     assert session.move(inputs)["found"]
 
 
-def test_derivatives_are_those_of_the_solution(session: Session) -> None:
+def test_derivatives_are_those_of_the_solution(session: ViewSession) -> None:
     model = session.first.model
     found = np.array(session.derivatives()).reshape(-1, 7)
     assert len(found) == model.inputs.size
@@ -92,11 +92,11 @@ def test_derivatives_are_those_of_the_solution(session: Session) -> None:
     assert_allclose(found[3, :3], (ends[0] - ends[1]) / (2 * step), rtol=1e-6, atol=1e-9)
 
 
-def test_stability_is_that_of_the_solution(session: Session) -> None:
+def test_stability_is_that_of_the_solution(session: ViewSession) -> None:
     assert_allclose(session.eigenvalues()[0], session.first.smallest_eigenvalue, rtol=1e-8)
 
 
-def test_reaching_a_point_finds_the_inputs(session: Session) -> None:
+def test_reaching_a_point_finds_the_inputs(session: ViewSession) -> None:
     start = session.first.tip().position[0]
     # A tendon alone reaches what it reaches: a point of its own path, and not one beside it.
     on_path = solve(session.first.model, {"front.tension": 4.0}).tip().position[0]
@@ -112,7 +112,9 @@ def test_reaching_a_point_finds_the_inputs(session: Session) -> None:
     assert tension.least <= beside["inputs"][3] <= tension.most
 
 
-def test_a_point_is_not_met_where_the_robot_ends_elsewhere(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_point_is_not_met_where_the_robot_ends_elsewhere(
+    session: ViewSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
     point = solve(session.first.model, {"front.tension": 5.0}).tip().position[0].tolist()
     assert session.reach({"rod": "rod"}, point)["met"]
     at_first = session.library.solve(session.first.inputs)
@@ -127,7 +129,7 @@ def frames(text: str) -> np.ndarray:
     return np.frombuffer(base64.b64decode(text), "<f4")
 
 
-def test_modes_swing_about_the_equilibrium(session: Session) -> None:
+def test_modes_swing_about_the_equilibrium(session: ViewSession) -> None:
     answer = session.modes()
     assert answer["text"].startswith("Stable")
     assert len(answer["modes"]) == 2
@@ -141,7 +143,7 @@ def test_modes_swing_about_the_equilibrium(session: Session) -> None:
     assert_allclose(np.linalg.norm(quarter), 0.15 * 0.8, rtol=0.3)
 
 
-def test_the_motion_is_that_of_the_scene(session: Session) -> None:
+def test_the_motion_is_that_of_the_scene(session: ViewSession) -> None:
     answer = session.motion()
     assert answer["times"][0] == 0.0
     assert answer["times"][-1] == 0.4
@@ -160,7 +162,7 @@ def test_without_mass_there_is_a_refusal() -> None:
 
 
 @pytest.fixture(scope="module")
-def planar() -> Session:
+def planar() -> ViewSession:
     """A rod whose modes were chosen for a push within a plane."""
     pushed = scene_from_dict(
         {
@@ -174,7 +176,7 @@ def planar() -> Session:
     return opened(solve_scene(pushed))
 
 
-def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(planar: Session) -> None:
+def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(planar: ViewSession) -> None:
     planar.reset(planar.first.inputs.tolist())
     at_home = planar.accuracy()
     assert at_home["within"] is True
@@ -186,7 +188,7 @@ def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(pl
     assert "of the length, asked 0.0001: the modes were chosen for other inputs" in aside["text"].replace(". ", ": ")
 
 
-def test_the_robot_is_refined_where_the_hand_rests(planar: Session) -> None:
+def test_the_robot_is_refined_where_the_hand_rests(planar: ViewSession) -> None:
     inputs = [0.3, 3.0, -0.2]
     rough = tip(planar.reset(inputs))
     refined = planar.refined(inputs, planar.present)
@@ -196,7 +198,7 @@ def test_the_robot_is_refined_where_the_hand_rests(planar: Session) -> None:
     assert np.linalg.norm(rough - exact) > 1e-3
 
 
-def test_no_error_is_told_where_nobody_asked_for_one(session: Session) -> None:
+def test_no_error_is_told_where_nobody_asked_for_one(session: ViewSession) -> None:
     session.move(session.first.inputs.tolist())
     assert session.accuracy()["within"] is None
     session.move([None, *session.first.inputs.tolist()[1:]])

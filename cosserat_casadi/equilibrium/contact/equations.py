@@ -31,7 +31,7 @@ from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
-from cosserat_casadi.model.equations import Equations as SceneEquations
+from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.newton import Equations

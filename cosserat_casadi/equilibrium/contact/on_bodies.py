@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 
 
-def in_axes_of(body: Pose, positions: FloatArray) -> FloatArray:
+def in_axes_of(body: SolvedPoses, positions: FloatArray) -> FloatArray:
     """World positions, shape (k, 3) in m, in the axes of a body in its one pose."""
     return np.asarray((positions - body.position[0]) @ body.rotation[0])
 

@@ -22,7 +22,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     seen_sections,
 )
 from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
@@ -65,7 +65,7 @@ class LookedAt:
         if obstacle.body is None:
             return in_world
         position, quaternion, rotation = (part.full() for part in self.model.body[obstacle.body](x, inputs))
-        return in_axes_of(Pose(position.T, rotation[None], quaternion.T), in_world)
+        return in_axes_of(SolvedPoses(position.T, rotation[None], quaternion.T), in_world)
 
     @cached_property
     def _interpolation(self) -> FloatArray:

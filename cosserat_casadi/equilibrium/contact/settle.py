@@ -291,7 +291,7 @@ def _alike(first: ContactState, second: ContactState) -> bool:
 
 
 @dataclass(frozen=True)
-class Change:
+class Replacement:
     """What may be in place of a contact that is at fault.
 
     Attributes:
@@ -306,13 +306,13 @@ class Change:
 def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
     """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
-    changes = [Change(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
+    changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
         # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
         if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
             continue
         if touch not in pulling:
-            changes.append(Change(touch, tuple(_instead_of_entering(penetrated, touch))))
+            changes.append(Replacement(touch, tuple(_instead_of_entering(penetrated, touch))))
     if not changes:
         return
     # All that is at fault is changed at once; then each in another way.
