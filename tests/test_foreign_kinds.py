@@ -46,28 +46,28 @@ from cosserat_casadi.constraints.held_directions import NONE, across
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint, Support
 from cosserat_casadi.control.targets import Target, TargetMiss, length_of
-from cosserat_casadi.identification.quantities import MeasurementSite, StateQuantity
+from cosserat_casadi.identification.measured_quantities import MeasurementSite, StateQuantity
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.sections import CrossSection, Sizes
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.obstacles.obstacle import Obstacle
 from cosserat_casadi.obstacles.obstacle import across as normal_to
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.rod.actuation import StrainSum
 from cosserat_casadi.rod.section import SectionShape
-from cosserat_casadi.scene.actuators import ActuatorRecord
-from cosserat_casadi.scene.constraints import JointRecord, SupportRecord
+from cosserat_casadi.scene.actuator_records import ActuatorRecord
+from cosserat_casadi.scene.constraint_records import JointRecord, SupportRecord
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
-from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.load_records import LoadRecord
 from cosserat_casadi.scene.measurement_record import MovingMeasurement
-from cosserat_casadi.scene.obstacles import ObstacleRecord
-from cosserat_casadi.scene.rods import SectionRecord
-from cosserat_casadi.scene.targets import TargetRecord
+from cosserat_casadi.scene.obstacle_records import ObstacleRecord
+from cosserat_casadi.scene.rod_records import SectionRecord
+from cosserat_casadi.scene.target_records import TargetRecord
 from cosserat_casadi.scene.values import Direction, Positive, Size, Vector
 from tests.families import mostly_slow
 from tests.initial_value import integrate

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
-from cosserat_casadi.model.equations import SceneEquations
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched

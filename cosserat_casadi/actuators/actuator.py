@@ -16,7 +16,7 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import ShapeQuantity
-from cosserat_casadi.scene.actuators import ACTUATORS, ActuatorRecord
+from cosserat_casadi.scene.actuator_records import ACTUATORS, ActuatorRecord
 from cosserat_casadi.scene.families import Kind
 
 RecordType = TypeVar("RecordType", bound=ActuatorRecord)

@@ -21,7 +21,7 @@ from numpy.polynomial import legendre
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.properties import RodProperties
 
 RELATIVE = 1e-13

@@ -23,8 +23,8 @@ from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 

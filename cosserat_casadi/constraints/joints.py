@@ -8,7 +8,7 @@ from cosserat_casadi.constraints.held_directions import ALL, CLAMPED, PINNED, ac
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraints import FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint
+from cosserat_casadi.scene.constraint_records import FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint
 from cosserat_casadi.scene.families import register
 
 JOINT_KINDS = Joint.kinds

@@ -15,7 +15,7 @@ from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.maths.numbers import Scalar, as_vector, known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, JointRecord, SupportRecord
+from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, JointRecord, SupportRecord
 from cosserat_casadi.scene.families import Kind, Kinds
 
 RecordType = TypeVar("RecordType", bound=JointRecord | SupportRecord)

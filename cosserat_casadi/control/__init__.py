@@ -8,7 +8,7 @@ from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.judgement import judged
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.targets import TargetMiss
-from cosserat_casadi.motion.stage import MotionStage, StageEquations, motion_stage
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, motion_stage
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
 __all__ = [

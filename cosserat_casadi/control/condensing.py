@@ -16,8 +16,8 @@ import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.stage import MotionStage, StageEquations
 
 
 @dataclass(frozen=True)

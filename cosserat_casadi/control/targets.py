@@ -18,7 +18,7 @@ from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_prod
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.families import Kind, Kinds, register
-from cosserat_casadi.scene.targets import TARGETS, FrameTarget, TargetRecord
+from cosserat_casadi.scene.target_records import TARGETS, FrameTarget, TargetRecord
 
 RecordType = TypeVar("RecordType", bound=TargetRecord)
 FrameType = TypeVar("FrameType", bound=FrameTarget)

@@ -11,7 +11,7 @@ from functools import cached_property
 from math import isfinite
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.passage import DEEP, LookedAt, is_inside_between
+from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 

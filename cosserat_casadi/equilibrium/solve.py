@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.answer_error import with_error_estimate
-from cosserat_casadi.equilibrium.contact.answer_error import with_error_in_contact
-from cosserat_casadi.equilibrium.contact.equations import Grids
-from cosserat_casadi.equilibrium.contact.solve import solve_contact
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_answer_error import with_error_in_contact
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note

@@ -4,6 +4,6 @@ cases ─ stacking ─▶ arrays ─ codegen/estimator ─▶ maxima a posterior
 """
 
 from cosserat_casadi.estimation.estimate import estimate, estimate_scene
-from cosserat_casadi.estimation.outcome import Estimate
+from cosserat_casadi.estimation.estimate_outcome import Estimate
 
 __all__ = ["Estimate", "estimate", "estimate_scene"]

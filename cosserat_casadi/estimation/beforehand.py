@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import Knowledge
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout
+from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout

@@ -10,11 +10,11 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import MeasuredCases
 from cosserat_casadi.codegen.parameters import given_size
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.quantities import QUANTITIES, difference
+from cosserat_casadi.identification.measured_cases import Case
+from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene.inputs import AXES
+from cosserat_casadi.scene.input_fields import AXES
 
 
 def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:

@@ -3,7 +3,7 @@
 table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ statistics ─▶ Identification
 """
 
-from cosserat_casadi.identification.found import Identification, Row
-from cosserat_casadi.identification.search import identify, identify_scene
+from cosserat_casadi.identification.identification_result import Identification, Row
+from cosserat_casadi.identification.model_identification import identify, identify_scene
 
 __all__ = ["Identification", "Row", "identify", "identify_scene"]

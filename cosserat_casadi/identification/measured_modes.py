@@ -17,14 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.identification.cases import Datum
-from cosserat_casadi.identification.quantities import QUANTITIES
+from cosserat_casadi.identification.measured_cases import Datum
+from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checks import immovable
 from cosserat_casadi.motion.eigenproblem import ComplexArray, eigenpairs
-from cosserat_casadi.motion.modes import small_motions
+from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.small_motions import SmallMotions
+from cosserat_casadi.motion.vibration_modes import small_motions
 from cosserat_casadi.scene.measurements import ModeMeasurement
 
 Indices = npt.NDArray[np.int64]

@@ -1,7 +1,7 @@
 """How far the model is from what was measured in all cases, with exact derivatives by the implicit function theorem.
 
 Each case has its own equilibrium g(x, inputs, p) = 0, so that dx = −(∂g/∂x)⁻¹ (∂g/∂inputs d inputs + ∂g/∂p dp). A case
-that was measured over time begins there, or unloaded, and moves on by the steps of identification/motions.py.
+that was measured over time begins there, or unloaded, and moves on by the steps of identification/case_motions.py.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.case_equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.case_motions import Motions, Run
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout
+from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.identification.measured_modes import JointModes, MeasuredModes, Vibrations
 from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
-from cosserat_casadi.identification.motions import Motions, Run
-from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.measurements import ModeMeasurement

@@ -8,8 +8,8 @@ from dataclasses import replace
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.found import Identification
+from cosserat_casadi.identification.identification_result import Identification
+from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.numerics.outcome import Outcome
 
 

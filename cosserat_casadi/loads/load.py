@@ -35,9 +35,9 @@ from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
-from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.families import Kind, Kinds
-from cosserat_casadi.scene.loads import LOADS, LoadRecord
+from cosserat_casadi.scene.load_records import LOADS, LoadRecord
 
 RecordType = TypeVar("RecordType", bound=LoadRecord)
 

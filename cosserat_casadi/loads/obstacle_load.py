@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.load_records import LoadRecord
 
 
 class ObstacleLoadRecord(LoadRecord):

@@ -19,7 +19,7 @@ from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 
 
 class Penetration(ObstacleLoadRecord):

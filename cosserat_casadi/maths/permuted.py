@@ -16,7 +16,7 @@ from typing import Literal
 import casadi as ca
 
 from cosserat_casadi.maths.chebyshev import differentiation_matrix
-from cosserat_casadi.maths.shapes import check_shape
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
 
 End = Literal["base", "tip"]

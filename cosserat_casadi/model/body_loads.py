@@ -8,7 +8,7 @@ import casadi as ca
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint
-from cosserat_casadi.loads.trace import TracedLoad, stored, traced
+from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix

@@ -19,17 +19,22 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.enrichment import enriched
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
-from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.rods import rod_properties
-from cosserat_casadi.model.signals import signal_modes
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.scene_constraints import (
+    FORCE_WEIGHT,
+    PlacedConstraint,
+    placed_constraints,
+    written_constraints,
+)
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation

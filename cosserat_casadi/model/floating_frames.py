@@ -21,7 +21,7 @@ from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import matrix_to_quaternion
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
 

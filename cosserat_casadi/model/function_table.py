@@ -1,6 +1,6 @@
 """What a named function of a model is, and the table of all of them.
 
-A function is one method of :class:`cosserat_casadi.model.functions.ModelFunctions` with one of the decorators below.
+A function is a method of :class:`cosserat_casadi.model.model_functions.ModelFunctions` with one of these decorators.
 The model's members, the manifest, the kernels in C with their headers, and what ``load`` offers follow from the table.
 """
 

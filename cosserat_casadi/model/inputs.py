@@ -18,9 +18,9 @@ from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.model.stacked import StackedLayout
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.records import Entry
 
 SHORTEST = 1e-3

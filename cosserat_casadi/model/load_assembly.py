@@ -12,7 +12,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.load import Site, UnloadedPoses
-from cosserat_casadi.loads.trace import TracedLoad, stored, traced
+from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import (
     Numbers,
     among,
@@ -29,7 +29,7 @@ from cosserat_casadi.model.inputs import scene_value
 from cosserat_casadi.model.load_inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import RodMotion
+from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
 

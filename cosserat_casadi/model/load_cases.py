@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.scene.inputs import column_suffixes
+from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.scene.number_table import finite_number, read_numbers
 
 

@@ -21,12 +21,12 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
-from cosserat_casadi.model.borne_loads import BorneLoad
+from cosserat_casadi.model.body_obstacle_loads import BorneLoad
 from cosserat_casadi.model.load_potential import is_dead_force
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import MotionArguments, System
-from cosserat_casadi.rod.motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench
 

@@ -1,4 +1,4 @@
-"""The named functions of a model in motion: see model/functions.py and docs/theory.md, section 11.
+"""The named functions of a model in motion: see model/model_functions.py and docs/theory.md, section 11.
 
 Coordinates x are those of statics, v and a their first and second time derivatives. Multipliers and tensions have
 neither: their entries of v and a are not read.
@@ -12,7 +12,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.motion_energy import MotionEnergy
-from cosserat_casadi.model.motion_equations import SceneMotionEquations
+from cosserat_casadi.model.scene_motion_equations import SceneMotionEquations
 
 MOTION = ("x", "v", "a", "inputs", "inputs_rate", "inputs_acceleration")
 """Arguments of the functions of a scene in motion."""

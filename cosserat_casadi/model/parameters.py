@@ -19,7 +19,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import any_symbolic
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.places import MovingEnds, moving_ends, places_on, unmovable
+from cosserat_casadi.model.element_ends import MovingEnds, moving_ends, places_on, unmovable
 from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.writing import scene_tables
 

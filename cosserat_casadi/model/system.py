@@ -1,7 +1,8 @@
 """Rods, floating frames, loads and actuators of a scene as expressions of its unknowns and inputs.
 
 Rods stand side by side, each in the axes of its base. A scene of one rod is no special case: what couples rods adds
-rows and columns (model/assembly.py), never instructions to the rods themselves. Docs/theory.md, sections 2 to 8.
+rows and columns (model/assembly_equations.py), never instructions to the rods themselves. See docs/theory.md,
+sections 2 to 8.
 """
 
 from __future__ import annotations
@@ -19,19 +20,19 @@ from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
-from cosserat_casadi.model.rods import written_base_pose
 from cosserat_casadi.model.scene_actuators import SceneActuators
+from cosserat_casadi.model.scene_constraints import PlacedConstraint
+from cosserat_casadi.model.scene_rods import written_base_pose
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
-from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent

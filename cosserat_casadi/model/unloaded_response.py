@@ -7,9 +7,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.equations import SceneEquations
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.load_assembly import nonlinear_inputs
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 
 NOISE = 1e-14

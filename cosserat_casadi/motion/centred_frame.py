@@ -26,9 +26,9 @@ from cosserat_casadi.model.floating_frames import FloatingFrame
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import RodMotion, StrainRates
 from cosserat_casadi.rod.motion_matrices import Jet
 from cosserat_casadi.rod.motion_tangent import MotionTangent
+from cosserat_casadi.rod.rod_motion import RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import Facing, Minimum, Rows, SectionGap
+from cosserat_casadi.motion.contact_gap import Facing, Minimum, Rows, SectionGap
 
 CENTRE = Rows(np.ones(1), np.zeros(1), np.zeros(1))
 """Weights of the one point that a ball has: nothing slides along it."""

@@ -13,7 +13,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.paths import watched_times
+from cosserat_casadi.motion.tip_paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3

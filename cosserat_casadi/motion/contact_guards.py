@@ -9,10 +9,10 @@ from enum import IntEnum
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import FLATTEST, Facing
-from cosserat_casadi.motion.meeting_ends import MeetingEnds
+from cosserat_casadi.motion.coincident_ends import MeetingEnds
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.touching import Follower, MovingContact, Touches
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_forces import Follower, Touches
+from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.facing import Facing
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.touching import Follower, Touches
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
 

@@ -13,16 +13,16 @@ from itertools import pairwise
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along, distances
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.facing import FAR, Facing, Minimum, Rows, SectionGap
-from cosserat_casadi.motion.laid_sections import laid_sections
-from cosserat_casadi.motion.meeting_ends import watched_ends
+from cosserat_casadi.motion.contact_gap import FAR, Facing, Minimum, Rows, SectionGap
+from cosserat_casadi.motion.lying_sections import laid_sections
 from cosserat_casadi.motion.moving_points import centre_of, nodes_of
 
 SECTIONS_IN_ELEMENT = 200

@@ -18,6 +18,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.coincident_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches, with_touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing, SectionGap
 from cosserat_casadi.motion.contact_guards import (
     CLOSE,
     SAME_PLACE,
@@ -28,11 +31,8 @@ from cosserat_casadi.motion.contact_guards import (
 )
 from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.facing import FLATTEST, Facing, SectionGap
-from cosserat_casadi.motion.meeting_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.restart import ContactEvent, Restart
-from cosserat_casadi.motion.touching import Follower, MovingContact, Touches, with_touches
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 

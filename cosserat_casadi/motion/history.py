@@ -13,14 +13,14 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
-from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
+from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation

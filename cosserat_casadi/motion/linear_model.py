@@ -25,8 +25,8 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
 from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
-from cosserat_casadi.motion.modes import check_mass, small_motions
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
+from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
 
 UNHELD = 1e-7
 """Share of what an input moves a constraint by that may be left open, as rounding."""

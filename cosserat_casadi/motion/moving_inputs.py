@@ -17,7 +17,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.splines import table_coefficients
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.motion_records import InputMotion
 
 SAME_TIME = 1e-12
 """Distance of two times, relative to the duration, at which they are one: pieces are longer."""

@@ -17,17 +17,17 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.vanished_paths import first_vanished
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.motion.contact_checks import told_inside, too_deep
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.momentum import flies_free
+from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_ending import message_of, outcome_of
+from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.paths import Paths, path_distance, paths, watched_times
-from cosserat_casadi.motion.start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.sudden_loads import warnings
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
 from cosserat_casadi.motion.trajectory import (
     Energies,
     Motion,

@@ -20,9 +20,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import CableOfLength
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.motion.event_restart import Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.restart import Restart
 from cosserat_casadi.numerics.consistent_start import consistent_start, impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations

@@ -18,10 +18,10 @@ from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, variations
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.facing import FLATTEST, Facing
-from cosserat_casadi.motion.touching import Follower, MovingContact, Touches
 from cosserat_casadi.numerics.complementarity import least_pushes
 
 MOST_TURNS = 50

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.motion_start import Start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.start import Start
 
 OUT_OF_BALANCE = 1e-6
 """Residual of statics, without unit, at which a start is no equilibrium."""

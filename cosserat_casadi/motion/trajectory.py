@@ -11,7 +11,8 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_record import MotionContact
-from cosserat_casadi.motion.poses import (
+from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.pose_series import (
     ActuatorStates,
     Poses,
     actuator_states,
@@ -19,7 +20,6 @@ from cosserat_casadi.motion.poses import (
     section_poses,
     tip_poses,
 )
-from cosserat_casadi.motion.restart import ContactEvent
 
 
 class MotionOutcome(Enum):

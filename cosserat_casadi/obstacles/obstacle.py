@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.scene.families import Kind, Kinds
-from cosserat_casadi.scene.obstacles import OBSTACLES, ObstacleRecord
+from cosserat_casadi.scene.obstacle_records import OBSTACLES, ObstacleRecord
 
 RecordType = TypeVar("RecordType", bound=ObstacleRecord)
 

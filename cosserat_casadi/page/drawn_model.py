@@ -18,10 +18,10 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Sort
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, scene_function
-from cosserat_casadi.model.load_arrows import DrawnPoses, LoadArrows
 from cosserat_casadi.model.system import Arguments, System
 
 SECTIONS = np.linspace(0.0, 1.0, 49)

@@ -18,13 +18,13 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.page.drawn_model import DrawnModel
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
 
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
 
-SCRIPTS = ("spectrum.js", "shapes.js", "painter.js", "scenery.js", "panel.js", "hand.js")
+SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.js", "panel.js", "tip_dragging.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 

@@ -1,6 +1,6 @@
 """Equilibrium paths of scenes with obstacles: one arrangement of contacts is followed until it ends, then the next.
 
-See docs/contact.md, "Paths", and transitions.py for how one leads to another.
+See docs/contact.md, "Paths", and contact_transitions.py for how one leads to another.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
-from cosserat_casadi.equilibrium.contact.settle import Settling
-from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.state import TIP, Touch, load_sections, state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.verdict import judged
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import judged
+from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, load_sections, state_in, without_contacts
 from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
@@ -25,10 +25,10 @@ from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
-from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.contact_curve import Arrangement
+from cosserat_casadi.paths.contact_transitions import ArrangementEntry, changes, entered
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.paths.margins import Key, margins, violated
-from cosserat_casadi.paths.transitions import ArrangementEntry, changes, entered
 
 MOST_CHANGES = 100
 """Most changes of the arrangement along a path."""

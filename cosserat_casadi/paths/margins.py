@@ -12,10 +12,10 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.settle import AT_TIP, pressure_along
-from cosserat_casadi.equilibrium.contact.state import TIP
+from cosserat_casadi.equilibrium.contact.contact_search import AT_TIP, pressure_along
+from cosserat_casadi.equilibrium.contact.contact_state import TIP
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.gaps_along import GapsAlong
 
 OPEN = 0.005

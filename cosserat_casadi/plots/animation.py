@@ -16,19 +16,19 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
+from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
 from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.poses import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
-from cosserat_casadi.plots.obstacles import surface_lines
+from cosserat_casadi.plots.obstacle_drawing import surface_lines
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 FORMATS = (".gif", ".mp4")

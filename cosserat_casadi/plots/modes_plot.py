@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
-from cosserat_casadi.motion.modes import Mode, Modes
+from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import WORLD, Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour

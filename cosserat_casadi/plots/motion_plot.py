@@ -22,7 +22,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
-from cosserat_casadi.plots.obstacles import draw_surfaces
+from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 SHAPES = 12

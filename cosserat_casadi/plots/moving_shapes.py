@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.poses import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import body_corners

@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.colours import AXES, rod_style
-from cosserat_casadi.plots.shapes import SAMPLES
+from cosserat_casadi.plots.solved_shapes import SAMPLES
 
 STROKES = ("-", "--", "-.")
 """Strokes of the components x, y, z where colours tell the rods apart."""

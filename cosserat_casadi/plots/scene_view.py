@@ -11,7 +11,7 @@ from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.arrows import lies_in_plane
 from cosserat_casadi.plots.canvas import FLAT, WORLD, Plane
-from cosserat_casadi.plots.shapes import RodShapes
+from cosserat_casadi.plots.solved_shapes import RodShapes
 
 View = tuple[Plane | None, FloatArray]
 """Two axes to the right and upwards, None for space; and the axes they are of, a row each, shape (3, 3)."""

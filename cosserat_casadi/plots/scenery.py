@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
-from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
+from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import Scene
 
 SLACK = 1e-6

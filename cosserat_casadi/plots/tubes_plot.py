@@ -19,10 +19,10 @@ from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.tubes.arrows import load_arrows
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.path import TubeEvent, TubePath
-from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.tube_arrows import load_arrows
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
+from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
 """Stroke of what is stable, of what is not, and of what bears loads without energy."""

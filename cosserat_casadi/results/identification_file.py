@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
-from cosserat_casadi.identification.unknowns import UnknownEntry, parts
+from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 from cosserat_casadi.scene.values import names_in
 

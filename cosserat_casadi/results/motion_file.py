@@ -19,8 +19,8 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
-from cosserat_casadi.motion.poses import Poses
-from cosserat_casadi.motion.restart import ContactEvent
+from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain

@@ -16,7 +16,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.places import CLOSEST, element_ends
+from cosserat_casadi.model.element_ends import CLOSEST, element_ends
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES

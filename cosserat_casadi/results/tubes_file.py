@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from cosserat_casadi.results.json_text import SCHEMA, plain
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.path import TubeEvent, TubePath
-from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
+from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
 def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:

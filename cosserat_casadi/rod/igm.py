@@ -11,7 +11,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import stack
+from cosserat_casadi.maths.block_operators import stack
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation, Conjugate

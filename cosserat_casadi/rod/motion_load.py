@@ -19,7 +19,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.motion_tangent import MotionTangent

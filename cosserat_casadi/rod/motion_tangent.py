@@ -27,12 +27,12 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator, sum_of_products
+from cosserat_casadi.maths.block_operators import block_diagonal, cumulative_sum, hat_operator, sum_of_products
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_symbolic, known, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
-from cosserat_casadi.rod.motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.rod_motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.tangent import Tangent
 
 ORDERS = 3

@@ -14,7 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal, unstack
+from cosserat_casadi.maths.block_operators import block_diagonal, unstack
 from cosserat_casadi.maths.numbers import Numbers, as_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -25,7 +25,7 @@ from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench, WrenchA
 class LoadedSections:
     """A pose-dependent wrench on the sections of a rod of known shape.
 
-    Fields of k sections are stacked component by component, as in maths/blocks.py.
+    Fields of k sections are stacked component by component, as in maths/block_operators.py.
 
     Attributes:
         load: the wrench.

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix

@@ -32,7 +32,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import (
+from cosserat_casadi.maths.block_operators import (
     block_diagonal,
     cumulative_sum,
     hat_operator,

@@ -14,7 +14,7 @@ from functools import cache, cached_property, lru_cache
 import casadi as ca
 
 from cosserat_casadi.maths import magnus
-from cosserat_casadi.maths.blocks import unstack
+from cosserat_casadi.maths.block_operators import unstack
 from cosserat_casadi.maths.numbers import as_matrix, column, each_times
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix

@@ -1,6 +1,6 @@
 """How wrenches vary that follow their sections, as these turn: docs/theory.md section 7.
 
-Fields of M nodes are stacked component by component, as in maths/blocks.py, with one column for each variation.
+Fields of M nodes are stacked component by component as in maths/block_operators.py, one column for each variation.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]

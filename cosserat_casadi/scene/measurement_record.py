@@ -1,7 +1,7 @@
 """What the tables of measurements have in common: a file, its columns, and what each row was measured under.
 
 They do not act on the rods: a scene with measurements is solved like one without. A measured quantity is one record in
-scene/measurements.py, and one class in identification/quantities.py that says how far the model is from it.
+scene/measurements.py, and one class in identification/measured_quantities.py that says how far the model is from it.
 """
 
 from __future__ import annotations

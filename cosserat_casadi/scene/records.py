@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 
 RecordType = TypeVar("RecordType", bound="Record")
 

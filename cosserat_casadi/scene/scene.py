@@ -9,24 +9,24 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from cosserat_casadi.scene.accuracy import Accuracy
-from cosserat_casadi.scene.actuators import Actuator
-from cosserat_casadi.scene.constraints import Body, Joint, Support
+from cosserat_casadi.scene.actuator_records import Actuator
+from cosserat_casadi.scene.constraint_records import Body, Joint, Support
 from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
-from cosserat_casadi.scene.input_ranges import InputRanges
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.input_range_records import InputRanges
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Measurement
-from cosserat_casadi.scene.motions import InputMotion
-from cosserat_casadi.scene.obstacles import Obstacle
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
+from cosserat_casadi.scene.motion_records import InputMotion
+from cosserat_casadi.scene.obstacle_records import Obstacle
+from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
-from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
-from cosserat_casadi.scene.targets import Bound, Target
-from cosserat_casadi.scene.tubes import Tube
-from cosserat_casadi.scene.unknowns import IdentificationSettings, Unknown
+from cosserat_casadi.scene.target_records import Bound, Target
+from cosserat_casadi.scene.tube_records import Tube
+from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
 from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 
 

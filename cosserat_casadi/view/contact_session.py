@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
-from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.drawn_model import drawn_numbers
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 
 ALONG_LINE = 25

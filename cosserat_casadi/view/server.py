@@ -26,7 +26,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.questions import Question, QuestionError
-from cosserat_casadi.view.session import ViewSession
+from cosserat_casadi.view.view_session import ViewSession
 
 HOST = "127.0.0.1"
 """Nobody else's machine reaches it."""
@@ -43,7 +43,7 @@ PATIENCE = 30.0
 SECRET_BYTES = 16
 """Random bytes in a secret: more than can be tried."""
 
-SCRIPTS = ("server_robot.js", "theatre.js")
+SCRIPTS = ("server_robot.js", "playback.js")
 
 
 def check_port(port: int) -> None:

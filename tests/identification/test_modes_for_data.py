@@ -7,9 +7,9 @@ from typing import Any
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build
-from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.identification.discretisation import FitDiscretisation, with_discretisation
-from cosserat_casadi.motion.modes import modes_of_scene
+from cosserat_casadi.identification.fit_discretisation import FitDiscretisation, with_discretisation
+from cosserat_casadi.identification.measured_cases import read_cases
+from cosserat_casadi.motion.vibration_modes import modes_of_scene
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import WIRE, MadeUp
 from tests.scenes import push, rod, scene

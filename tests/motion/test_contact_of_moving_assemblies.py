@@ -15,12 +15,12 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.coincident_ends import MeetingEnds, RodEnd, meetings, watched_ends
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import LEEWAY, ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.meeting_ends import MeetingEnds, RodEnd, meetings, watched_ends
 from cosserat_casadi.motion.simulate import moving_inputs
-from cosserat_casadi.motion.touching import Follower, MovingContact
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.plots.motion_plot import save_motion_plot

@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, scene_from_dict
-from cosserat_casadi.motion.paths import path_distance
-from cosserat_casadi.motion.resolve import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
+from cosserat_casadi.motion.motion_refinement import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
 from cosserat_casadi.motion.simulate import FORETOLD, TIGHTER, Simulator, started
+from cosserat_casadi.motion.tip_paths import path_distance
 from tests.motion import transients
 
 STEP_TOLERANCE = 1e-3

@@ -26,11 +26,11 @@ from cosserat_casadi import (
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion import start as starts
+from cosserat_casadi.motion import motion_start as starts
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.start import given_start
-from cosserat_casadi.motion.touching import Follower, MovingContact
+from cosserat_casadi.motion.motion_start import given_start
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 
 ROD = """

@@ -13,13 +13,13 @@ from typer.testing import CliRunner
 from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve, write_motion
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.laid_sections import lobatto
+from cosserat_casadi.motion.lying_sections import lobatto
 from cosserat_casadi.motion.simulate import moving_inputs
-from cosserat_casadi.motion.touching import Follower, MovingContact
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.consistent_start import response, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations

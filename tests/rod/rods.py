@@ -15,8 +15,8 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import FrameMotion, StrainRates
 from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.rod_motion import FrameMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent

@@ -28,8 +28,8 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
-from cosserat_casadi.tubes.solution import tip_error
-from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
+from cosserat_casadi.tubes.tube_solution import tip_error
+from cosserat_casadi.tubes.tube_solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

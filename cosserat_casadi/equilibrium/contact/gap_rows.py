@@ -13,9 +13,9 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, obstacle_of
-from cosserat_casadi.equilibrium.contact.state import ContactState, Place, Touch
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import Scalar, as_matrix
