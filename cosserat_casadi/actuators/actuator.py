@@ -1,4 +1,4 @@
-"""What an actuator is: an effort, and the quantity of the strains that the effort works on.
+"""Base class of actuators: an effort, and the quantity of the strains that the effort works on.
 
 A member is one file and one line of the registry. It names its effort and the conjugate quantity with their units, and
 gives that quantity on the grid of a rod; residual, Jacobian, energy and outputs follow from it.
@@ -59,7 +59,7 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return self.quantity(actuator, grid)
 
     def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
-        """Extension of what is prescribed by a unit of effort: 1/EA of each metre, and 1/k; zero of what is rigid."""
+        """Extension of the prescribed quantity by a unit of effort: 1/EA of each metre, and 1/k; zero if rigid."""
         return 0.0, 0.0
 
     def resting_effort(self, actuator: RecordType) -> Scalar:
@@ -79,5 +79,5 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return False
 
     def may_go_slack(self, actuator: RecordType) -> bool:
-        """Whether an unknown effort vanishes where the quantity is below what is prescribed."""
+        """Whether an unknown effort vanishes where the quantity is below its prescribed value."""
         return False

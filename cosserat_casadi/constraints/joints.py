@@ -1,4 +1,4 @@
-"""Joints that ship: what they hold of a tip in a body."""
+"""Joints that ship: the directions of a tip that each holds in a body."""
 
 from __future__ import annotations
 

@@ -90,11 +90,12 @@ class ConstraintPoses(NamedTuple):
 
 @dataclass(frozen=True)
 class HeldPose:
-    """What a section is held to.
+    """Pose and directions in which a section is held.
 
     Attributes:
         place: pose of the section in the other frame.
-        turn: quaternion that takes the directions of :class:`HeldDirections` to what is held; None where it is these.
+        turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None where these
+            are the same.
     """
 
     place: Pose
@@ -120,8 +121,8 @@ class SectionConstraint:
         at: abscissa of the section, a break of the rod's grid.
         held: the directions that are held.
         place: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
-        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of the place, to what is held; numbers
-            or expressions; None where that is ``held`` itself.
+        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of the place, to the held directions;
+            numbers or expressions; None for the directions ``held`` as they are.
     """
 
     rod: RodProperties
@@ -137,7 +138,7 @@ class SectionConstraint:
         return self.held.size
 
     def residual(self, poses: ConstraintPoses) -> Matrix:
-        """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
+        """Residual of the constraint, size×1: displacements relative to the rod's length, then rotations, rad."""
         residual: Matrix = self._kernels.residual(*poses.stacked, *self._free_target)[0]
         return residual
 
@@ -198,13 +199,13 @@ class SectionConstraint:
 
     @property
     def _given_target(self) -> HeldPose:
-        """What the section is held to, as expressions."""
+        """The pose and the directions in which the section is held, as expressions."""
         place = self.place if isinstance(self.place, Pose) else self.place.pose
         return HeldPose(place, self.turn)
 
     @property
     def _free_target(self) -> list[Matrix]:
-        """The same as arguments of the kernels; what is known is no argument but a constant of them."""
+        """The expressions of the held pose as arguments of the kernels; numbers of it are constants of the kernels."""
         arguments = [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
         if is_symbolic(self.turn):
             arguments.append(self.turn)

@@ -1,4 +1,4 @@
-"""Supports that ship: what they hold of a tip in the world."""
+"""Supports that ship: the directions of a tip that each holds in the world."""
 
 from __future__ import annotations
 

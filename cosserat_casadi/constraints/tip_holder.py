@@ -1,4 +1,4 @@
-"""What holds the tip of a rod: a support in the world, or a joint at a body.
+"""Members that hold the tip of a rod: a support in the world, or a joint at a body.
 
 A kind differs from others in the directions that it holds, and in nothing else. A member is one class: it gives
 :meth:`TipHolder.held`, and everything follows from these directions: multipliers, wrenches, what remains of them where

@@ -48,7 +48,7 @@ def judge(
     """The solution that a method's end amounts to: its residual is computed again, the method is not believed.
 
     Args:
-        model: what was solved.
+        model: the solved model.
         inputs: stacked inputs, shape (model.inputs.size,).
         x: where the method stopped, shape (model.size,).
         outcome: how the method says that it ended.
@@ -142,7 +142,7 @@ def _with_stability(solution: Solution) -> Solution:
 
 
 def stability_note(stability: Stability, critical: bool) -> str:
-    """What a user must know of an equilibrium that not every variation costs energy."""
+    """A sentence for an equilibrium in which some variation costs no energy, or releases it; else empty."""
     if critical:
         return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."
     if stability.neutral:

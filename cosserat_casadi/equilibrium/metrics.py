@@ -58,7 +58,7 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
     Args:
         first: a solution.
         second: another of the same scene.
-        X: abscissae to compare, shape (k,); by default those that the tolerance binds.
+        X: abscissae to compare, shape (k,); by default the sections that the tolerance binds.
     """
     distances = [0.0]
     for name, discrete_rod in first.model.discrete.rods.items():

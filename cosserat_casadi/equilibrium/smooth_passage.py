@@ -28,7 +28,7 @@ class SmoothBarriers:
 
     @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
-        """Rods with what has another side that they could come out on."""
+        """Pairs of a rod and an obstacle that has another side, on which the rod could come out."""
         scene = self.model.scene
         smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]

@@ -34,7 +34,7 @@ class SolvedPoses:
 
 @dataclass(frozen=True)
 class BaseWrench:
-    """What the clamp exerts on the rod, world frame, about the base point.
+    """Wrench of the clamp on the rod, world frame, about the base point.
 
     Attributes:
         force: shape (3,), N.

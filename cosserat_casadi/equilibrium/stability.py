@@ -37,7 +37,7 @@ class ConstrainedVariations:
 
 
 def variations(model: Model) -> ConstrainedVariations:
-    """Sort a model's unknowns into those that vary and those that restrict."""
+    """Sort a model's unknowns into unknowns that vary and unknowns of constraints, which restrict them."""
     unknowns = model.discrete.unknowns
     free = np.flatnonzero(unknowns.differential)
     held = np.flatnonzero(~unknowns.differential)
@@ -86,8 +86,8 @@ def second_variation(jacobian: FloatArray, allowed: ConstrainedVariations) -> St
 def admissible_eigenvalues(jacobian: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
     """Eigenvalues of the second variation over the admissible variations, ascending.
 
-    Each unknown counts in the energy unit of its own rod or frame. A frame whose quaternion changes its length, which
-    moves nothing, has the eigenvalue 2 there.
+    Each unknown counts in the energy unit of the rod or frame that it belongs to. A frame whose quaternion changes its
+    length, which moves nothing, has the eigenvalue 2 there.
 
     Args:
         jacobian: as in :func:`second_variation`.
@@ -166,7 +166,7 @@ def restricted(
 
 
 def stability_of(eigenvalues: FloatArray) -> Stability:
-    """What eigenvalues of the second variation, ascending, mean."""
+    """Stability from the eigenvalues of the second variation, ascending."""
     if not eigenvalues.size:
         return Stability(np.inf)
     sizes = np.abs(eigenvalues)

@@ -1,4 +1,4 @@
-"""A load's wrench written in symbols once, to see its structure: what it depends on decides how it is computed."""
+"""A load's wrench written in symbols once, to see its structure: its arguments decide how it is computed."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class TracedLoad:
         )
 
     def data(self, site: Site) -> Numbers:
-        """What the kernel takes as data at the sections of a rod, shape (d, k)."""
+        """Data of the kernel at the sections of a rod, shape (d, k)."""
         force_columns, moment_columns = self.columns
         rows = [
             self.member.profiles(self.load, site.rod, site.X, force_columns),

@@ -1,4 +1,4 @@
-"""What all loads have in common that an obstacle exerts: on rods, which see it in its axes, and on bodies as balls."""
+"""Common part of the loads that an obstacle exerts: on rods, seen in the obstacle's axes, and on bodies as balls."""
 
 from __future__ import annotations
 

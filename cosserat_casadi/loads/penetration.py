@@ -1,7 +1,7 @@
 """A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: where contact is, before it is found exactly.
 
-Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. What it gives is a first
-guess of places and forces, never a result; no scene file names this load.
+Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. It gives a first guess
+of places and forces, never a result; no scene file names this load.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What constraints, floating frames and cables add to the equations of a scene, and the Jacobian of the whole.
+"""Constraints, floating frames and cables in the equations of a scene, and the Jacobian of the whole.
 
 The balance of a frame is the derivative of the Lagrangian with respect to its pose: −F ℓ for the position, and for the
 quaternion −Tᵀ M with δθ = T δQ, both in units of the frame's EI/ℓ. A quaternion has a length that no mechanics sees:
@@ -196,7 +196,7 @@ class Assembly:
     # Columns of the rods
 
     def _add_constraint_wrench(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
-        """What multipliers do to the residual of their rod, −δᵀ W / (EI/ℓ), and W that turns with its frame."""
+        """Blocks of the multipliers in their rod's residual, −δᵀ W / (EI/ℓ), and of W that turns with its frame."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
         strains = self.unknowns.strain(placed.rod)
@@ -212,7 +212,7 @@ class Assembly:
             blocks.add(strains, deviation, work @ derivative @ self.frame_poses[name].motion)
 
     def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
-        """What the motion of a floating base does to its rod: dead loads turn back, pose-dependent ones change."""
+        """Blocks of a moving base in the residual of its rod: dead loads turn back, pose-dependent ones change."""
         name = FrameName("rod", rod)
         frame_pose = self.frame_poses[name]
         base_R_world = frame_pose.pose.rotation.T
@@ -228,7 +228,7 @@ class Assembly:
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
     def _add_borne_load(self, blocks: BlockMatrix, borne: BorneLoad) -> None:
-        """What the motion of a body does to a rod that is pressed by an obstacle on it."""
+        """Block of the motion of a body in the residual of a rod that is pressed by an obstacle on the body."""
         strains = self.unknowns.strain(borne.rod)
         deviation = self.discrete.deviation(borne.body)
         blocks.add(strains, deviation, borne.residual_with_body @ self.frame_poses[borne.body].motion)
@@ -365,7 +365,7 @@ class Assembly:
     def _passed_on(
         self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
     ) -> tuple[slice, Matrix]:
-        """What the multipliers of a constraint on a carried rod pass on to the rod's base, 6×k, world axes."""
+        """Wrench that the multipliers of a constraint on a carried rod pass on to the rod's base, 6×k, world axes."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
         # The force of the section has its arm about the base: moment + r × force.

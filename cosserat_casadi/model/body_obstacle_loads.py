@@ -78,7 +78,7 @@ class BorneLoad:
         return self._of_body(by_turn, by_shift)
 
     def with_motions(self, frame: FrameName) -> Iterator[tuple[FrameName, Matrix]]:
-        """What this load adds to the derivatives of the wrench on a frame with the motions of frames, 6×6 each.
+        """Derivatives of the load's wrench on a frame with the motions of frames, 6×6 each.
 
         Of the body all of them; of the base of the rod that with the body, for the rod itself passes on the rest.
         """
@@ -126,7 +126,7 @@ class BorneLoad:
         return self._about_body @ turned, self._about_body @ shifted + lever
 
     def _of_body(self, by_turn: Matrix, by_shift: Matrix) -> Matrix:
-        """From derivatives with a turn and a shift of the base, k×3, to those with a motion of the body, k×6."""
+        """Derivatives with a motion of the body, k×6, from derivatives with a turn and a shift of the base, k×3."""
         in_base_axes = ca.horzcat(-by_turn - by_shift @ hat(self._origin), -by_shift)
         return in_base_axes @ self._to_world.T
 

@@ -52,7 +52,7 @@ class Model(ModelFunctions, MotionFunctions):
 
     @property
     def scene(self) -> scenes.Scene:
-        """The scene this is a model of; its parameters have the values of its file, or those that are bound."""
+        """The scene of this model; its parameters have the values of its file, or the values that are bound."""
         if self.parameters.size:
             return self.discrete.nominal.scene
         return self.discrete.scene
@@ -65,7 +65,7 @@ class Model(ModelFunctions, MotionFunctions):
     def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Model:
         """The model with its parameters fixed: its functions take unknowns and inputs alone.
 
-        Unknowns mean what they mean here: they are counted in units of the scene's own numbers.
+        Unknowns keep their meaning: they are counted in units of the scene's numbers.
 
         Args:
             values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
@@ -93,7 +93,7 @@ class Model(ModelFunctions, MotionFunctions):
         return bound
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
-        """The model, without parameters, of a scene that differs in what is held, on the same modes and nodes.
+        """The model, without parameters, of a scene with other constraints, on the same modes and nodes.
 
         Args:
             change: the scene ↦ the other scene, of the same rods.

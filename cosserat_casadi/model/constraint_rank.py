@@ -1,6 +1,6 @@
 """Joints that hold too much or too little, refused before anything is solved.
 
-Those that over-constrain show in the rank of the linearised constraint residuals: docs/theory.md, section 8.
+Over-constraining joints show in the rank of the linearised constraint residuals: docs/theory.md, section 8.
 
 Rods hold a body as far as their strains allow. Where the constraint residuals depend on each other for every
 shape of the rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch,
@@ -45,7 +45,7 @@ def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
         moving: whether bodies may turn freely.
 
     Raises:
-        SceneError: with the first constraint that has nothing of its own to hold, or every body that turns freely.
+        SceneError: with the first constraint that repeats others, or every body that turns freely.
     """
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:

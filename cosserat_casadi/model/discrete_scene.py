@@ -90,7 +90,7 @@ class DiscreteScene:
         layout: its inputs.
         rods: the constant matrices of each rod.
         parameters: the parameters that its expressions are of.
-        scaling: the scene with the numbers that scale the equations; None where these are its own.
+        scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
     """
 
     scene: scenes.Scene
@@ -110,7 +110,7 @@ class DiscreteScene:
 
     @property
     def nominal(self) -> DiscreteScene:
-        """The scene with the numbers that scale the equations: those that its file gives."""
+        """The scene with the numbers that scale the equations: the values of its file."""
         return self if self.scaling is None else self.scaling
 
     @cached_property
@@ -299,7 +299,7 @@ class DiscreteScene:
         return Richer(self, discrete)
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
-        """What forces of contact on a rod, or on a body, are counted in, N."""
+        """Unit of contact forces on a rod, or on a body, N."""
         if not of_body:
             return self.tension_unit(name)
         frame = self.body_frame(name)
@@ -357,14 +357,14 @@ class Richer:
         return last[~self.known]
 
     def joined(self, x: Matrix, missing: Matrix) -> Matrix:
-        """Unknowns of the richer scene from those that the coarse one has and those that it lacks."""
+        """Unknowns of the richer scene from the unknowns of the coarse one and the missing ones."""
         places = np.empty(self.discrete.size, dtype=int)
         places[self.known] = np.arange(self.coarse.size)
         places[~self.known] = self.coarse.size + np.arange(self.missing_size)
         return ca.vertcat(x, missing)[places.tolist()]
 
     def split(self, richer: Matrix) -> tuple[Matrix, Matrix]:
-        """The entries of a vector of the richer scene that the coarse one has, and those that it lacks."""
+        """Entries of a vector of the richer scene, parted into unknowns of the coarse one and missing ones."""
         known = np.flatnonzero(self.known).tolist()
         missing = np.flatnonzero(~self.known).tolist()
         return richer[known], richer[missing]
@@ -378,7 +378,7 @@ class Richer:
             residual: of the richer scene in the missing coordinates, missing×1.
 
         Returns:
-            step of all unknowns of the richer scene, zero for those that are no strains.
+            step of all unknowns of the richer scene, zero for unknowns that are no strains.
         """
         lacking = self.joined(ca.DM(self.coarse.size, 1), residual)
         units = [self._stiffness_unit(name) for name in self.discrete.rods]
@@ -437,7 +437,7 @@ def with_numbers(
 
 
 def with_parameters(nominal: DiscreteScene) -> DiscreteScene:
-    """A scene whose parameters are entries of one symbol, under the scaling and the grids of its own numbers.
+    """A scene whose parameters are entries of one symbol; its file's values decide on the scaling and the grids.
 
     Raises:
         SceneError: a parameter would move a place that elements cannot follow.

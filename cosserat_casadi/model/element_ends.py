@@ -124,7 +124,7 @@ class MovingEnds:
     ends: ca.Function
 
     def faults(self, p: FloatArray) -> Iterator[Problem]:
-        """What is wrong with places that values of the parameters give."""
+        """Problems of the element ends that values of the parameters give."""
         ends = self.ends(p).full()[:, 0]
         if np.all(np.diff(ends) >= NARROWEST):
             return

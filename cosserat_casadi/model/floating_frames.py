@@ -89,7 +89,7 @@ class UnloadedScene:
 
     @cached_property
     def floating_rods(self) -> list[scenes.Rod]:
-        """Rods whose bases float: carried ones, and those that nothing holds."""
+        """Rods whose bases float: rods that others carry, and rods that nothing holds."""
         return [rod for rod in self.scene.rods if self.floating_base(rod.name) is not None]
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What a named function of a model is, and the table of all of them.
+"""Entries of the table of a model's named functions, and the table.
 
 A function is a method of :class:`cosserat_casadi.model.model_functions.ModelFunctions` with one of these decorators.
 The model's members, the manifest, the kernels in C with their headers, and what ``load`` offers follow from the table.
@@ -43,7 +43,7 @@ PARAMETERS = "p"
 
 
 class Owner(Enum):
-    """What there is one function for each of."""
+    """Family of owners of a function: one function exists for each of its members."""
 
     SCENE = "scene"
     ROD = "rod"
@@ -69,7 +69,7 @@ class Output:
 
 @dataclass(frozen=True)
 class Expressions:
-    """What a function is written in.
+    """Discretisation, owner and symbols that the expressions of a function are written in.
 
     Attributes:
         discrete: the scene.
@@ -103,7 +103,7 @@ class Expressions:
 
     @property
     def _motion(self) -> MotionArguments:
-        """Rates of unknowns and inputs; what is no argument is zero for good."""
+        """Rates of unknowns and inputs; a rate that is no argument is zero."""
         unknowns = ca.DM(self.discrete.size, 1)
         inputs = ca.DM(self.discrete.layout.size, 1)
         return MotionArguments(
@@ -129,15 +129,15 @@ class FunctionSpec:
 
     Attributes:
         name: member of the model.
-        owner: what there is one for each of.
+        owner: family of its owners; the table has one function for each member.
         arguments: names of the arguments, without the parameters that a scene names.
-        outputs: what it gives, or a rule that says so for one owner.
+        outputs: names of its results, or a rule that gives them for one owner.
         write: gives the expressions; None where the scene has no such function.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
         header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
-        doc: what it is, in one sentence.
+        doc: the function in one sentence.
     """
 
     name: str
@@ -183,7 +183,7 @@ class FunctionSpec:
         return "v" in self.arguments
 
     def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
-        """What the function of one owner gives."""
+        """Names of the results for one owner."""
         return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs
 
     def function_of(self, model: Any, owner: str = "") -> ca.Function:
@@ -316,8 +316,8 @@ def scene_function(
     """Make a method one named function of the scene.
 
     Args:
-        outputs: what it gives.
-        arguments: names of what it takes.
+        outputs: names of its results.
+        arguments: names of its arguments.
         kernel: name of its kernel in C; empty where it stays in Python.
         header: sentence of the header in C; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
@@ -346,9 +346,9 @@ def owned_functions(
     """Make a method one named function for each rod, actuator or body.
 
     Args:
-        owner: what there is one for each of.
+        owner: family of its owners; each member has one function.
         outputs: what each gives, or a rule that says so for one owner.
-        arguments: names of what it takes.
+        arguments: names of its arguments.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
         header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.

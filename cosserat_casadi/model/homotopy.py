@@ -75,7 +75,7 @@ def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: Lo
     """An equation at a load factor, λ r + (1 − λ)^p s u.
 
     Args:
-        row: r, what is zero in the scene itself, k×1.
+        row: r, the equation of the scene itself, zero in equilibrium, k×1.
         unknown: u, the unknown that a spring of this equation acts on, k×1.
         compliance: p and s.
         load_factor: λ.
@@ -87,7 +87,7 @@ def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: Lo
 
 
 def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
-    """Derivatives of an equation at a load factor, but for those of its own spring."""
+    """Derivatives of an equation at a load factor, without the derivative of its spring."""
     if load_factor is None:
         return columns
     return load_factor * columns

@@ -12,7 +12,7 @@ from cosserat_casadi.model.inputs import InputLayout
 
 
 def limits_of(scene: scenes.Scene) -> Iterator[scenes.Bound]:
-    """What the scene says of the ranges of its inputs, by its bounds and its table of ranges."""
+    """Ranges of inputs in the scene: its bounds and its table of ranges."""
     yield from scene.bounds
     free = scene.input_names()
     for name, pairs in scene.ranges.items():
@@ -31,7 +31,7 @@ def ends_of(pairs: scenes.Pairs) -> tuple[float | tuple[float, ...], float | tup
 
 
 def physical_range(layout: InputLayout) -> tuple[FloatArray, FloatArray]:
-    """Least and largest values of inputs by what they are, shape (layout.size,) each; infinite where there are none."""
+    """Least and largest values of inputs by their physics, shape (layout.size,) each; infinite where there are none."""
     lower, upper = np.empty((2, layout.size))
     for entry, indices in layout:
         lower[indices] = entry.lower
@@ -44,7 +44,7 @@ def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[Float
 
     Args:
         layout: the inputs.
-        bounds: what narrows the ranges that inputs have by what they are.
+        bounds: ranges that narrow the physical ones.
     """
     lower, upper = physical_range(layout)
     for bound in bounds:
@@ -58,7 +58,7 @@ def narrowed(layout: InputLayout, bounds: Iterable[scenes.Bound]) -> tuple[Float
 
 
 def ranges_of_inputs(scene: scenes.Scene, layout: InputLayout) -> tuple[FloatArray, FloatArray]:
-    """Least and largest values of the stacked inputs by what they are and by what the scene says of them.
+    """Least and largest values of the stacked inputs by their physics and by the scene.
 
     Args:
         scene: with the inputs.

@@ -1,4 +1,4 @@
-"""What the loads of a scene do to its rods."""
+"""Loads of a scene on its rods."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class RodBase:
         return self.base_R_world @ vector
 
     def seen_from(self, body: Pose) -> RodBase:
-        """The pose of the base in the axes of a body whose pose in the world is given."""
+        """The pose of the base in the axes of a body, from the pose of the body in the world."""
         world_R_body = body.rotation
         position = world_R_body.T @ (self.position - body.position)
         return RodBase(position, self.base_R_world @ world_R_body)
@@ -70,7 +70,8 @@ class RodLoads:
         inputs: stacked inputs.
         ratio: length of the rod relative to the scene's, where that is free.
         motion: of the rod; None at rest.
-        body_pose: world pose of a body, by name; None where bodies have none, and what they bear is left out.
+        body_pose: world pose of a body, by name; None where bodies have none: loads of obstacles on bodies are then
+            left out.
     """
 
     discrete: DiscreteScene
@@ -82,14 +83,14 @@ class RodLoads:
     body_pose: Callable[[str], Pose] | None = None
 
     def all(self) -> list[RodLoad]:
-        """What all loads do to the rod, in the axes of its base."""
+        """All loads on the rod, in the axes of its base."""
         rod_loads: list[RodLoad] = []
         for load in self.discrete.loads:
             rod_loads += self.of(load)
         return rod_loads
 
     def of(self, load: scenes.LoadRecord) -> list[RodLoad]:
-        """What one load does to the rod: nothing where it does not act there."""
+        """One load on the rod; empty where it does not act there."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
             return []

@@ -180,7 +180,7 @@ class ModelFunctions:
 
     @scene_function(Output("changes"), arguments=CORRECTED, kernel="richer_changes")
     def richer_changes(self, written: Expressions) -> list[Matrix]:
-        """(x, correction, missing, inputs) ↦ changes of what is watched by a correction with modes and intervals added.
+        """(x, correction, missing, inputs) ↦ changes of watched poses and lengths by a correction on the richer model.
 
         Displacements over the length, rotation angles (rad), and lengthenings of cables over the length, one column.
         """
@@ -364,7 +364,7 @@ def resolution_index(written: Expressions) -> Matrix:
 
 
 def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
-    """Generalised force of loads and actuators, and base wrench in world axes, of a rod on its own."""
+    """Generalised force of loads and actuators, and base wrench in world axes, of one rod without the others."""
     rod = written.discrete.rods[written.owner]
     arguments = Arguments(written["q"], written["inputs"])
     rotation = quaternion_to_matrix(written["base_quaternion"])

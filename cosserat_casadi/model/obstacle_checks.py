@@ -38,7 +38,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
 
     Args:
         scene: the scene.
-        what: what is asked of it, such as "a motion".
+        what: the request in words, such as "a motion".
 
     Raises:
         SceneError: the scene has obstacles without a width.

@@ -1,4 +1,4 @@
-"""What a model costs, and what each load adds to it, in scalar operations."""
+"""Cost of a model, and the cost of each of its loads, in scalar operations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operations import Count, count, counts
 
 PriceProgress = Callable[[str, int, int], None]
-"""Takes what is counted, how many counts are done, and how many there are."""
+"""A function that takes the part being counted, the number of counts that are done, and their total."""
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 A cable that winds round a rod, an unloaded curvature or a spread load of high degree put waves into the stress.
 Legendre coefficients of a wave are nil up to about the degree of its frequency, a helix of n turns in an element
-excites those around πn: with fewer modes nothing shows in the last coefficients, however large the error is. What is
-given is therefore projected on polynomials, element by element, and no level below the degree at which its
-coefficients have decayed can be a reference solution (docs/theory.md, section 10).
+excites those around πn: with fewer modes nothing shows in the last coefficients, however large the error is. The data
+are therefore projected on polynomials, element by element, and no level below the degree at which their coefficients
+have decayed can be a reference solution (docs/theory.md, section 10).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
 
 DECAYED = 0.1
-"""Share of the largest coefficient, but for the constant, below which all those are that follow a signal's degree."""
+"""Share of the largest coefficient, but for the constant; all coefficients beyond a signal's degree are below it."""
 
 FAINT = 1e-3
 """Share of the largest coefficient of all below which a coefficient is not part of a signal."""

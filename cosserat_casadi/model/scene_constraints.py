@@ -43,7 +43,8 @@ STILL = Compliance(power=1)
 """A support of a rod that starts in the world yields in proportion."""
 
 ASSEMBLED = Compliance(power=3)
-"""What closes an assembly is stiff early: springs that hold rods that do not fit are far stiffer than the rods."""
+"""Compliance of constraints that close an assembly: springs that hold rods that do not fit have to be stiff early.
+"""
 
 
 SAME_AXIS = 1e-14
@@ -55,7 +56,7 @@ class PlacedConstraint:
     """A constraint of a scene.
 
     Attributes:
-        constraint: what it holds.
+        constraint: its mechanics.
         rod: name of the rod whose section it holds.
         node: node of that section.
         frame: the floating frame on the other side; None for the world.
@@ -296,7 +297,7 @@ def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
 
 
 def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
-    """What a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
+    """Directions that a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """

@@ -3,7 +3,7 @@
 The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
 
     rods          K q + Q_ad = 0, the report's (2.20), under loads and multipliers
-    constraints   what is left to close = 0
+    constraints   their residual = 0
     frames        balance of every floating frame = 0
     cables        length, or slack = 0
 """
@@ -32,7 +32,7 @@ class SceneEquations:
 
     @cached_property
     def assembly(self) -> Assembly:
-        """What floating frames, constraints and cables of given length add."""
+        """Equations of floating frames, constraints and cables of given length."""
         return Assembly(self.system)
 
     @cached_property

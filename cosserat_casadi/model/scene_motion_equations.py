@@ -1,7 +1,7 @@
 """The equations of motion of a scene, F(x, v, a) = 0, and their exact derivatives: docs/theory.md, section 11.
 
 They are the equations of the scene at rest under one more load, the inertia of rods and bodies, and the viscous stress
-of the rods. So the derivative with x at fixed inertia is the Jacobian of statics, and what is added here is small.
+of the rods. So the derivative with x at fixed inertia is the Jacobian of statics, and this module adds little.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class SceneMotionEquations:
         return BlockMatrix(ends)
 
     def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
-        """What inertia of a rod and loads of its motion add to the rows of its strains, and of a base that floats."""
+        """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a base that floats."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
         unit = discrete.rods[rod].energy_unit

@@ -162,7 +162,7 @@ def _hooke(rod: scenes.Rod) -> Field:
 
 
 def shear_modulus(material: scenes.Material) -> Scalar:
-    """G of an isotropic material, E / (2 (1 + ν)) where Poisson's ratio is given."""
+    """G of an isotropic material: its shear modulus, or E / (2 (1 + ν)) from Poisson's ratio."""
     if material.shear_modulus is not None:
         return material.shear_modulus
     assert material.poisson_ratio is not None
@@ -170,11 +170,11 @@ def shear_modulus(material: scenes.Material) -> Scalar:
 
 
 def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
-    """Coefficients of the six strains as given, each constant or linear from base to tip, shape (k, 6).
+    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6).
 
     Args:
         given: coefficients by strain.
-        left_out: value of those that are not given.
+        left_out: value of coefficients that the scene does not give.
     """
     fields = [getattr(given, name) for name in STRAINS]
     linear = [_linear(left_out if field is None else field) for field in fields]
@@ -209,7 +209,7 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
 
 
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
-    """Moments of inertia per length (k, 3): as given, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
+    """Moments of inertia per length (k, 3): the scene's, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
     if rod.rotary_inertia is not None:
         given = as_vector(rod.rotary_inertia)
         if is_symbolic(given):
@@ -239,7 +239,7 @@ def _diameter(rod: scenes.Rod) -> Field | None:
 
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
-    """Diagonal of the Kelvin–Voigt tensor (k, 6): τ H, or coefficients as given."""
+    """Diagonal of the Kelvin–Voigt tensor (k, 6): τ H, or the coefficients of the scene."""
     if rod.damping is None:
         return None
     time = rod.damping.retardation_time

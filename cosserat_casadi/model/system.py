@@ -82,8 +82,8 @@ class System:
     """A scene in given arguments.
 
     Attributes:
-        discrete: what is constant.
-        arguments: what they are written in.
+        discrete: constant matrices of the scene.
+        arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
     """
 
@@ -367,11 +367,11 @@ class System:
         return [scaled(load, self.arguments.load_factor) for load in loads]
 
     def loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
-        """What one load of the scene does to a rod, base frame."""
+        """Wrenches of one load of the scene on a rod, base frame."""
         return self._rod_loads(rod).of(load)
 
     def resting_loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
-        """What one load would do to a rod that rests in this shape, base frame."""
+        """Wrenches of one load on a rod that rests in this shape, base frame."""
         return replace(self._rod_loads(rod), motion=None).of(load)
 
     def _rod_loads(self, rod: str) -> RodLoads:

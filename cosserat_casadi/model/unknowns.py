@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 class BlockKind(Enum):
-    """What a block of unknowns is."""
+    """Kind of a block of unknowns."""
 
     STRAIN = "strain"
     """Strain coordinates of a rod."""

@@ -80,6 +80,6 @@ def parametric_response(written: Expressions) -> Matrix:
 
 
 def _without_noise(values: FloatArray) -> FloatArray:
-    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
+    """Values, zero where they are rounding errors, which differ with the number of threads of a BLAS."""
     largest = float(np.abs(values).max(initial=0.0))
     return np.where(np.abs(values) < NOISE * largest, 0.0, values)

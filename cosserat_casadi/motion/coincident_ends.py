@@ -140,7 +140,7 @@ class MeetingEnds:
         return min(slope for slope, _ in self._rises(touch, x, inputs))
 
     def gone_on(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> MovingContact:
-        """What becomes of a contact that has come to an end of a rod, or leaves it.
+        """The contact that follows a contact which comes to an end of its rod, or leaves the end.
 
         Args:
             touch: the contact, at its place.

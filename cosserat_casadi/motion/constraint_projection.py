@@ -22,12 +22,12 @@ CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
 
 MOST_CORRECTIONS = 4
-"""Corrections, each with a Jacobian of its own."""
+"""Most corrections of a state, each with a new Jacobian."""
 
 
 @dataclass(frozen=True)
 class Closing:
-    """What puts unknowns of a model back on its constraints.
+    """Projection of the unknowns of a model on its constraints.
 
     Attributes:
         model: the model.

@@ -1,4 +1,4 @@
-"""Contacts in force during a stretch of a motion: their unknown forces, and what they add to the equations of motion.
+"""Contacts in force during a stretch of a motion: their unknown forces in the equations of motion.
 
 A contact is a body, or the stretch of a rod about the section where its gap to an obstacle is least. That least gap is
 a function of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
@@ -22,7 +22,7 @@ class MovingContact(NamedTuple):
     """A contact.
 
     Attributes:
-        facing: number of the rod and obstacle among those that may touch.
+        facing: index, in the list of pairs that may touch, of the pair of this rod and this obstacle.
         place: abscissa X of the section that touches, where the contact was last looked at.
         slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along,
             or a body.
@@ -69,7 +69,7 @@ class Followed(NamedTuple):
 
 
 class Follower:
-    """Contacts whose places are found next to those that they had where they were last followed to.
+    """Follows the places of contacts along a motion: each is looked for next to its last place.
 
     Args:
         facings: rods and obstacles that may touch.

@@ -1,4 +1,4 @@
-"""What an obstacle faces, a rod or a body, and the gap between the two with its derivatives.
+"""A rod or a body that an obstacle faces, and the gap between the two with its derivatives.
 
 A gap is that of a point that moves with the unknowns, less what the surface lies outside of it. The least gap over a
 stretch of a rod is a function of the unknowns alone: its gradient is that of the gap at the place where it is least,
@@ -96,7 +96,7 @@ class Facing(ABC):
 
     @cached_property
     def force_unit(self) -> float:
-        """What forces are counted in, N."""
+        """Unit of the contact forces, N."""
         return self.model.discrete.contact_unit(self.owner, of_body=self.of_body)
 
     @cached_property

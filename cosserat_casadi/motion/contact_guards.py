@@ -1,4 +1,4 @@
-"""What has to stay at zero or above while the contacts of a motion do not change: forces, places, bends and gaps."""
+"""Guards of the contacts of a motion: forces, places, bends and gaps that stay at zero or above between two events."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NO_PULL = 1e-6
 
 
 class GuardKind(IntEnum):
-    """What a guard is of: of a contact up to the bend, then of a rod or body and an obstacle.
+    """Quantity of a guard: of a contact up to the bend, then of a pair of a rod or body and an obstacle.
 
     Members are in the order in which the guards stand one after the other, and their values count the blocks.
     """
@@ -50,7 +50,7 @@ class GuardKind(IntEnum):
 
 @dataclass(frozen=True)
 class ContactPhase:
-    """What touches during a stretch of a motion.
+    """The contacts of a stretch of a motion, between two events.
 
     Attributes:
         touches: the contacts.
@@ -58,7 +58,7 @@ class ContactPhase:
         follower: of the contacts.
         floors: least gaps that what does not touch may have, an array for each pair: one for each section of a rod that
             lies, else one.
-        forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
+        forces_from: time before which forces may pull: after an impact stiff parts have to come to rest first, s.
         moment: beginning of the moment in which changes are counted, s.
         changes: changes in it.
     """
@@ -147,7 +147,7 @@ class ContactGuards:
 
 
 def guarded(guard: int | None, count: int, facings: int) -> tuple[GuardKind | None, int]:
-    """What a guard is of, and the number of its contact, or of the rod and obstacle.
+    """Kind of a guard, and the index of its contact, or of its pair of a rod or body and an obstacle.
 
     Args:
         guard: its number; None for none.

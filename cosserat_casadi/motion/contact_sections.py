@@ -173,7 +173,7 @@ class RodFacing(Facing):
         return X
 
     def _level(self, nodes: FloatArray) -> FloatArray:
-        """Gaps at the sections looked at, without the rounding that makes hills of what is flat, shape (k,)."""
+        """Gaps at the watched sections, rounded so that a flat gap has no hills, shape (k,)."""
         return np.round(self.gaps(nodes), LEVEL_DIGITS)
 
     def _downhill(self, gaps: FloatArray, near: float) -> int:

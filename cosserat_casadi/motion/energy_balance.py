@@ -1,4 +1,4 @@
-"""The balance of energy along a motion: what is there, what went in, what was dissipated, and what is left over.
+"""The balance of energy along a motion: stored energy, work put in, dissipation, and the imbalance between them.
 
 Powers are integrated with the quadrature of the steps themselves, so that the balance is as exact as the motion.
 """
@@ -27,7 +27,7 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
     Args:
         history: the motion.
         times: those to tell, reached by the motion, ascending, shape (T,), s.
-        moving: names of the inputs that move: a dead force that changes does work, and has no energy of its own.
+        moving: names of the inputs that move: a dead force that changes does work, and has no potential energy.
     """
     model = history.model
     # Work counts from the start of the motion, which need not be among the times.

@@ -12,7 +12,7 @@ from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 Phases = TypeVar("Phases")
-"""What holds for a while: which cables are taut, or what touches."""
+"""State of the switches for a while: the cables that are taut, or the contacts."""
 
 HeldPhases = TypeVar("HeldPhases", covariant=True)
 """The same, of what only holds and does not take it."""
@@ -65,13 +65,13 @@ class Restart(Generic[HeldPhases]):
 
 
 class Switching(Protocol[Phases]):
-    """What switches between equations of motion that are smooth for a while each."""
+    """Cables or contacts that switch between equations of motion, each of them smooth for a while."""
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
-        """What holds at a state."""
+        """The phases at a state."""
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
-        """The equations that hold with it, and what has to stay at zero or above while they do."""
+        """The equations of motion in these phases, and guards that stay at zero or above while the equations hold."""
 
     def restarted(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float

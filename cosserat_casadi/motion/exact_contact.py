@@ -5,7 +5,7 @@ impact without rebound: impulses along the normals take the speed of approach, a
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
 of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
-where the bend comes to zero it lies down, and is kept out at sections of its own. See docs/contact.md.
+where the bend comes to zero it lies down, and is kept out at further sections. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -74,18 +74,18 @@ class ExactContacts:
 
     @cached_property
     def guards(self) -> ContactGuards:
-        """What has to stay at zero or above while contacts do not change."""
+        """The guards of all phases: quantities that stay at zero or above while contacts do not change."""
         return ContactGuards(self.model.size, self.facings, self.meeting_ends)
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
-        """What touches at a state."""
+        """The contacts at a state."""
         found, laid = self._touching(x, inputs, (), frozenset())
         # What is deeper inside is no contact: its constraint is told to be open.
         touches = tuple(touch if abs(touch.height) <= CLOSE else touch._replace(height=0.0) for touch in found)
         return ContactPhase(touches, laid, Follower(self.facings, touches))
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
-        """The equations, and what has to stay at zero or above while they hold."""
+        """The equations of motion with these contacts, and the guards that stay at zero or above while they hold."""
         guards = self.guards.of(piece, phases)
         if not phases.touches:
             return plain, guards
@@ -124,7 +124,7 @@ class ExactContacts:
         return replace(restart, phases=counted)
 
     def _known(self, phases: ContactPhase, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
-        """What a guard that came to zero makes of contacts that there were.
+        """The contacts after a guard came to zero, from the contacts before.
 
         Args:
             phases: these contacts.
@@ -335,7 +335,7 @@ class _Known:
     """Contacts that there were before an event.
 
     Attributes:
-        held: those that go on, where they are at the event.
+        held: contacts that go on, at their places at the event.
         laid: numbers of the pairs of a rod and an obstacle in which the rod lies from now on.
         left: the one that lifts off, if one does.
         events: of them.

@@ -78,7 +78,7 @@ class Leg:
     Attributes:
         piece: the inputs.
         integration: the steps; beside the unknowns of the model they have the forces of contacts.
-        restart: what has changed where it begins, and what holds in it.
+        restart: the change at the beginning of the leg, and the phases in it.
     """
 
     piece: Piece
@@ -104,7 +104,7 @@ class History:
         model: the model.
         legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
             contact changes.
-        coordinates: those that the steps are in; None for the unknowns of the model.
+        coordinates: coordinates of the steps; None for the unknowns of the model.
     """
 
     model: Model
@@ -138,7 +138,7 @@ class History:
 
     @cached_property
     def statistics(self) -> StepStatistics:
-        """What the steps took."""
+        """Statistics of the steps: numbers, iterations and sizes."""
         sizes = [step.size for _, step in self.steps]
         counts = [leg.integration.statistics for leg in self.legs]
         return StepStatistics(
@@ -209,7 +209,7 @@ class History:
 
     @cached_property
     def contacts(self) -> ContactRecord | None:
-        """What touches, and how hard; None in a scene without exact contact."""
+        """The contacts and their forces; None in a scene without exact contact."""
         if not self.model.scene.touches_exactly:
             return None
         stretches = []

@@ -1,7 +1,7 @@
 """Sections at which a rod that lies on an obstacle is kept out of it.
 
 A rod on polynomials cannot lie flat along a part of an element: its gap is zero at points and ripples between them. It
-is kept out at sections that are close beside the ripples, and what is left between them is looked at in the end.
+is kept out at sections that are close beside the ripples, and the remaining ripples are checked at the end.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
-"""The momentum of what flies free, put right after each step: exact to rounding, not to the order of the steps.
+"""The momentum of free rods and bodies, put right after each step: exact to rounding, not to the order of the steps.
 
-The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no
-method of collocation keeps it. What a step misses is that of a small rigid motion of all rods and bodies together:
-added to the velocities, it leaves the strains, the joints and their rates as they are. What momentum has to become is
-what it was, plus the impulse of the loads by the quadrature of the step, which has the order of the step.
+The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no method
+of collocation keeps it. The error of a step is the momentum of a small rigid motion of all rods and bodies together:
+added to the velocities, that motion leaves the strains, the joints and their rates as they are. The momentum after the
+step is the momentum before it plus the impulse of the loads by the quadrature of the step, which has the order of the
+step.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def _pieces(scene: Scene) -> int:
 
 
 class MomentumKeeper:
-    """What puts the velocities of free rods right after a step.
+    """Corrects the velocities of free rods after a step so that momentum changes by the impulse of the loads alone.
 
     Args:
         model: of what flies free, see :func:`flies_free`.

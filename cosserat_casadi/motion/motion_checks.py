@@ -1,4 +1,4 @@
-"""What cannot be simulated: refused with all that is wrong, before any work is done."""
+"""Scenes that cannot be simulated: refused with all their problems, before any work is done."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def check_movable(model: Model) -> None:
 
 
 def immovable(model: Model) -> list[Problem]:
-    """What keeps a model from having a motion: rods without mass, a rotation without velocities."""
+    """Problems of a model that has no motion: rods without mass, a rotation without velocities."""
     problems = []
     for index, rod in enumerate(model.discrete.rods.values()):
         if rod.properties.linear_density is None:
@@ -53,7 +53,7 @@ def immovable(model: Model) -> list[Problem]:
 
 
 def _without_mass(rod: Rod, index: int) -> Problem:
-    """A rod has no mass: what is missing in its table."""
+    """The problem of a rod without mass: its table lacks a density."""
     what = f"missing: {rod.name!r} has no mass, and a motion needs one"
     if rod.material is None:
         return Problem(f"rods[{index}].linear_density", what, "give the mass per length, kg/m")

@@ -1,9 +1,9 @@
 """Simulate a scene to a tolerance in space and time together: modes and nodes are chosen for the motion.
 
 The motion is computed on one set of modes after the other. The distance of the paths of two of them, and how it falls
-from one to the next, tell what the last one leaves; a strain that does not move keeps one mode, one whose last
-coefficients are not felt keeps what it has. The steps are as exact as the first set of modes asks, and are checked on
-the last. See docs/theory.md, section 11.
+from one to the next, bound the error of the last one; a strain that does not move keeps one mode, and a strain whose
+last coefficients do not tell keeps its number of modes. The steps are as exact as the first set of modes asks, and are
+checked on the last. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class ResolvedMotion:
     Attributes:
         simulator: that computed it.
         history: the motion.
-        paths: what is compared.
+        paths: paths of tips and bodies, which are compared with the paths of the next motion.
         rung: place of the modes on the ladder.
         distance: of the paths from those of the level before; infinite for the first.
     """
@@ -102,7 +102,7 @@ class _Search:
 
     Attributes:
         scene: with the inputs of its motions free.
-        simulation: what is asked for.
+        simulation: the settings of the user.
         start: an equilibrium to start from; None for what the simulation says.
         tell: is told of every step.
         tolerance: of the paths, over the length.

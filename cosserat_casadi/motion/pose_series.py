@@ -37,7 +37,7 @@ class Frames(NamedTuple):
 
 
 class ActuatorStates(NamedTuple):
-    """What an actuator does over T times.
+    """Effort and conjugate of an actuator over T times.
 
     Attributes:
         effort: tension (N) or pressure (Pa), shape (T,).

@@ -19,7 +19,7 @@ WATCHED = 401
 
 @dataclass(frozen=True)
 class Paths:
-    """What two motions are compared by, at T times.
+    """Paths of tips and bodies at T times, by which two motions are compared.
 
     A rod that only twists moves neither its tip nor any point of its axis: its tip's turn about the tangent counts too.
 
@@ -74,8 +74,8 @@ def longest_rod(model: Model) -> float:
 def _watched_arms(body: Body, longest: float) -> list[FloatArray]:
     """Points of a body that are watched, in its axes, m: its origin, and what its inertia would have move.
 
-    These are its centre of mass, and on each axis through it a point at the radius of gyration. What has moments of
-    inertia and no mass has that of LEVER lengths of the longest rod.
+    These are its centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments
+    of inertia and no mass the radius is LEVER lengths of the longest rod.
     """
     arms = [np.zeros(3)]
     centre = np.asarray(body.centre_of_mass, dtype=float)

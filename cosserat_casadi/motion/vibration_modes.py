@@ -48,7 +48,7 @@ MOST_MODES = 48
 """Polynomials per strain from which on no finer level is tried."""
 
 SPARE_NODES = 4
-"""Intervals beyond those that the polynomials and the turn of a rod need: mass is an integral of squares."""
+"""Intervals beyond the number that polynomials and the turn of a rod need: mass is an integral of squares."""
 
 ROUNDING = 1e-13
 """Floor of every estimate."""
@@ -116,7 +116,7 @@ class Mode:
 
     @property
     def words(self) -> str:
-        """What kind of motion it is, for tables."""
+        """Kind of the motion in a word, for tables."""
         if self.eigenvalue == 0.0:
             return "rigid or neutral"
         if self.oscillates:

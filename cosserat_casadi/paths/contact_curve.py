@@ -1,4 +1,4 @@
-"""Rods in one arrangement of contacts: a curve in y = (z, λ), with what is read off a point of it.
+"""Rods in one arrangement of contacts: a curve in y = (z, λ), and the margins and eigenvalues at its points.
 
 z = (x, f, p) are the unknowns of equilibrium/contact/contact_equations.py. The margins along the curve are functions of
 the positions of the nodes, which move with the places of contact: no model is built on the way.
@@ -173,7 +173,7 @@ class Arrangement:
         return self.equations.state.at(places.tolist())
 
     def found(self, z: FloatArray, load_factor: float) -> Found:
-        """A point on elements of its own, for all that is asked of a solution."""
+        """A point of the curve solved on new elements, which answers all questions that a solution answers."""
         return found_at(self.equations, z, self.inputs(load_factor))
 
     def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
@@ -379,5 +379,5 @@ class Arrangement:
 
 
 def _inverse(sizes: FloatArray) -> FloatArray:
-    """What makes rows or columns of these sizes as large as one; those without entries stay as they are."""
+    """Factors that scale rows or columns of these sizes to one; 1 for rows or columns without entries."""
     return np.asarray(1.0 / np.where(sizes > 0.0, sizes, 1.0))

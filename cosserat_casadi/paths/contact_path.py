@@ -169,7 +169,7 @@ class Guard:
 
 @dataclass
 class Travel:
-    """What has been followed so far.
+    """The part of the path that has been followed so far.
 
     Attributes:
         settings: limits.
@@ -229,7 +229,7 @@ class Travel:
         return int(np.sign(self.branch)) * (abs(self.branch) - before)
 
     def _keep(self, traced: Trace) -> None:
-        """Add what was traced of the last arrangement."""
+        """Add the traced part of the last arrangement."""
         number = len(self.arrangements) - 1
         arrangement = self.arrangements[-1]
         begun = len(self.points)
@@ -310,7 +310,7 @@ def follow_contact_path(
         model: of the scene.
         name: the input that grows.
         base: stacked inputs at load factor 0.
-        change: what is added to them at 1.
+        change: their increments at load factor 1.
         branch: as in :func:`cosserat_casadi.follow_path`.
         settings: limits.
         progress: receives the largest factor reached.
@@ -354,7 +354,7 @@ def follow_contact_path(
 
 
 def _record(empty: ContactPath, travel: Travel) -> ContactPath:
-    """What was followed as arrays."""
+    """The followed path as arrays."""
     outcome = travel.outcome or PathOutcome.MAX_STEPS
     numbers = np.array([number for number, _ in travel.points], dtype=np.int64)
     factors = np.array([point.load_factor for _, point in travel.points])

@@ -35,7 +35,7 @@ MOST_PROBES = 40
 
 @dataclass(frozen=True)
 class Transition:
-    """What an arrangement may turn into.
+    """The next arrangement of contacts after a margin has vanished.
 
     Attributes:
         kind: word of the event.
@@ -74,7 +74,7 @@ class ArrangementEntry:
 
 
 def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Transition]:
-    """What an arrangement may turn into where a margin vanishes, the likeliest first.
+    """Transitions to other arrangements where a margin vanishes, the likeliest first.
 
     Args:
         arrangement: the one that ends.
@@ -137,7 +137,7 @@ def _added(state: ContactState, touch: Touch) -> Transition:
 
 
 def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
-    """A contact of another kind, which begins where a margin of its own vanishes."""
+    """A contact of another kind, which begins where one of its margins vanishes."""
     following = ContactState.of([*others, new])
     last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
     grows = Key(watch, _number(following, new), (new.owner, new.obstacle), last)

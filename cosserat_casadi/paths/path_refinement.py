@@ -31,7 +31,7 @@ MODES = (6, 9, 12, 16, 21, 28, 36)
 """Modes per strain component and element, one refinement level after the other."""
 
 SPARE = 2
-"""Intervals beyond those that the modes of an unbent rod need."""
+"""Intervals beyond the number that the modes of an unbent rod need."""
 
 SAMPLES = 12
 """Points of a path whose turn says how many intervals the next refinement level needs."""

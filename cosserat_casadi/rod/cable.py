@@ -215,7 +215,7 @@ class RoutedCable(Lossless):
 
     @property
     def _node_lengths(self) -> FloatArray:
-        """What each node of the routing stands for in sums of what is per reference length, ℓ w, shape (k,), m."""
+        """Reference length of each node of the routing, the weight of densities per such length, ℓ w, (k,), m."""
         return self.shape.rod.reference_lengths[self.routing.nodes]
 
     @property

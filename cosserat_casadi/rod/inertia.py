@@ -39,7 +39,7 @@ def second_moments(rotary_inertia: Numbers) -> Numbers:
 
 @dataclass(frozen=True)
 class SectionMasses:
-    """What moves at each node, for one reference length of rod.
+    """Masses and second moments of the nodes, for one reference length of rod.
 
     Attributes:
         mass: ρA at the nodes, shape (M,), kg/m.

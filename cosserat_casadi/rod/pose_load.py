@@ -1,8 +1,8 @@
 """Wrenches on a rod that depend on the pose of their sections: force, moment and their derivatives at a known shape.
 
-At a known shape such a wrench is a dead one, and the sweeps of statics.py and tangent.py take it as that. What it adds
-to the Jacobian is how it changes with its section: with δr and δθ of the section, f and c vary by the 6×6 derivative of
-the kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
+At a known shape such a wrench is a dead one, and the sweeps of statics.py and tangent.py take it as that. Its change
+with its section is a term of the Jacobian: with δr and δθ of the section, f and c vary by the 6×6 derivative of the
+kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
 """
 
 from __future__ import annotations

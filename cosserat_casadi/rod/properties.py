@@ -1,4 +1,4 @@
-"""What a rod is made of, as numbers or expressions of parameters: the one record that the mechanics reads."""
+"""The unloaded rod as numbers or expressions of parameters: the one record that the mechanics reads."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class RodProperties:
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
-        nominal: the rod with the numbers that scale the equations; None where these are its own.
+        nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
     """
 
     name: str

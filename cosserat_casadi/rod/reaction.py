@@ -1,4 +1,4 @@
-"""What a rod does to its base, and how that changes, for a rod whose base moves.
+"""Wrench of a rod on its base and the derivatives of that wrench, for a rod whose base moves.
 
 A rod is written in the axes of its base. Motions of the base therefore do not appear in its equations, but for loads
 that know the world: when the base turns by δφ, a load of fixed direction turns by −δφ in the axes of the base. Loads

@@ -174,7 +174,7 @@ def motion_kernels(rod: DiscreteRod) -> MotionKernels:
 
 @cache
 def _motion_kernels(intervals: IntervalKernels) -> MotionKernels:
-    """One set of functions for all models: what they share is generated once."""
+    """The functions that all models share, so that they are generated once."""
     return MotionKernels(intervals)
 
 

@@ -61,7 +61,7 @@ class Statics:
 
     @cached_property
     def wrenches(self) -> list[Wrench]:
-        """All wrenches; those that depend on poses as dead ones, with the values that they have at this shape."""
+        """All wrenches; a wrench that depends on poses as a dead one, with its value at this shape."""
         frozen = [load.frozen for load in self.pose_loads]
         return self.fixed_wrenches + frozen
 
@@ -200,7 +200,7 @@ class Statics:
         return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
 
     def _profile_covector(self, profile: Numbers) -> Matrix:
-        """What a unit of a profile adds to n̂, 1×M, m: linear in the profile, and in the rates of moved elements."""
+        """Force n̂ of a unit of a profile, 1×M, m: linear in the profile, and in the rates of moved elements."""
         rod = self.shape.rod
         grid = rod.grid
         rates = grid.rates

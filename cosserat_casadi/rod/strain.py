@@ -6,9 +6,9 @@ A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/
 (ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
 its inverse. An element whose ends are elsewhere than in the grid is drawn out in the same way, by its own rate.
 
-The coordinates q are without unit. Φ carries a strain scale of its own for every component, √(EI/(ℓ² H)), so that
-the stiffness matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8
-is as well conditioned as one with 1e2.
+The coordinates q are without unit. Φ carries one strain scale for each component, √(EI/(ℓ² H)), so that the stiffness
+matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8 is as well
+conditioned as one with 1e2.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ Ratio: TypeAlias = Matrix | None
 
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
-    """What is per length of the rod, per reference length: nothing is added where the length is fixed."""
+    """A density per length of the rod as one per reference length; the same where the length of the rod is fixed."""
     if ratio is None:
         return value
     return value * ratio
@@ -73,7 +73,7 @@ class DiscreteRod:
     Attributes:
         properties: what the rod is made of.
         discretisation: polynomials and grid.
-        ends: abscissae of the element ends, numbers or expressions; None where they are those of the discretisation.
+        ends: abscissae of the element ends, numbers or expressions; None for the ends of the discretisation.
     """
 
     properties: RodProperties
@@ -205,7 +205,7 @@ class DiscreteRod:
 
     @cached_property
     def reference_lengths(self) -> Array:
-        """What each node stands for in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
+        """Length of each node in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
         return np.asarray(self.length * self.grid.weights)
 
     @cached_property

@@ -16,9 +16,9 @@ varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: its t
 as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; where wrenches are spread, or
 columns are formed one by one, all entries are formed.
 
-**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. What they change by passes down
-the rod as they themselves do, and is added to the variation of the moments before the intervals work on it: a column of
-the Jacobian is formed from the tip to the base, and no two columns meet in a product.
+**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. These changes pass down the rod as
+the wrenches do, and are added to the variation of the moments before the intervals work on it: a column of the Jacobian
+is formed from the tip to the base, and no two columns meet in a product.
 
 **What else varies.** Loads that depend on poses vary by the derivative of their kernel, efforts by the curvature of the
 quantity that they work on. Only what a scene's loads need is formed.
@@ -55,7 +55,7 @@ from cosserat_casadi.rod.wrenches import WrenchAt
 
 @dataclass(frozen=True)
 class Columns:
-    """What the Jacobian has a column of for each angular coordinate, and what follows from the turns of that one alone.
+    """Columns of the Jacobian for the angular coordinates, with the variations that follow from the turns of one alone.
 
     Attributes:
         section_rotation: :attr:`Tangent.section_rotation`.
@@ -77,8 +77,8 @@ class Tangent:
     Attributes:
         igm: the rod's balance.
         in_loops: whether it is written for loops: there sums and differences of mirrored rows cost more than they save.
-        turns: turns of the intervals by coordinate, (size·intervals)×k, that take the place of those of the angular
-            coordinates: :attr:`columns` are those of these turns.
+        turns: turns of the intervals by coordinate, (size·intervals)×k, in place of the turns by the angular
+            coordinates; :attr:`columns` then has one column for each of these turns.
         given: columns of all angular coordinates that are known already.
     """
 
@@ -140,7 +140,7 @@ class Tangent:
 
     @cached_property
     def _turns(self) -> Matrix:
-        """Derivative of the stacked turns with respect to what there are columns of."""
+        """Derivative of the stacked turns with respect to the coordinates of the columns."""
         if self.turns is not None:
             return self.turns
         return self.turn_matrix.unfolded
@@ -297,7 +297,7 @@ class Tangent:
         return ca.horzcat(angular, linear)
 
     def _wrenches(self) -> Matrix:
-        """What wrenches add, taken as dead or following ones, n×n; linear strains do not meet each other."""
+        """Stiffness of the wrenches, taken as dead or following ones, n×n; zero between two linear strains."""
         if not self.moments_pass:
             return ca.DM(self.rod.size, self.rod.size)
         # Sections do not turn with linear strains, and neither do the forces that follow them.
@@ -328,7 +328,7 @@ class Tangent:
 
     @property
     def _have_potential(self) -> bool:
-        """Whether all wrenches have a potential once those that depend on poses are taken as dead ones."""
+        """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
         for wrench in self.igm.statics.wrenches:
             if wrench.follower and wrench.force is not None:
                 return False
@@ -425,7 +425,7 @@ class Tangent:
         return self._work_on(component, cross(self.shape.directors[component - 3], covector), self.rotation)
 
     def _following_rows(self, component: int, force: Matrix) -> Matrix:
-        """What forces that follow, which vary by δn̂, add to these rows: −ℓ Φᵀ d·δn̂."""
+        """Rows of following forces, which vary by δn̂: −ℓ Φᵀ d·δn̂."""
         return self._work_on(component, self.shape.directors[component - 3], force)
 
     def _work_on(self, component: int, vectors: Matrix, variation: Matrix) -> Matrix:
@@ -436,7 +436,7 @@ class Tangent:
         return per_coordinate.T @ work
 
     def _pose_stiffness(self) -> Matrix | None:
-        """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
+        """Stiffness of loads that depend on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = []
         for load in self.igm.statics.pose_loads:
             motion = self.motion(load)

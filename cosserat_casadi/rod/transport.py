@@ -171,7 +171,7 @@ def interval_kernels(rod: DiscreteRod) -> IntervalKernels:
 
 @cache
 def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
-    """One set of functions for all models: what they share is generated once."""
+    """The functions that all models share, so that they are generated once."""
     return IntervalKernels(axes, count)
 
 

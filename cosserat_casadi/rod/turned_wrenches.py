@@ -43,7 +43,7 @@ class TurnedWrenches:
 
     @property
     def moments(self) -> list[Matrix]:
-        """What the moments t × n̂ + ĉ on the nodes change by, base frame, 3M×k each, N m."""
+        """Derivatives of the moments t × n̂ + ĉ at the nodes with the turns, base frame, 3M×k each, N m."""
         moments = []
         if self.force is not None:
             moments.append(hat_operator(self.statics.shape.tangent) @ self.force)

@@ -1,4 +1,4 @@
-"""What acts on a rod: the records in which every effect speaks to the mechanics.
+"""Wrenches on a rod: the records in which every effect speaks to the mechanics.
 
 Coordinates are those of the rod's base frame for a dead wrench and those of the loaded section for a follower.
 A part that does not exist is None and costs nothing.
@@ -72,7 +72,7 @@ class PoseWrench:
             body that bears the wrench, 3×1, m.
         base_rotation: rotation from the base into these axes, 3×3.
         parameters: what the kernel depends on at run time, p×1.
-        data: what it depends on at its sections, shape (d, k).
+        data: numbers of the load at its sections, such as values of profiles, shape (d, k).
         scale: factor on force, moment and energy.
         motion: of the rod; None at rest, and for a kernel that does not depend on rates.
         growth: power of the load factor by which it grows on the way from the unloaded scene.

@@ -27,7 +27,7 @@ BEYOND = 0.01
 
 
 def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
-    """What a contact that pulls may be instead."""
+    """Contacts that may take the place of a contact that pulls."""
     if not touch.is_line:
         yield ()
         return
@@ -79,7 +79,7 @@ def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> I
 
 
 def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
-    """What contacts whose places have run into something may be: joined, ended at the tip, or beyond a load.
+    """States after places of contact have run into each other, the tip or a load: joined, ended or beyond it.
 
     Args:
         state: with the places where a solve gave up.

@@ -3,7 +3,7 @@
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
 are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives the same at
 its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
-length is split: the section takes a force of its own and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
+length is split: the section takes a point force and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
 end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
 See docs/contact.md.
 """
@@ -96,7 +96,7 @@ class Placed:
 
     @cached_property
     def force_units(self) -> FloatArray:
-        """What one unit of each force stands for, shape (k,): EI/ℓ² of its rod or body, in N, or EI/ℓ³, in N/m."""
+        """Unit of each force, shape (k,): EI/ℓ² of its rod or body, in N, or EI/ℓ³, in N/m."""
         discrete = self.model.discrete
         units = []
         for load in contact_loads(self.model.scene):
@@ -181,7 +181,7 @@ class Written:
 
     @property
     def arguments(self) -> list[ca.MX]:
-        """What functions of the equations take."""
+        """Arguments of the functions of the equations."""
         return [*self.unknowns, self.given]
 
     @cached_property
@@ -246,7 +246,7 @@ class ContactEquations:
     state: ContactState
 
     def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
-        """The model of the contacts at places that are known, for other inputs of the scene where they are given."""
+        """The model of the contacts at known places, with other inputs of the scene if there are any."""
         modes = self.grids.bending_modes(self.scene)
         loaded = with_contacts(self.scene, state, modes)
         model = build(loaded, self.grids.discretisation(loaded))
@@ -313,7 +313,7 @@ class ContactEquations:
         return [float(end) for touch in state.along(rod) for end in touch.carriers]
 
     def moved_strains(self, p: FloatArray) -> FloatArray:
-        """What the unknowns of elements that stay are multiplied by to be those of elements moved to p, shape (n,).
+        """Factors that take the unknowns of elements at rest to the unknowns of elements moved to p, shape (n,).
 
         Strains of moved elements are counted per length that has moved; all other unknowns keep their values.
         """

@@ -1,9 +1,9 @@
 """Newton's method for rods in contact whose places are sought.
 
 Forces of a short stretch hardly tell on the shape, so that a large error of theirs is a large residual although the
-shape is near its own: the residual is no measure of progress. Full steps are taken instead, from places that are held
-first, with shape and forces in balance there; a step is shortened only where it would squeeze an element. Steps end
-where rounding is all that is left and not at a residual that is given: forces of a short stretch are known worse than
+shape is near the solution: the residual is no measure of progress. Full steps are taken instead, from places that are
+held first, with shape and forces in balance there; a step is shortened only where it would squeeze an element. Steps
+end where they are no larger than rounding, and not at a given residual: forces of a short stretch are known worse than
 the shape by the cube of its length, and whether a force presses or pulls is read from its sign.
 """
 

@@ -1,8 +1,8 @@
-"""From a first guess of the contacts to those that hold: states are tried until one has no fault.
+"""From a first guess of the contacts to contacts that hold: states are tried until one has no fault.
 
-A state is at fault where a force pulls, or a section or a body is inside an obstacle; what is at fault says which
-states to try next. States that were tried are remembered and their number is bounded, so that the search ends; where it
-ends without a state that holds, it says so. See docs/contact.md.
+A state is at fault where a force pulls, or a section or a body is inside an obstacle; the fault says which states to
+try next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends
+without a state that holds, it says so. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Found:
 
     @property
     def largest_force(self) -> float:
-        """What forces are compared with, without unit: EI/ℓ², or the largest at a point."""
+        """Scale of the forces, without unit: EI/ℓ², or the largest force at a point."""
         return max(1.0, float(np.abs(self.forces).max(initial=0.0)))
 
     def pulls(self) -> Iterator[tuple[Touch, float]]:
@@ -292,7 +292,7 @@ def _alike(first: ContactState, second: ContactState) -> bool:
 
 @dataclass(frozen=True)
 class Replacement:
-    """What may be in place of a contact that is at fault.
+    """States of one contact that may replace a contact that is at fault.
 
     Attributes:
         touch: the contact; None where a stretch is inside an obstacle that no contact is at.
@@ -346,7 +346,7 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
 
 
 def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
-    """What a contact that pulls may be instead, a line that is lifted in its middle first two."""
+    """Contacts that may take the place of one that pulls; of a line that is lifted in its middle first two."""
     if touch.is_line:
         lifted = found.weakest(touch)
         reach = OPENING * min(lifted - touch.start, touch.end - lifted)
@@ -358,7 +358,7 @@ def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
 
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
-    """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
+    """Contacts that hold a stretch outside of an obstacle, alone or in place of the contact beside it."""
     if penetrated.of_body:
         yield (Touch.ball(penetrated.obstacle, penetrated.owner),)
         return

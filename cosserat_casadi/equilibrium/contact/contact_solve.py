@@ -87,7 +87,7 @@ def solve_contact(
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
-    """What the contacts look like on cushions, those that hold rods at the surface first, each with the shape there."""
+    """Contacts read off the cushions, each with the shape there; contacts that hold rods at the surface come first."""
     rough = (first, cushioned)
     sharp = sharpened(cushioned)
     if sharp is None:

@@ -81,7 +81,7 @@ class Touch:
 
     @property
     def moving(self) -> tuple[Place, ...]:
-        """Those of its ends that are sought."""
+        """The ends whose places are unknowns."""
         return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
 
     @property
@@ -186,7 +186,7 @@ class ContactState:
 
     @property
     def signature(self) -> tuple[tuple[str, str, str, bool, bool], ...]:
-        """What of the state is discrete: two states with the same differ in their places alone."""
+        """The discrete part of the state: two states with the same signature differ in their places alone."""
         return tuple(
             (touch.owner, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
         )
@@ -351,5 +351,5 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 
 def _order(touch: Touch) -> tuple[bool, str, Place, str]:
-    """What contacts are sorted by."""
+    """Key by which contacts are sorted."""
     return touch.of_body, touch.owner, touch.start, touch.obstacle

@@ -36,7 +36,7 @@ class Barriers:
 
     @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
-        """Rods with what they must not pass through; a rod that begins inside is pushed out to either side."""
+        """Rods with obstacles that they must not pass through; a rod that begins inside is pushed out to any side."""
         unloaded = self._shape(self.model.unloaded())
         return [
             (rod, obstacle)
@@ -46,7 +46,7 @@ class Barriers:
 
     @cached_property
     def watched_bodies(self) -> list[tuple[scenes.Body, scenes.ObstacleRecord]]:
-        """Bodies with what they must not pass through."""
+        """Pairs of a body and an obstacle that it must not pass through."""
         unloaded = self._shape(self.model.unloaded())
         return [
             (body, obstacle)
@@ -71,7 +71,7 @@ class Barriers:
         return False
 
     def give_way(self, x: FloatArray) -> bool:
-        """Whether a rod or a body has sunk into one by more than half of what is admitted."""
+        """Whether a rod or a body has sunk into an obstacle by more than half of the depth that is admitted."""
         shape = self._shape(x)
         rods_sink = any(
             gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2

@@ -34,7 +34,7 @@ Values = Mapping[str, npt.ArrayLike] | None
 """Inputs by name."""
 
 ELEMENTS = 10
-"""Elements of every rod, beside those that its loads ask for: pressure is not smooth."""
+"""Elements of every rod, beside the elements that its loads ask for: pressure is not smooth."""
 
 MODES = 3
 NODES = 6
@@ -171,7 +171,7 @@ def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetrat
 
 
 def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
-    """Length of a rod over the radius of a bar or ball that it must not enter; 0 for what has no other side."""
+    """Length of a rod over the radius of a bar or ball that it must not enter; 0 for other obstacles."""
     if not obstacle.concerns(rod.name):
         return 0.0
     return 2 * rod.length / obstacle.thickness

@@ -1,4 +1,4 @@
-"""What known contacts ask of gaps, as expressions: no gap where rods and bodies touch, no slope where contact moves.
+"""Equations of known contacts: no gap where rods and bodies touch, no slope of the gap where contact moves.
 
 Along a line they are the moments of the gap with the polynomials of its force. See docs/contact.md.
 """
@@ -27,7 +27,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 
 
 def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
-    """What the contacts ask to be zero, without unit: for each, the rows of its sections, then the moments along it."""
+    """Residuals of the contacts, without unit: for each contact the rows of its sections, then the moments along it."""
     rows: list[Matrix] = [ca.MX(0, 1)]
     for touch in state.touches:
         if touch.of_body:

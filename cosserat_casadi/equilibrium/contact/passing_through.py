@@ -69,7 +69,7 @@ class LookedAt:
 
     @cached_property
     def _interpolation(self) -> FloatArray:
-        """What takes values at the nodes to the sections, shape (k, nodes)."""
+        """Matrix from values at the nodes to values at the sections, shape (k, nodes)."""
         return self.model.discrete.rods[self.rod].grid.interpolation_matrix(SECTIONS)
 
 
@@ -146,7 +146,7 @@ def _shares(way: float, length: float) -> FloatArray:
 
     Args:
         way: its length, m.
-        length: what it is relative to, m.
+        length: length of the rod or body that the way is relative to, m.
     """
     looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
     return np.linspace(0.0, 1.0, looks + 2)[1:-1]
