@@ -33,15 +33,15 @@ Progress = Callable[[int, int], None]
 """Told how many of how many rows are settled."""
 
 Targets = tuple[scenes.Target, ...]
-"""What is to be where at once."""
+"""Targets that are to be met at once."""
 
 
 def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report | None = None) -> Inverse:
     """Inputs for which a scene meets its targets, with modes and nodes that meet its tolerance there.
 
-    The equilibrium at the inputs found is solved with more modes too. Where that moves the poses by more than half of
-    the tolerance, the search goes on with those. Where the scene fixes modes or nodes, the error is only estimated:
-    targets count as met where the gap and this estimate are both within the tolerance.
+    The equilibrium at these inputs is solved with more modes too. Where that moves the poses by more than half of the
+        tolerance, the search goes on with those modes. Where the scene fixes modes or nodes, the error is only
+        estimated: targets count as met where the target error and this estimate are both within the tolerance.
 
     Args:
         scene: a validated scene with targets.

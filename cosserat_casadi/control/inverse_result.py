@@ -1,4 +1,4 @@
-"""What an inverse problem ends with, and its verdict: whether the targets are met, in words too."""
+"""The end of an inverse problem, and its verdict: whether the targets are met, in words too."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Inverse:
 
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
-        targets: what was to be where: those of the scene, or of a row of a table.
+        targets: targets of the scene, or of a row of a table.
         gaps: how far each target is missed, in their order.
         met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
             estimated the error of the model too; where a stable one was wanted, whether it is that as well.

@@ -35,7 +35,7 @@ def weighted_errors(
 
     Args:
         model: the model.
-        targets: what is to be where; their positions and orientations are not read, but for the points of curves.
+        targets: the targets; their positions and orientations are not read, but for the points of curves.
         wanted: these, as in :func:`wanted_poses`.
         x: unknowns.
         inputs: stacked inputs.

@@ -1,4 +1,4 @@
-"""Kinds of targets: what is to be where, how far a state is from it, and how a figure marks it."""
+"""Kinds of targets: poses and positions to reach, the errors of a state, and their marks in figures."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ class _OfFrame(Target[FrameType]):
         return list(outputs[:2])
 
     def _reached(self, target: Any, solution: Solution) -> tuple[str, FloatArray, FloatArray]:
-        """What the target is for in words, with its position, shape (3,), and quaternion, shape (1, 4)."""
+        """Name of the section or body of the target, its position, shape (3,), and its quaternion, shape (1, 4)."""
         if target.rod is None:
             what = f"body {target.body}"
             pose = solution.body(target.body)

@@ -1,4 +1,4 @@
-"""Estimates: what a robot feels in every row of a table, from what its sensors say, with what they leave open.
+"""Estimates: loads and places on a robot in every row of a table, from its sensors, and directions that none sees.
 
 cases ─ stacking ─▶ arrays ─ codegen/estimator ─▶ maxima a posteriori ─ knowledge ─▶ Estimate
 """

@@ -1,4 +1,4 @@
-"""The end of an estimate: what was found in each row, how well it is known, and what no sensor sees."""
+"""The end of an estimate: the estimates of each row, how well they are known, and directions that no sensor sees."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ NOT_DETERMINED = "not_determined"
 
 @dataclass(frozen=True)
 class Estimate:
-    """What was found in every case.
+    """Estimates of every case.
 
     Attributes:
-        model: what it was found with.
+        model: the model of the estimates.
         cases: first row of each in words.
         labels: names of the unknown numbers.
         units: of these.
         outcomes: how each case ended: ``found``, or why not, see :data:`REASONS`.
         values: the maxima a posteriori, shape (cases, k); NaN where nothing was found.
-        covariance: shape (cases, k, k); likewise; what is not known of the shared numbers is in it. By draws it holds
-            the mean products of deviations from the values.
+        covariance: shape (cases, k, k); likewise; the uncertainty of the shared numbers is in it. By draws it holds the
+            mean products of deviations from the values.
         cost: half the sum of squares in squared standard deviations, shape (cases,).
         numbers: how many were measured in each case, shape (cases,).
         x: the equilibria, shape (cases, size).
@@ -142,7 +142,7 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Known:
-    """What data and priors say of rows of estimates.
+    """Information of data and priors on rows of estimates.
 
     Attributes:
         covariance: shape (cases, k, k); NaN where not determined.

@@ -1,4 +1,4 @@
-"""Identification: numbers of a scene from what was measured, with what the data say of them and what not.
+"""Identification: numbers of a scene from measurements, with the statistics of how well the data determine them.
 
 table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ statistics ─▶ Identification
 """

@@ -21,7 +21,7 @@ from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 
 STEPS = 12
-"""Newton steps of all cases together, beyond which those that have not converged are followed one by one."""
+"""Newton steps of all cases together; cases that have not converged by then are followed one by one."""
 
 CONTRACTION = 0.05
 """Share of the residual that a step with an earlier Jacobian may leave; else the next one has a new Jacobian."""

@@ -54,7 +54,7 @@ class StartInputs:
             if motion.is_table:
                 self.held[model.inputs.slices[motion.input]] = False
         self.added = MovingInputs(model.inputs, motions, np.zeros(model.inputs.size)).at(0.0).value
-        """What motions add to them, shape (inputs,)."""
+        """Values that motions add to the inputs, shape (inputs,)."""
 
     def of(self, inputs: FloatArray, moves: Flags) -> FloatArray:
         """Inputs of all cases where their motions start, shape (cases, inputs).
@@ -158,7 +158,7 @@ class Motions:
         return Run(times, path, inputs_over_time, history, p)
 
     def suggest_size(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> None:
-        """Begin with steps of the mean length of those that a motion takes to a coarse tolerance of its own."""
+        """Begin with the mean step of a motion that is integrated to a coarse tolerance."""
         end = float(self.times[case][-1])
         if end == 0.0:
             return
@@ -280,7 +280,7 @@ class _StageResponse:
     direct: FloatArray
 
     def of(self, position: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Those with m numbers that the start depends on, shape (s, n, m)."""
+        """Outputs at states with m numbers that the start depends on, shape (s, n, m)."""
         return np.asarray(self.by_position @ position + self.by_velocity @ velocity + self.direct)
 
 

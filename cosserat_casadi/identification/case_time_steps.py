@@ -1,4 +1,4 @@
-"""How long the steps of measured motions may be: their error counts in standard deviations of what was measured."""
+"""Lengths of the steps of measured motions: their error counts in standard deviations of the measurements."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ def error_of_steps(misfit: Misfit, state: MisfitState) -> float:
 
 
 def with_steps(misfit: Misfit, state: MisfitState) -> MisfitState:
-    """The state with steps that are short enough; those that the scene gives are kept to.
+    """The state with steps that are short enough; steps that the scene prescribes are kept.
 
     Args:
         misfit: its steps are shortened.
-        state: with those that it has.
+        state: with its present steps.
     """
     if not misfit.motions.times or given_steps(misfit.model):
         return state

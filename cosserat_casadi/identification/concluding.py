@@ -1,4 +1,4 @@
-"""From the end of a search to what is said of it."""
+"""From the end of a search to its statistics, remarks and warnings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Ending:
 
     Attributes:
         model: that was fitted.
-        layout: what was unknown.
+        layout: the unknowns.
         left_out: cases that took no part.
         unstable: cases whose equilibrium is unstable.
         unresolved: cases that the nodes do not resolve.
@@ -149,7 +149,7 @@ class Ending:
         return "converged", f"Found: {unknowns} from {numbers}."
 
     def _remarks(self, found: Identification) -> list[str]:
-        """What a user must know of what was found."""
+        """Remarks on the fit, for the user."""
         remarks = []
         rms = found.rms()
         if rms is not None and rms > POOR:
@@ -173,7 +173,7 @@ class Ending:
         return remarks
 
     def _on_own_unknowns(self, found: Identification) -> list[str]:
-        """Unknowns of single cases that their data leave open, and what they mean for cases that were held out."""
+        """Remarks on unknowns of single cases: what their data leave open, and what that means for held-out cases."""
         remarks = []
         for label, deviations in zip(self.layout.own_labels, found.statistics.own.T, strict=True):
             open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]

@@ -46,7 +46,7 @@ class DataFile:
         return [Problem(self.source, f"has no column {name!r}", remedy) for name in absent]
 
     def numbers(self, name: str, rows: Sequence[int]) -> tuple[FloatArray, list[Problem]]:
-        """The numbers of a column in some rows, NaN where nothing was measured, and what is wrong with the others."""
+        """The numbers of a column in some rows, NaN where nothing was measured, and the problems of other cells."""
         values = np.full(len(rows), np.nan)
         problems = []
         for i, row in enumerate(rows):

@@ -1,4 +1,4 @@
-"""Modes and nodes that serve what was measured: equilibria, vibrations and motions."""
+"""Modes and nodes that serve the measurements: of equilibria, vibrations and motions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SAMPLES = 4
 """Cases that a discretisation is chosen on."""
 
 SHARE_OF_SIGMA = 0.1
-"""Error of the model, in standard deviations of what was measured, that is small enough."""
+"""Error of the model, in standard deviations of the measurements, that is small enough."""
 
 LOOSEST = 1e-3
 """Tolerance of equilibria, as `accuracy.tolerance`, above which none is taken: a sigma may be a guess."""
@@ -37,7 +37,7 @@ LEAST = 1e-6
 
 @dataclass(frozen=True)
 class FitDiscretisation:
-    """A scene on modes and nodes that were chosen, and what is to be said of them.
+    """A scene on modes and nodes that were chosen, and warnings about them.
 
     Attributes:
         scene: with fixed modes and nodes, unless no case has an equilibrium to choose them on.
@@ -54,7 +54,7 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
     Args:
         scene: with all that is unknown or set by columns free.
         draft: a model of it.
-        cases: what was measured.
+        cases: the measured cases.
         report: told the stage.
     """
     if scene.accuracy.fixed:
@@ -132,7 +132,7 @@ def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray, repor
 
 
 def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:
-    """What was measured of vibrations in a case."""
+    """Measurements of vibrations in a case."""
     data: list[Datum] = []
     for number, rows in case.data.items():
         if isinstance(scene.measurements[number], ModeMeasurement):
@@ -141,7 +141,7 @@ def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:
 
 
 def _moving_scene(scene: scenes.Scene, draft: Model, case: Case) -> scenes.Scene:
-    """The scene with the inputs of a case, and with a tolerance of its motion that serves what was measured."""
+    """The scene with the inputs of a case, and with a tolerance of its motion that serves the measurements."""
     given = draft.inputs.unpack(case.inputs)
     moved = {motion.input for motion in scene.motions if motion.is_table}
     changed = with_inputs(scene, {name: value for name, value in given.items() if name not in moved})

@@ -1,4 +1,4 @@
-"""One identification: equilibria and motions at the start, searches, what was found, and what it leaves."""
+"""One identification: equilibria and motions at the start, searches, their end, and the statistics there."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ NOT_MOVING = "The steps of its motion cannot be solved there."
 """Why a motion takes no part."""
 
 MOST_RETRIES = 3
-"""Times that cases which took no part are tried again at what was found."""
+"""Times that cases without an equilibrium or motion are tried again, at the fitted numbers."""
 
 MOST_SHORTENINGS = 3
 """Times that the search is made again with half the step."""
@@ -77,7 +77,7 @@ class _Started:
     """Cases at unknowns to begin with.
 
     Attributes:
-        misfit: of those that take part.
+        misfit: of the cases that take part.
         state: there.
         missing: the others.
     """
@@ -93,11 +93,11 @@ class Task:
 
     Attributes:
         model: with the unknowns.
-        layout: what is unknown.
+        layout: the unknowns.
         loss: what residuals cost.
         options: of the scene.
         starts: places from which the search begins.
-        report: told what is being done.
+        report: called with the work under way.
         progress: told the steps of the search.
     """
 
@@ -141,7 +141,7 @@ class Task:
         return ending.with_steps(found, misfit.motions.size, step_error)
 
     def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, list[_Missing]]:
-        """The misfit of the cases that have an equilibrium or a motion at the start, and those that have none."""
+        """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
         _, own = self.layout.start(len(cases))
         moves = moving(cases)
         unloaded = moves & self._starts_unloaded
@@ -182,7 +182,7 @@ class Task:
     def _of_finite(
         self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: list[_Missing]
     ) -> tuple[_Started | None, list[_Missing]]:
-        """The misfit of those cases whose residuals are numbers, and the others with those that are missing already."""
+        """The misfit of the cases whose residuals are finite, and the other cases, with those missing before."""
         misfit = self._misfit(cases)
         state = with_steps(misfit, misfit.first(point, shared, own))
         spoilt = set(misfit.row_cases[~np.isfinite(state.residual)].tolist())
@@ -209,7 +209,7 @@ class Task:
         return simulation is not None and simulation.start == "unloaded"
 
     def _with_others(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState]]:
-        """The search made again with cases that had no equilibrium at the start, and have one at what was found."""
+        """The search again, with cases that had no equilibrium at the start and have one at the fitted numbers."""
         for _ in range(MOST_RETRIES):
             if not started.missing:
                 break
@@ -235,7 +235,7 @@ class Task:
         return started, fit
 
     def _with_short_steps(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState], float]:
-        """The search made again with shorter steps, where those of the start are too long for what was found."""
+        """The search again with shorter steps, where the steps of the start are too long at the fitted numbers."""
         misfit = started.misfit
         error = error_of_steps(misfit, fit.state)
         for _ in range(MOST_SHORTENINGS):
@@ -299,7 +299,7 @@ class Task:
         return points
 
     def _statistics(self, arrow: ArrowStep, fit: Fit[MisfitState], misfit: Misfit) -> Statistics:
-        """What the data say at the optimum."""
+        """Statistics of the unknowns at the optimum."""
         n, k = arrow.sizes
         unknowns = n + k * len(misfit.cases)
         priors = np.count_nonzero(self.layout.shared_limits.weight)
@@ -325,7 +325,7 @@ class Task:
     def _predicted(
         self, cases: Sequence[Case], fit: Fit[MisfitState], left_out: list[LeftOut]
     ) -> tuple[Misfit, MisfitState] | None:
-        """Cases that were held out, at what was found; unknowns of single cases are found from their own data."""
+        """Held-out cases at the fitted numbers; unknowns of single cases are fitted to the cases' data."""
         if not cases:
             return None
         started, failed = self._first(cases, fit.shared)

@@ -1,4 +1,4 @@
-"""What is to be found, as two vectors: unknowns that all cases share, and those of each case.
+"""Unknowns of an identification as two vectors: unknowns that all cases share, and unknowns of each case.
 
 An unknown is one number or several. The quaternion of a base is three: the rotation vector, world axes, from the
 scene's value. All others are the numbers of the scene themselves.
@@ -62,7 +62,7 @@ class UnknownEntry:
         return len(self.labels)
 
     def values(self, found: FloatArray) -> FloatArray:
-        """What stands in the scene, shape (entries,), for the numbers that are found, shape (n,)."""
+        """Values in the scene, shape (entries,), from the numbers of the search, shape (n,)."""
         if not self.turns:
             return found
         return _product_matrix(self.start) @ _quaternion(found)
@@ -109,7 +109,7 @@ class UnknownLayout:
     """All unknowns of a scene.
 
     Attributes:
-        shared: those that all cases share.
+        shared: unknowns that all cases share.
         own: those of each case.
         p: the scene's parameters, shape (size of the parameters,).
     """

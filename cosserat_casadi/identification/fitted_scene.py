@@ -19,13 +19,13 @@ from cosserat_casadi.scene.writing import scene_tables
 
 
 def with_found(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
-    """A scene with what was found for its parameters and for the inputs that all cases share.
+    """A scene with the identified values of its parameters and of the inputs that all cases share.
 
     Args:
         scene: the scene whose unknowns they are, with or without its own inputs and parameters.
         model: that was fitted.
-        layout: what was unknown.
-        shared: what was found, shape (n,).
+        layout: the unknowns.
+        shared: their identified values, shape (n,).
 
     Raises:
         SceneError: the scene refuses a number.
@@ -47,7 +47,7 @@ def with_found(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared:
 
 
 def with_inputs(scene: scenes.Scene, values: Mapping[str, FloatArray]) -> scenes.Scene:
-    """A scene with values for some of its inputs, which are then its own.
+    """A scene with other values for some of its inputs.
 
     Args:
         scene: the scene.

@@ -1,4 +1,4 @@
-"""The end of an identification: what was found, how well it is known, and what it leaves of the data."""
+"""The end of an identification: the identified numbers, how well they are known, and the misfit that remains."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EARLY = ("stalled", "max_iterations")
 """Outcomes of searches that ended before the misfit was least."""
 
 NORMAL_MEDIAN = 0.6744897501960817
-"""Median of the size of what is normally distributed, in standard deviations."""
+"""Median size of a normally distributed number, in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class MarkerDistances:
     Attributes:
         measurement: number of its measurement.
         at: abscissa X of its section; None of a marker on a body.
-        rows: how many rows, those that were held out left aside.
+        rows: number of rows, without the held-out ones.
         rms: root mean square of the distances, m.
         largest: of the distances, m.
         mean: mean of model less measurement, world axes, shape (3,), m: what an offset of the marker would mend.
@@ -98,10 +98,10 @@ class Identification:
 
     Attributes:
         model: that was fitted, with its parameters.
-        layout: what was unknown.
+        layout: the unknowns.
         shared: numbers found that all cases share, shape (n,), in the order of ``layout.shared_labels``.
         own: those of each case, shape (cases, k).
-        statistics: what is known of them.
+        statistics: how well the shared unknowns are known.
         converged: whether they are the least misfit and determined by data and priors.
         outcome: how it ended, in a word.
         message: in sentences.
@@ -223,7 +223,7 @@ class Identification:
         return self.outcome in EARLY
 
     def fitted_scene(self, scene: Scene | None = None, *, early: bool = False) -> Scene:
-        """The scene with what was found for its numbers; unknowns of single cases stay as they are.
+        """The scene with its identified numbers; unknowns of single cases keep the scene's values.
 
         Args:
             scene: the scene that was identified; by default that of the model, with its inputs and parameters.

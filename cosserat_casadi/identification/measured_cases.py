@@ -1,8 +1,8 @@
-"""From tables to cases: what was measured in each equilibrium, or in each motion.
+"""From tables to cases: the measurements of each equilibrium, or of each motion.
 
-A case is one equilibrium. Rows of one file are cases of their own; measurements of the same file share them. Rows
-whose inputs are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column
-``case`` joins rows, of several files too. Rows with times are of a motion: those with equal inputs are one.
+A case is one equilibrium. Each row of one file is a case; measurements of the same file share them. Rows whose inputs
+are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column ``case`` joins
+rows, of several files too. Rows with times belong to a motion: rows with equal inputs are one.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ class Datum:
 
 @dataclass
 class Case:
-    """What was measured in one equilibrium, or in one motion.
+    """The measurements of one equilibrium, or of one motion.
 
     Attributes:
         where: its first row in words.
-        inputs: stacked inputs, shape (size of the inputs,); those that are unknown have the scene's values.
+        inputs: stacked inputs, shape (size of the inputs,); unknown ones have the scene's values.
         moves: whether it is a motion.
         data: rows by the number of their measurement.
         held_out: whether a row says that the case is to be predicted and not fitted.
@@ -79,7 +79,7 @@ class _Row:
         place: its table and its line there: what measurements of one file share.
         label: its cell in the column that joins rows to cases; None without one.
         set_inputs: values by index in the stacked inputs.
-        datum: what was measured; None where it only says what the row is under.
+        datum: the measurement; None where the row only holds the conditions of others.
         moves: whether it is a row of a motion.
         held_out: whether it says that its case is held out.
     """
@@ -120,7 +120,7 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
 
 
 def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile], list[Problem]]:
-    """The table of each measurement by its number, and what is wrong with others."""
+    """The table of each measurement by its number, and the problems of other names and files."""
     given = dict(data or {})
     names = [name for measurement in scene.measurements for name in (measurement.title, measurement.file)]
     problems = [Problem(name, "is no measurement of this scene") for name in given if name not in names]
@@ -150,7 +150,7 @@ class _Reader:
         table: its rows.
         layout: inputs of the model.
         duration: time that is simulated, s.
-        problems: what was wrong.
+        problems: problems of its rows.
     """
 
     number: int
@@ -161,7 +161,7 @@ class _Reader:
     problems: list[Problem] = field(default_factory=list)
 
     def rows(self) -> list[_Row]:
-        """The rows that are read: also those in which nothing was measured say what they are under."""
+        """The rows of the measurement; a row without a number still holds conditions of its case."""
         measurement, table = self.measurement, self.table
         columns = [column for column in measurement.columns if column]
         columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
@@ -341,7 +341,7 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
 
 
 def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayout, per_row: bool) -> Hashable:
-    """What rows of one case have in common."""
+    """Key that the rows of one case have in common."""
     if row.label is not None:
         return "case", row.label, row.moves
     if per_row and not row.moves:

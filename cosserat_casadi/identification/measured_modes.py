@@ -2,7 +2,7 @@
 
 A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z where the
 vectors are scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). Of r modes with one
-λ, such as the two bendings of a round rod, none has a derivative of its own. Their mean has one: the trace, over r, of
+λ, such as the two bendings of a round rod, none has a derivative. Their mean has one: the trace, over r, of
 the r×r matrix of these numbers. It is what all of them are compared with.
 """
 
@@ -42,7 +42,7 @@ class ModeCluster:
 
     Attributes:
         value: λ, the mean of theirs, 1/s.
-        first: number of the first of them among those that swing, from 1 on.
+        first: index of the first of them among the oscillating modes, from 1 on.
         right: their vectors z in all unknowns, one a column, shape (size, r).
         left: vectors l of the same size, one a row, with l (2λ M + C) z = 1, shape (r, size).
     """
@@ -59,7 +59,7 @@ class ModeCluster:
 
     @property
     def numbers(self) -> range:
-        """Their numbers among those that swing, from 1 on."""
+        """Their indices among the oscillating modes, from 1 on."""
         return range(self.first, self.first + self.count)
 
 
@@ -77,13 +77,13 @@ class Vibrations:
     def clusters(
         self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]
     ) -> dict[int, ModeCluster]:
-        """The modes of some numbers, each with those that have its eigenvalue; what does not swing is left out.
+        """The modes of some indices, each with all modes of its eigenvalue; modes that do not oscillate are left out.
 
         Args:
             x: unknowns of an equilibrium, shape (size,).
             inputs: stacked inputs.
             p: stacked parameters.
-            numbers: of modes among those that swing, from 1 on.
+            numbers: indices among the oscillating modes, from 1 on.
 
         Returns:
             clusters by the numbers of their modes.
@@ -217,7 +217,7 @@ class MeasuredModes:
         cases: the cases that have such rows, shape (count,).
         data: these rows, in the order of the residuals, each with the number of its entry.
         row_cases: the case of each.
-        places: where its case stands among those that have rows, shape (rows,).
+        places: positions of their cases among the cases that have rows, shape (rows,).
         sigma: standard deviation of each entry.
     """
 
@@ -294,7 +294,7 @@ class MeasuredModes:
 
 
 def check_vibrations(model: Model) -> None:
-    """Refuse vibrations of what has no mass.
+    """Refuse measured vibrations of rods without mass.
 
     Raises:
         SceneError: a measurement of them is of a scene in which a rod has none.

@@ -1,4 +1,4 @@
-"""Measured quantities as expressions of the model: how far the model is from what was measured.
+"""Measured quantities as expressions of the model: the difference between model and measurement.
 
 A quantity is one class: it gives :meth:`MeasuredQuantity.difference`, or of a vibration its value over the eigenvalue.
 """
@@ -46,13 +46,13 @@ RecordType = TypeVar("RecordType", bound=MeasurementRecord)
 
 @dataclass(frozen=True)
 class MeasurementSite:
-    """What an expression of a quantity is written in.
+    """System, record and measurement that the expression of a quantity is written in.
 
     Attributes:
         system: the equations in their symbols.
         record: the measurement.
         at: abscissae of the sections, 1×k.
-        measured: what was measured, a column for each section, entries×k.
+        measured: the measurement, a column for each section, entries×k.
     """
 
     system: System
@@ -74,7 +74,7 @@ class MeasurementSite:
     def poses(self) -> ca.MX:
         """A symbol for position and unit quaternion at each section or of the body, 7×k: what a quantity is written in.
 
-        :meth:`placed` says what it stands for, and its derivative; a quantity is differentiated with the symbol.
+        :meth:`placed` gives its value and its derivative; a quantity is differentiated with the symbol.
         """
         return ca.MX.sym("poses", 7, self.sections)
 
@@ -91,7 +91,7 @@ class MeasurementSite:
         return markers
 
     def placed(self) -> tuple[Matrix, Matrix]:
-        """What :attr:`poses` stands for, 7×k, and its derivative with the unknowns, 7k×size."""
+        """Value of :attr:`poses`, 7×k, and its derivative with the unknowns, 7k×size."""
         if self.record.rod is None:
             frame = self.system.frame(FrameName("body", str(self.record.body)))
             pose = ca.densify(ca.vertcat(frame.position, frame.quaternion))
@@ -116,7 +116,7 @@ class MeasuredQuantity(Kind, ABC, Generic[RecordType]):
     unmeasured: ClassVar[tuple[float, ...]] = ()
 
     def faults(self, values: FloatArray) -> list[tuple[int, str, str]]:
-        """What is wrong with measured entries, shape (rows, entries): the row, the problem and the remedy."""
+        """Problems of measured entries, shape (rows, entries): the row, the problem and the remedy."""
         return []
 
     def number(self, entry: int, values: FloatArray) -> float:

@@ -1,4 +1,4 @@
-"""The error that modes and nodes leave at what was measured: numbers that are found make up for it."""
+"""The error that modes and nodes leave in the measured equilibria: identified numbers make up for it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
 
     Args:
         found: at the end of a search.
-        cases: what was fitted, by its first row in words.
+        cases: the fitted cases, by their first rows in words.
     """
     try:
         model = found.model.at(found.parameters)

@@ -24,7 +24,7 @@ from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.spelling import counted
 
 RECHOSEN = 2
-"""Times that a discretisation is chosen again at what was found."""
+"""Times that a discretisation is chosen again at the identified numbers."""
 
 
 def identify(
@@ -36,7 +36,7 @@ def identify(
     report: Report | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """Find the unknowns of a model's scene from what was measured.
+    """Identify the unknowns of a model's scene from measurements.
 
     Args:
         model: of a scene with measurements and unknowns, which are its parameters and inputs:
@@ -44,7 +44,7 @@ def identify(
         data: columns by measurement, by its name or its file, that stand for the file.
         hold_out: share of the cases that is not fitted but predicted; by default that of the scene.
         starts: places from which the search begins; by default that of the scene.
-        report: told what is being done.
+        report: called with the work under way.
         progress: told the steps of the search.
 
     Raises:
@@ -86,11 +86,11 @@ def identify_scene(
     report: Report | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """Find the unknowns of a scene from what was measured, on modes and nodes that meet its tolerance.
+    """Identify the unknowns of a scene from measurements, on modes and nodes that meet its tolerance.
 
-    They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at those found, which
-    may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them. Where the scene
-    writes no tolerance and poses alone were measured, a tenth of the least of their deviations is enough.
+    They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at the identified ones,
+        which may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them. Where
+        the scene writes no tolerance and poses alone were measured, a tenth of the least of their deviations is enough.
 
     Args:
         scene: with measurements and unknowns.
@@ -158,7 +158,7 @@ def check_measured(model: Model) -> None:
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:
-    """Cases that are fitted, and those that are held out: those that rows name, and a share of the others."""
+    """Cases that are fitted, and held-out cases: the ones that rows name, and a share of the others."""
     if not 0.0 <= share < 1.0:
         raise SceneError(Problem("--hold-out", f"must be >= 0 and < 1, got {share:g}"))
     others = [i for i, case in enumerate(cases) if not case.held_out]

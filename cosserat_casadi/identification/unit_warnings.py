@@ -1,4 +1,4 @@
-"""What looks like a wrong unit: told, not refused."""
+"""Warnings of measurements that look like a wrong unit: told, not refused."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def unstack(column: AnyMatrix, components: int) -> AnyMatrix:
 
 
 def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
-    """Operator that acts at each point by a matrix of its own.
+    """Operator that multiplies the field by another matrix at each point.
 
     Args:
         blocks: the matrices side by side, m×(n·k), every one with the sparsity ``pattern``.
@@ -107,8 +107,8 @@ def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parit
     """Factors (fold, half) with foldᵀ half = matrix, where products with even and odd columns cost half.
 
     Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns meet signed sums of mirrored rows,
-    odd ones differences: ``fold`` forms both, ``half`` holds the entries, without what is not zero by rounding alone.
-    See the end of docs/theory.md, section 7.
+    odd ones differences: ``fold`` forms both, ``half`` holds the entries, without entries that are rounding errors of
+    zero. See the end of docs/theory.md, section 7.
 
     Args:
         matrix: k×n.

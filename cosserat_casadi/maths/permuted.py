@@ -52,7 +52,7 @@ class PermutedSystem:
     beta: Matrix
 
     def ivp(self, x_known: Matrix) -> Matrix:
-        """What the known value adds to the other derivatives: report (3.20).
+        """Contribution of the known value to the derivatives at the other points: report (3.20).
 
         Args:
             x_known: (m, 1).

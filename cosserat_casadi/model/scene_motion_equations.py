@@ -96,7 +96,7 @@ class SceneMotionEquations:
         return BlockMatrix(ends)
 
     def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
-        """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a base that floats."""
+        """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a floating base."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
         unit = discrete.rods[rod].energy_unit

@@ -141,11 +141,11 @@ class Advance:
 
 @dataclass(frozen=True)
 class Curve:
-    """A path with what is watched along it.
+    """A path with the monitor that is evaluated along it.
 
     Attributes:
         path: equations that depend on a load factor.
-        monitor: what is watched.
+        monitor: functions whose zeros are the events of the path.
         settings: limits.
         rows: what each equation is multiplied by where linear systems are solved, shape (n,); None where all are of one
             size. Residuals are measured without.

@@ -1,4 +1,4 @@
-"""What is asked of an integration in time, and what it gives."""
+"""Settings of an integration in time, and its result."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class StepSettings:
 
 @dataclass(frozen=True)
 class IntegrationCost:
-    """What an integration cost.
+    """Numbers of steps, iterations and factorisations of an integration.
 
     Attributes:
         steps: steps taken.
@@ -81,7 +81,7 @@ class Integration:
         steps: the steps taken, one after the other.
         outcome: how it ended.
         next_size: step that would come next, or that failed, s.
-        statistics: what it cost.
+        statistics: numbers of its steps, iterations and factorisations.
         guard: number of the guard that came to zero; None where none did.
     """
 

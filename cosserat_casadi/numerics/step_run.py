@@ -1,4 +1,4 @@
-"""An integration in time on its way: the last instant reached, the Jacobian in use, and what has been spent."""
+"""An integration in time on its way: the last instant reached, the Jacobian in use, and the work spent."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
 ITERATIONS_OF_GIVEN_STEP = 30
-"""Most Newton iterations, with one Jacobian, of a step whose size is given: no shorter one may stand for it."""
+"""Most Newton iterations, with one Jacobian, of a step of prescribed size: no shorter step may stand for it."""
 
 
 @dataclass
 class StepRun:
-    """What changes from one step to the next.
+    """State of an integration, which changes from one step to the next.
 
     Attributes:
         equations: the equations.
@@ -63,7 +63,7 @@ class StepRun:
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
         guards: values that have to stay at zero or above; None where there are none.
-        settled: end of a step to go on from, in place of its own; None for its own.
+        settled: instant to go on from, in place of the end of the last step; None for the end of that step.
         guard: number of the guard that came to zero; None where none did.
     """
 
@@ -111,7 +111,7 @@ class StepRun:
         return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard)
 
     def renew_jacobian(self) -> None:
-        """Have the next step evaluate a Jacobian of its own."""
+        """Have the next step evaluate a new Jacobian."""
         self.linearisation = None
         self.matrices = None
 

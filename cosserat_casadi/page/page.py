@@ -34,7 +34,7 @@ def export_page(solution: Solution, file: Path) -> Path:
     Args:
         solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
-        file: what is written.
+        file: path of the page.
 
     Raises:
         ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
@@ -53,7 +53,7 @@ def export_page(solution: Solution, file: Path) -> Path:
 
 
 def asked_accuracy(solution: Solution) -> dict[str, Any]:
-    """What errors are judged by: the tolerance, None where none has a meaning, and what helps above it."""
+    """The tolerance by which errors are judged, None where none has a meaning, and the remedy above it."""
     accuracy = solution.model.scene.accuracy
     return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
 

@@ -1,4 +1,4 @@
-"""What a page must know of a scene besides its equations, as plain data."""
+"""Facts of a scene that a page needs besides its equations, as plain data."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from cosserat_casadi.plots.scenery import body_corners
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 DIGITS = 6
-"""Significant digits of what is only drawn."""
+"""Significant digits of numbers that are only drawn."""
 
 IN_PLANE = {1, 3, 5}
 """Strains that keep a rod in the plane of its x and z: bending_y, shear_x, extension."""
@@ -127,7 +127,7 @@ def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
 
 
 def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:
-    """A net of points on the surface of an obstacle, rows of points, m; what has no end is shown about the rods.
+    """A net of points on the surface of an obstacle, rows of points, m; an endless surface is shown about the rods.
 
     That of an obstacle on a body is in the axes of the body.
     """
@@ -150,7 +150,7 @@ def _target_points(scene: scenes.Scene) -> list[Sequence[float]]:
 
 
 def _stability(model: Model) -> dict[str, Any] | None:
-    """What the second variation is taken over; None where it has no meaning for all inputs that sliders can give."""
+    """Variations of the second variation; None where it has no meaning for all inputs that sliders can give."""
     # Ones: no input is left out for being zero at the moment.
     if not model.has_potential(np.ones(model.inputs.size)):
         return None

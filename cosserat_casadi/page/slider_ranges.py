@@ -16,10 +16,10 @@ class Slider:
 
     Attributes:
         input: name of the input, ``owner.field``.
-        label: what it is called beside the slider: the axis of a vector, the degree of a polynomial; may be empty.
+        label: text beside the slider: the axis of a vector, the degree of a polynomial; may be empty.
         unit: SI unit.
         index: entry of the stacked inputs.
-        value: the scene's own.
+        value: value of the scene.
         least: left end.
         most: right end.
     """
@@ -57,7 +57,7 @@ def sliders(model: Model) -> list[Slider]:
 
 
 def movable(model: Model) -> list[str]:
-    """Names of the inputs that a hand on the tip moves: those with bounds, else the actuators', else all."""
+    """Inputs that dragging the tip moves: inputs with bounds, else the actuators' inputs, else all."""
     bounded = {bound.input for bound in model.scene.bounds}
     actuators = {actuator.name for actuator in model.scene.actuators}
     of_actuators = {entry.name for entry, _ in model.inputs if entry.owner in actuators and not entry.of_rod}

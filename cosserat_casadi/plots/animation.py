@@ -135,7 +135,7 @@ def save_animation(
 
 @dataclass(frozen=True)
 class AnimationFrames:
-    """What an animation shows, frame by frame.
+    """Frames of an animation.
 
     Attributes:
         model: the model.
@@ -173,7 +173,7 @@ def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable
 
 
 def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationFrames:
-    """Frames of a motion at times, shape (frames,), s, shown at a speed relative to its own."""
+    """Frames of a motion at times, shape (frames,), s, shown at a speed relative to real time."""
     states = [motion.at(float(time)) for time in times]
     shown_seconds = (times[-1] - times[0]) / speed
     colour = PLAIN_TEXT
@@ -205,7 +205,7 @@ def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
 
 
 def _finish(writer: Any) -> None:
-    """Write what is drawn.
+    """Write the drawn frames.
 
     Raises:
         AnimationFailedError: ffmpeg gives up.

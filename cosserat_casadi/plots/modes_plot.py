@@ -180,7 +180,7 @@ class _ModeLines:
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:
-    """What is drawn of each mode."""
+    """Lines that are drawn of each mode."""
     names = list(modes.model.discrete.rods)
     poses = {name: modes.solution.pose(SECTIONS, name) for name in names}
     shapes = {name: modes.shape(SECTIONS, name) for name in names}

@@ -26,7 +26,7 @@ class MovingShapes:
         times: shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
         outlines: closed outlines of bodies, by body, shape (T, k, 3), m.
-        followed: points whose paths are drawn, by what they are of, shape (T, 3), m.
+        followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
     """
 
     times: FloatArray

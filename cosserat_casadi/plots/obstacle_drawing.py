@@ -21,7 +21,7 @@ RESOLUTION = 161
 """Points along each axis of a cut at which the distance is looked at."""
 
 MARGIN = 0.12
-"""What of an obstacle is shown beyond the rods, relative to the scene."""
+"""Margin of an obstacle that is shown beyond the rods, relative to the scene."""
 
 
 def draw_obstacles(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:

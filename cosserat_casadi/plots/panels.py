@@ -27,7 +27,7 @@ LEVEL = 1e-3
 
 @dataclass(frozen=True)
 class PanelQuantity:
-    """What a panel shows.
+    """Quantity that a panel shows.
 
     Attributes:
         name: strain, moment or force.

@@ -1,4 +1,4 @@
-"""The file of an identification: what was found, how well it is known, and what it leaves of the data."""
+"""The file of an identification: its numbers, how well they are known, and the misfit that remains."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _shared(found: Identification) -> dict[str, Any]:
 
 
 def _tied(entry: UnknownEntry) -> dict[str, list[str]]:
-    """The names whose numbers follow those that were found; nothing where none do."""
+    """Names of numbers that follow an identified number; empty where there are none."""
     names = names_in(entry.record.parameter or ())
     return {"tied": list(names[1:])} if len(names) > 1 else {}
 

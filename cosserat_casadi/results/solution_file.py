@@ -24,7 +24,7 @@ SAMPLES = 41
 
 
 Solved: TypeAlias = "Solution | TubeSolution | TubeEquilibria"
-"""What a result file may be of: rods, concentric tubes, or all equilibria of these."""
+"""Solutions that a result file may hold: of rods, of concentric tubes, or all equilibria of these."""
 
 
 def result(solution: Solved) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
 
     Args:
         path: what ``cosserat solve`` has written.
-        scene: the scene; what is not an input of it must be as it was when it was solved.
+        scene: the scene; its numbers, inputs aside, must be the same as when the equilibrium was solved.
 
     Raises:
         SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.

@@ -18,7 +18,7 @@ from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, Po
 
 
 class ActuatorRecord(Entry):
-    """What acts inside a rod, between its sections."""
+    """An actuator inside a rod, which acts between its sections."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
@@ -151,7 +151,7 @@ offset = [1.5e-3, 0.0]
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
-        """Tension or length, whichever is given: the other is an unknown or a result; the direction of friction."""
+        """Fields that may be free: tension or length, whichever the table has; the direction of friction."""
         fields = [field for field in ("tension", "length") if field in given]
         if given.get("friction"):
             fields.append("pull")
@@ -162,7 +162,7 @@ offset = [1.5e-3, 0.0]
 
 
 def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
-    """Exactly one of two keys is given."""
+    """Faults unless exactly one of two keys is there."""
     if first in given and second in given:
         yield Fault((second,), f"stands beside {first}", "give one of the two")
     if first not in given and second not in given:

@@ -34,7 +34,7 @@ from cosserat_casadi.scene.values import (
 
 
 class SupportRecord(Entry):
-    """What holds the tip of a rod in the world."""
+    """A support, which holds the tip of a rod in the world."""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
@@ -184,7 +184,7 @@ mass = 0.1
 
 
 class JointRecord(Entry):
-    """What joins the tip of a rod to a body."""
+    """A joint, which joins the tip of a rod to a body."""
 
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
 

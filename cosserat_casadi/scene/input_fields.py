@@ -21,7 +21,7 @@ class InputField:
         polynomial: whether each component may be a list of Legendre coefficients along the rod.
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
-        lower: least value that each number can have by what it is; None where there is none.
+        lower: least value that physics allows each number; None without a bound.
         axes: axes of the components: "none" of a number, those of the world or of the section, or "frame" for those
             that the record's own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
@@ -60,7 +60,7 @@ class InputField:
 
 
 def column_suffixes(components: int, degrees: int) -> list[str]:
-    """What the columns of an input end in, column after column: ".x", then ".x.1" for the first Legendre degree."""
+    """Suffixes of the columns of an input, column after column: ".x", then ".x.1" for the first Legendre degree."""
     axes = [f".{axis}" if axis else "" for axis in AXES[components]]
     higher = [f".{degree}" for degree in range(1, degrees)]
     return [axis + degree for degree in ("", *higher) for axis in axes]

@@ -44,7 +44,7 @@ InputRanges = Annotated[dict[str, Pairs], AfterValidator(HashedTable)]
 
 
 def ranges_of_no_input(scene: SceneTables) -> Iterator[Fault]:
-    """A range is of what is neither free nor a parameter, or has another number of pairs than its input has entries."""
+    """Faults of ranges of names that are neither free nor parameters, or whose pairs are not as many as entries."""
     ranges = scene.get("ranges")
     if not isinstance(ranges, Mapping):
         return

@@ -1,4 +1,4 @@
-"""The rules of inputs: what a scene lists exists and can be free, what it bounds is free."""
+"""The rules of inputs: names that a scene lists exist and can be free, names that it bounds are free."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 
 
 def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
-    """A bound is of what is not free, is the second of an input, or has another number of entries."""
+    """Faults of bounds: of inputs that are not free, second ones of an input, of another number of entries."""
     counts = entry_counts(scene)
     first: dict[str, int] = {}
     for i, bound in scene.tables("bounds"):
@@ -68,7 +68,7 @@ def _numbers(count: int) -> str:
 
 
 def owners_of(scene: SceneTables) -> Owners:
-    """What may have inputs, by name, with its record where the kind is known."""
+    """Owners of inputs by name, with their records where the kind is known."""
     owners = _causes(scene)
     for name, (_, table) in scene.named("rods").items():
         # Inputs of a load or an actuator hide those of a rod of the same name.
@@ -142,7 +142,7 @@ def entry_counts(scene: SceneTables) -> dict[str, int | None]:
 
 
 def free_names(scene: SceneTables) -> list[str]:
-    """Names of what the tables leave free at run time: what they list, or else every magnitude."""
+    """Names of inputs that are free at run time: the listed names, or else every magnitude."""
     entries = scene.get("inputs")
     if isinstance(entries, list):
         return [name for name in entries if isinstance(name, str)]
@@ -150,7 +150,7 @@ def free_names(scene: SceneTables) -> list[str]:
 
 
 def requested_fields(scene: SceneTables) -> dict[str, str]:
-    """Inputs that an identification has besides those: what columns set and what is unknown, each with who asks."""
+    """Further inputs of an identification: set by columns, or unknown, each with the table that asks for it."""
     owners = owners_of(scene)
     requests: dict[str, str] = {}
     asked: list[tuple[Any, str]] = []
@@ -173,7 +173,7 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the magnitudes that actuators and loads give: what is free where the scene lists no inputs."""
+    """Names of the magnitudes of actuators and loads: the free inputs where the scene lists none."""
     return [
         f"{name}.{field}"
         for name, (record, table) in _causes(scene).items()

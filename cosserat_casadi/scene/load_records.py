@@ -1,6 +1,6 @@
 """Loads: gravity, and wrenches on sections, along rods and on bodies.
 
-A kind is a record here, or beside, and a class in `loads/`; load_kinds.py lists those that ship.
+A kind is a record here, or beside, and a class in `loads/`; load_kinds.py lists the kinds that ship.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cosserat_casadi.scene.values import ABOVE_BASE, Name, Names, Number, Polyno
 
 
 class LoadRecord(Entry):
-    """What acts on sections of rods or on bodies."""
+    """A load on sections of rods or on bodies."""
 
     name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
     if TYPE_CHECKING:

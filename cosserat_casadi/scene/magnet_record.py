@@ -119,7 +119,7 @@ field = [0, 0.02, 0]
 
 
 def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
-    """Exactly one of two keys is given."""
+    """Faults unless exactly one of two keys is there."""
     if first in given and second in given:
         yield Fault((second,), f"stands beside {first}", "give one of the two")
     if first not in given and second not in given:
@@ -134,7 +134,7 @@ def _zero(key: str, given: Table, remedy: str) -> Iterator[Fault]:
 
 
 def _is_not_zero(component: Any) -> bool:
-    """Whether a component has a number that is not zero; what is faulty has a fault of its own."""
+    """Whether a component has a number that is not zero; a faulty component has a fault elsewhere."""
     if isinstance(component, Mapping):
         return any(_is_not_zero(entry) for entry in component.values())
     if isinstance(component, list | tuple):

@@ -1,4 +1,4 @@
-"""Inputs over time: tables of values, waves, and tables in files of their own."""
+"""Inputs over time: tables of values, waves, and tables in separate files."""
 
 from __future__ import annotations
 

@@ -38,14 +38,14 @@ SMOOTH_KEYS = ("width", "stiffness", "damping")
 """Keys of an obstacle whose contact is smooth."""
 
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
-"""What to do where exact contact is not found."""
+"""Remedy where exact contact is not found."""
 
 FEWEST_POINTS = 2
 """Points of a lumen that make a line."""
 
 
 class ObstacleRecord(Entry):
-    """What the centre lines of rods keep away from by the radius of their sections, and bodies by theirs.
+    """An obstacle: centre lines of rods keep away from it by the radius of their sections, and bodies by theirs.
 
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
     """
@@ -106,7 +106,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """What says how a smooth contact pushes asks for its width; one on a body for the rods that it concerns."""
+        """Faults of a smooth contact's stiffness or damping without width, and of obstacles on bodies."""
         yield from _misplaced_on_body(given)
         if "width" in given:
             return
@@ -135,7 +135,7 @@ class ObstacleRecord(Entry):
 
 
 def _misplaced_on_body(given: Table) -> Iterator[Fault]:
-    """What an obstacle that moves with a body does not go with."""
+    """Faults of an obstacle on a body: settings that are refused beside it."""
     if "body" not in given:
         return
     if "rods" not in given:
@@ -171,7 +171,7 @@ def _not_round(name: str, rod: Table) -> Iterator[Fault]:
 
 
 def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
-    """What in a rod keeps its exact contact from being found; a smooth one needs none of it."""
+    """Properties of a rod with which its exact contact cannot be computed; a smooth contact needs none of this."""
     if SHEARS & set(admitted_strains(rod.get("strain"))):
         # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
         # contact spreads over a stretch as short as the section is high, which is not resolved.

@@ -105,7 +105,7 @@ class NamedNumbers:
 
     @property
     def all_numbers(self) -> tuple[NamedNumbers, ...]:
-        """These numbers, and those that follow them."""
+        """These numbers, and numbers that follow them."""
         return (self, *(other.numbers for other in self.tied))
 
     @property
@@ -184,7 +184,7 @@ def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
 
 
 def _ratios(first: NamedNumbers, other: NamedNumbers) -> tuple[float, ...]:
-    """What numbers are times those that they follow."""
+    """Ratios of numbers to the numbers that they follow."""
     if other.unit != first.unit:
         problem = f"{shown(other.name)} is in {other.unit} and cannot follow {shown(first.name)}, in {first.unit}"
         raise RefusedParameter(problem, "tie numbers of one kind together")
@@ -245,7 +245,7 @@ def _form(value: Any, *, along: bool, by_component: bool) -> Form:
     """How a key holds its numbers.
 
     Raises:
-        RefusedParameter: what it holds is no number, or one that selects the structure of the model.
+        RefusedParameter: it holds no number, or one that selects the structure of the model.
     """
     if value is None:
         raise RefusedParameter("is not given in the scene", "give it a value: the parameter's default")
@@ -318,7 +318,7 @@ def _part(word: str, words: Sequence[str], count: int, what: str) -> int:
 
 
 def _grid(form: Form, value: Any, cells: Iterable[Cell]) -> dict[Cell, Any]:
-    """The numbers of a key by their cells; those that a name adds to a shorter component are zero."""
+    """The numbers of a key by their cells; numbers that a name adds to a shorter component are zero."""
     grid: dict[Cell, Any] = dict.fromkeys(cells, 0.0)
     if form is Form.NUMBER:
         grid[0, 0] = value
@@ -332,7 +332,7 @@ def _grid(form: Form, value: Any, cells: Iterable[Cell]) -> dict[Cell, Any]:
 
 
 def _stored(form: Form, grid: Mapping[Cell, Any], values: Mapping[Cell, Any]) -> Any:
-    """What a key holds with some of its numbers changed."""
+    """Value of a key with some of its numbers changed."""
     numbers = {**grid, **values}
     rows = 1 + max(row for row, _ in numbers)
     components = []
@@ -355,7 +355,7 @@ def parameter_faults(
     inputs: Iterable[str],
     requests: Mapping[str, str],
 ) -> Iterator[Fault]:
-    """What is wrong with the names of the parameters of a scene.
+    """Faults of the names of the parameters of a scene.
 
     Args:
         names: what the scene gives as names, which may be faulty.
@@ -424,7 +424,7 @@ def holders_of(entries: Iterable[Holder], names: Iterable[Any]) -> dict[str, lis
 
     Args:
         entries: the entries of the lists that may have parameters, in the order of these lists.
-        names: the name of each; what is no text is none.
+        names: the name of each; an entry whose name is no text is left out.
     """
     known: dict[str, list[Holder]] = {}
     for holder, name in zip(entries, names, strict=True):

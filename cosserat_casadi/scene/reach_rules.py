@@ -20,7 +20,7 @@ LENGTH_SLACK = 1e-9
 
 
 def named_rod(name: Any, scene: SceneTables) -> Rod | None:
-    """The rod of a name among the tables of a scene; None where there is none, or where it has faults."""
+    """The rod of a name among the tables of a scene; None for an unknown name, or for a rod with faults."""
     rods = scene.named("rods")
     if not isinstance(name, str) or name not in rods:
         return None
@@ -37,7 +37,7 @@ def out_of_reach(rod: Rod, position: Triple, orientation: Quadruple | None) -> I
         orientation: prescribed orientation of the tip, w, x, y, z; None where it may turn.
 
     Yields:
-        faults with the key of what is out of reach as path.
+        faults with the key of the position or orientation that is out of reach as path.
     """
     # A straight line is the shortest way between two points: no bending takes the tip further than the length.
     distance = math.dist(position, rod.base.position)

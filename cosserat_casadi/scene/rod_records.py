@@ -1,4 +1,4 @@
-"""Rods: what they are made of, which strains they admit, where they start.
+"""Rods: their material and section, the strains that they admit, the pose of their base.
 
 The local z axis of a section is the rod's tangent; strains are ordered K_x, K_y, K_z, Γ_x, Γ_y, Γ_z.
 """
@@ -382,7 +382,7 @@ def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
 
 
 def _inertia_without_mass(rod: Table) -> Iterator[Fault]:
-    """The rotary inertia stands beside what it follows from, or without the mass that it belongs to."""
+    """Faults of a rotary inertia beside material or section, from which it follows, or without a mass per length."""
     if "rotary_inertia" not in rod:
         return
     made_of = [key for key in ("material", "section") if key in rod]

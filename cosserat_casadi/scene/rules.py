@@ -46,7 +46,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "measurements": MEASUREMENTS,
     "unknowns": Unknown,
 }
-"""What the lists of a scene hold."""
+"""Records or families of the lists of a scene."""
 
 OF_ONE_COLUMN = ("name", "columns", "inputs", "scale", "shift", "sigma", "held_out")
 """Keys of a measurement that do not say which number of which rows it is."""
@@ -160,7 +160,7 @@ def own_rules(scene: SceneTables) -> Iterator[Fault]:
 
 
 def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
-    """Gravity acts on a rod whose mass is not given."""
+    """Faults of rods without mass on which gravity acts."""
     load_on_all, load_on_rod = _gravity(scene)
     for i, rod in scene.tables("rods"):
         # One fault a rod, however many loads weigh it.
@@ -180,7 +180,7 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
-    """The load that weighs every rod, if any, and those that weigh the rods they name."""
+    """The load that weighs every rod, if any, and the loads that weigh only rods that they name."""
     load_on_all: str | None = None
     load_on_rod: dict[str, str] = {}
     for i, load in scene.tables("loads"):
@@ -210,7 +210,7 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
 
 
 def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """What single rods are computed with is of rods of the scene, once each, with one number for each strain."""
+    """Faults of ``of_rods``: entries are of rods of the scene, once each, with one number for each strain."""
     accuracy = scene.get("accuracy")
     if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("of_rods"), list):
         return

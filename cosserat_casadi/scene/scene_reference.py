@@ -120,7 +120,7 @@ def _record(
         path: of its table in the scene.
         level: of its heading.
         without: a key that stands in the heading.
-        told: tables that kinds of one family share, which have a section already; those that get one are added.
+        told: tables that kinds of one family share, which have a section already; tables that get one here are added.
     """
     yield f"{inspect.getdoc(record)}\n"
     if record.example:
@@ -205,7 +205,7 @@ COMPONENT = f"{ONE_OR_SEVERAL}, or {ALONG}"
 
 
 def _value(node: Mapping[str, Any]) -> str:
-    """What a key may be, in words."""
+    """Values that a key may have, in words."""
     if "const" in node:
         return _word(node["const"])
     if "enum" in node:

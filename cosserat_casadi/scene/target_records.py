@@ -1,4 +1,4 @@
-"""What the inverse problem is asked: targets of sections and bodies, and ranges of the inputs that it looks for.
+"""Questions of the inverse problem: targets of sections and bodies, and ranges of the inputs that it looks for.
 
 They do not act on the rods: a scene with targets is solved like one without.
 """
@@ -111,7 +111,7 @@ Target = Annotated[PoseTarget | PositionTarget | CurveTarget, TARGETS]
 
 
 class Bound(Entry):
-    """The range of an input; what is left out is not bounded on that side."""
+    """The range of an input; without a lower or upper end it is not bounded on that side."""
 
     example: ClassVar[str] = """\
 [[bounds]]

@@ -186,7 +186,7 @@ def _load_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _spread_faults(load: Table) -> Iterator[Fault]:
-    """What tubes do not bear of a wrench per length, without the path of the load."""
+    """Faults of a wrench per length on tubes, without the path of the load: a moment, a frame, or a profile."""
     if "moment" in load:
         yield Fault(("moment",), "does not act on tubes along their length", "give a force, N/m")
     if load.get("frame") == "body":
@@ -197,7 +197,7 @@ def _spread_faults(load: Table) -> Iterator[Fault]:
 
 
 def _weightless_tubes(scene: SceneTables) -> Iterator[Fault]:
-    """Gravity acts on a tube whose mass is not given."""
+    """Faults of tubes without mass on which gravity acts."""
     for index, tube in scene.tables("tubes"):
         weighing = [i for i, load in scene.tables("loads") if _weighs(load, tube.get("name"))]
         if not weighing:

@@ -1,4 +1,4 @@
-"""What an identification is to find, and how it looks for it: `[[unknowns]]` and `[identification]`."""
+"""Unknowns of an identification, and its settings: `[[unknowns]]` and `[identification]`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cosserat_casadi.scene.values import Component, Number, Positive, TiedNames,
 
 
 class Prior(Record):
-    """What is known of an unknown beforehand: a normal distribution."""
+    """Prior of an unknown: a normal distribution."""
 
     example: ClassVar[str] = """\
 [[unknowns]]

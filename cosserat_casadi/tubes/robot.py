@@ -25,7 +25,7 @@ from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad, loads_of
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)
 
 Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
-"""Inputs as they are given: by name, all in order, or None for those of the scene."""
+"""Inputs by name, all in order, or None for the inputs of the scene."""
 
 SLACK = 1e-12
 """By how much, relative to a length, a translation may leave its range: what rounding does to it."""

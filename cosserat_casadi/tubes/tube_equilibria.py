@@ -1,6 +1,6 @@
 """All equilibria of concentric tubes at given inputs.
 
-The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. What is left are the
+The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. There remain the
 n − 1 angles between the tips, on a torus, which the robot carries to the n − 1 angles between the drives. This map has
 the degree one, that of tubes that do not twist: at all inputs the signs of its determinant add up to one over
 all equilibria. A drive that is turned once round is where it was. So equilibria that are twisted by a full turn more
@@ -64,7 +64,7 @@ class TubeEquilibria:
         solutions: the equilibria, by their energy, the least first.
         complete: whether the search ended as it should: it settled before its work ran out, all equilibria are within
             tolerance, and the signs of their determinants add up to one. Two of opposite signs could still be missing.
-            Never so under loads, where those are found that the equilibria without loads lead to.
+            Never so under loads, where the search starts from the equilibria without loads and follows them.
     """
 
     robot: Robot
@@ -73,7 +73,7 @@ class TubeEquilibria:
 
     @property
     def stable(self) -> tuple[TubeSolution, ...]:
-        """Those of them that are stable."""
+        """The stable equilibria."""
         return tuple(solution for solution in self.solutions if solution.stable)
 
     @property
@@ -201,7 +201,7 @@ def _degree(determinants: Iterator[float]) -> int:
 
 @dataclass(frozen=True)
 class _Search:
-    """What a search of a model found.
+    """The end of a search of a model.
 
     Attributes:
         angles: at the tips of each equilibrium, shape (n,), rad.
@@ -227,7 +227,7 @@ def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
 
 @dataclass(frozen=True)
 class _Reading:
-    """What the scan of two tubes reads at one angle between the tips.
+    """Reading of the scan of two tubes at one angle between the tips.
 
     Attributes:
         angle: between the tips, rad.
@@ -271,7 +271,7 @@ def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
 
 
 def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
-    """Readings over one turn of the tips, so close that a cubic between neighbours tells what is between them.
+    """Readings over one turn of the tips, so close that a cubic between neighbours predicts the readings between.
 
     Returns:
         The readings, and whether they are as close as that everywhere.
@@ -294,7 +294,7 @@ def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
 
 
 def _foreseen(before: _Reading, middle: _Reading, after: _Reading) -> bool:
-    """Whether the cubic through two readings says what is between them."""
+    """Whether the cubic through two readings predicts the reading in the middle."""
     width = after.angle - before.angle
     missed = (before.missed + after.missed) / 2 + width * (before.slope - after.slope) / 8
     change = 1.5 * (after.missed - before.missed) - width * (before.slope + after.slope) / 4

@@ -6,7 +6,7 @@ Between two places where a tube begins, bends or ends the tubes i have the elast
 
 with the angle αᵢ of tube i against the frame that follows the centre line without turning about it (Bishop's), and the
 curvature c of the centre line in the axes of that frame, the direction that it bends towards. Without loads c is where
-the energy is least, c = Σ EIᵢ κᵢ e(αᵢ) / Σ EIᵢ, and what is left is a Lagrangian of the angles alone: GJᵢ αᵢ′ = τᵢ and
+the energy is least, c = Σ EIᵢ κᵢ e(αᵢ) / Σ EIᵢ, and the rest is a Lagrangian of the angles alone: GJᵢ αᵢ′ = τᵢ and
 τᵢ′ = −κᵢ EIᵢ e′(αᵢ)·c (P. E. Dupont, J. Lock, B. Itkowitz, E. Butler, IEEE Trans. Robot. 26 (2010) 209; D. C. Rucker,
 R. J. Webster, G. S. Chirikjian, Int. J. Robot. Res. 29 (2010) 1263).
 
@@ -33,7 +33,7 @@ from cosserat_casadi.tubes.stages import Staged
 
 @dataclass(frozen=True)
 class FlowState:
-    """What is integrated along the robot.
+    """State that is integrated along the robot.
 
     Attributes:
         angles: of the tubes against the frame, n×1, rad.
@@ -64,7 +64,7 @@ class FlowState:
 
 @dataclass(frozen=True)
 class PieceConstants:
-    """What is the same all along a piece of the robot.
+    """Constants of a piece of the robot.
 
     Attributes:
         torsion: GJ of every tube, n×1, N m².

@@ -87,7 +87,7 @@ class TubeFunctions(ABC):
     @property
     @abstractmethod
     def _residual(self) -> Matrix:
-        """What is zero in equilibrium, as many as the unknowns."""
+        """Residual, zero in equilibrium, with as many entries as there are unknowns."""
 
     @property
     def _jacobian(self) -> Matrix:
@@ -112,21 +112,21 @@ class TubeFunctions(ABC):
     @property
     @abstractmethod
     def _begun(self) -> Matrix:
-        """The stacked state at the tip of the robot, with what is carried along behind it: nothing yet."""
+        """The stacked state at the tip of the robot, with the carried numbers behind it: none yet."""
 
     @abstractmethod
     def _passing(self, piece: int, stacked: Matrix) -> Matrix:
-        """A stacked state, with what is carried along behind it, beyond the start of a piece, where tubes may end."""
+        """The stacked state and the carried numbers behind it, beyond the start of a piece, where tubes may end."""
 
     @abstractmethod
     def _missed(self, plate: Matrix) -> Matrix:
-        """The residual, where the stacked state at the plate is given."""
+        """The residual, from the stacked state at the plate."""
 
     # What is asked of the model
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ what is zero in equilibrium: see the model; angles in rad."""
+        """(x, inputs) ↦ residual, zero in equilibrium: see the model; angles in rad."""
         return self._function("residual", {"residual": self._residual})
 
     @cached_property
@@ -388,7 +388,7 @@ class TubeFunctions(ABC):
         return [self._rank(2 * index) for index in range(self.size)]
 
     def _rank(self, own: int) -> ca.MX:
-        """At which of the sorted places one of `_unsorted` is, 1×1: of those that coincide one each."""
+        """Index among the sorted places of one of `_unsorted`, 1×1; places that coincide have different indices."""
         rank = ca.MX(0.0)
         for number, place in enumerate(self._unsorted):
             if number < own:

@@ -39,7 +39,7 @@ WORDS = {
     PathOutcome.TURNED_BACK: "The path led back: the input would have to move the other way.",
     PathOutcome.UNRESOLVED: "The path was followed, but its error is above the tolerance: allow a larger one.",
 }
-"""Sentences of paths of tubes; those of other outcomes are their own."""
+"""Sentences of paths of tubes, for outcomes whose general sentence does not fit."""
 
 
 @dataclass(frozen=True)

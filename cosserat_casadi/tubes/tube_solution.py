@@ -83,7 +83,7 @@ class TubeSolution:
 
     @cached_property
     def stability(self) -> TubeStability:
-        """What the second variation of the energy says."""
+        """Stability from the second variation of the energy."""
         return stability_of(self.model, self.x, self.inputs)
 
     @property

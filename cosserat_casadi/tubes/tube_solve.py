@@ -123,8 +123,8 @@ def _followed(path: Path) -> ContinuationResult:
     """The end of a path, which passes no place where branches come close to each other from one to another.
 
     Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step
-    comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed as it
-    goes: where tubes are opposed exactly, by symmetry, it leads to what is not stable.
+        comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed
+        as it goes: where tubes are opposed exactly, by symmetry, it leads to the unstable equilibrium.
     """
     rough = follow(path)
     if rough.outcome is Outcome.CONVERGED and _sign(path, (rough.x, 1.0)) == _sign(path, (path.start, 0.0)):

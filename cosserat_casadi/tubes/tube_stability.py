@@ -25,12 +25,12 @@ NO_LENGTH = 1e-12
 """Length of a step, relative to the robot's, below which it has none."""
 
 NUDGE = 1e-14
-"""What is added to a matrix that is singular to the last digit: the pivots' signs on either side of it add up alike."""
+"""Shift of a matrix that is singular to the last digit: the pivots' signs on either side of it add up alike."""
 
 
 @dataclass(frozen=True)
 class TubeStability:
-    """What the second variation says of an equilibrium.
+    """Stability of an equilibrium from the second variation.
 
     Attributes:
         falling: independent directions in which the energy falls; None where the loads have no energy.

@@ -1,8 +1,8 @@
-"""How the configuration of a robot and what is conjugate to it change along the robot with the free tip.
+"""Changes of the configuration of a robot and of its conjugates along the robot, with the free tip.
 
 Without loads the configuration of a section is the angles of its tubes, and conjugate to them are the torques. With
 loads the direction of the tangent belongs to it too, and conjugate to that is the bending moment. The frame may be
-turned about the tangent by any angle, with all angles of tubes turned back; what is said here is the same for all.
+turned about the tangent by any angle, with all angles of tubes turned back, without a change of the equations here.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class TipVariations:
         configuration: of each station with that of the tip, shape (k, m, m), rad: turns of the tubes about the tangent,
             then those of the tangent.
         at_plate: torques of the tubes at the plate, which are conjugate to their turns, shape (n, m), N m.
-        of_steps: the configuration at the end of each step with what is conjugate to it at its start, shape
-            (k − 1, m, m), rad/(N m).
+        of_steps: the configuration at the end of each step by its conjugates at the start, shape (k − 1, m, m), rad/(N
+            m).
     """
 
     configuration: FloatArray
@@ -84,7 +84,7 @@ def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: Floa
 
 
 def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatArray:
-    """Changes of the configuration where those of a state are given.
+    """Changes of the configuration, from changes of the state.
 
     Args:
         size: number n of tubes.

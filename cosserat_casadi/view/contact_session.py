@@ -1,4 +1,4 @@
-"""What a page asks of a scene whose contacts are exact: equilibria that are found anew for every move, in Python."""
+"""Session of a scene whose contacts are exact: equilibria are solved anew for every move, in Python."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class ContactSession:
         return self.model.inputs.size
 
     def facts(self) -> dict[str, Any]:
-        """Facts of the scene for its page, which offers what is answered here alone."""
+        """Facts of the scene for its page, which offers only the questions that this session answers."""
         began = time.perf_counter()
         self.move(self.model.pack().tolist())
         seconds = time.perf_counter() - began

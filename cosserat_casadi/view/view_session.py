@@ -1,4 +1,4 @@
-"""What a page in the browser asks of this machine: equilibria, derivatives, inputs for a point, modes, the motion."""
+"""Session of a page in the browser: equilibria, derivatives, inputs for a point, modes, the motion."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 from cosserat_casadi.view.contact_session import ContactSession
 
 NAME = "viewed"
-"""What symbols of the compiled library begin with."""
+"""Prefix of the symbols of the compiled library."""
 
 SWING = 0.15
 """Largest displacement of a mode that is drawn over the rod's length, or largest angle, rad."""
@@ -148,8 +148,8 @@ class ViewSession:
             near: unknowns of the equilibrium beside it, from which Newton's method starts: it stays on the branch.
 
         Returns:
-            ``within`` and ``text`` as of :meth:`accuracy`, and ``drawn``, what is drawn of it; None where it is not
-            within the tolerance either.
+            ``within`` and ``text`` as of :meth:`accuracy`, and its ``drawn`` parts; None where it is not within the
+            tolerance either.
         """
         model = self.first.model
         given = stacked_inputs(inputs)
