@@ -177,7 +177,7 @@ class Cylindrical(Joint[CylindricalRecord]):
 
     def held(self, record: CylindricalRecord, rotation: FloatArray) -> HeldDirections:
         across_axis = across(record.axis, rotation)
-        return HeldDirections(across_axis, across_axis, turn_with_place=True)
+        return HeldDirections(across_axis, across_axis, turn_with_pose=True)
 
 
 class RollerRecord(SupportRecord):
@@ -198,7 +198,7 @@ class Roller(Support[RollerRecord]):
 
     def held(self, record: RollerRecord, rotation: FloatArray) -> HeldDirections:
         normal = rotation.T @ np.asarray(record.axis) / np.linalg.norm(record.axis)
-        return HeldDirections(normal[:, None], NONE, turn_with_place=True)
+        return HeldDirections(normal[:, None], NONE, turn_with_pose=True)
 
 
 class EndlessBarRecord(ObstacleRecord):

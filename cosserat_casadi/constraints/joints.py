@@ -48,7 +48,7 @@ class Revolute(Joint[RevoluteJoint]):
 
     def held(self, record: RevoluteJoint, rotation: FloatArray) -> HeldDirections:
         """All but the rotation about the axis."""
-        return HeldDirections(ALL, across(record.axis, rotation), turn_with_place=True)
+        return HeldDirections(ALL, across(record.axis, rotation), turn_with_pose=True)
 
 
 @final
@@ -60,4 +60,4 @@ class Prismatic(Joint[PrismaticJoint]):
 
     def held(self, record: PrismaticJoint, rotation: FloatArray) -> HeldDirections:
         """All but the displacement along the axis."""
-        return HeldDirections(across(record.axis, rotation), ALL, turn_with_place=True)
+        return HeldDirections(across(record.axis, rotation), ALL, turn_with_pose=True)

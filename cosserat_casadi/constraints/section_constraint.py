@@ -1,4 +1,4 @@
-"""Constraints that hold a section of a rod to a place on another frame: the world, a body, the base of a carried rod.
+"""Constraints that hold a section of a rod at a pose in another frame: the world, a body, the base of a carried rod.
 
 The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
 wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
@@ -36,13 +36,13 @@ class HeldDirections:
     Attributes:
         positions: unit vectors of the held displacements, shape (3, k).
         rotations: unit vectors of the held rotations, shape (3, m).
-        turn_with_place: whether the vectors are given in the axes of the place and turn with it; else they are given
+        turn_with_pose: whether the vectors are given in the axes of the held pose and turn with it; else they are given
             in the axes of the rod's base.
     """
 
     positions: FloatArray
     rotations: FloatArray
-    turn_with_place: bool = False
+    turn_with_pose: bool = False
 
     @property
     def size(self) -> int:
@@ -51,8 +51,8 @@ class HeldDirections:
 
     @property
     def slides(self) -> bool:
-        """Whether the section may move along the place, so that the wrench on it acts where the section is."""
-        return self.turn_with_place and self.positions.shape[1] < 3
+        """Whether the section may move along the held pose, so that the wrench on it acts where the section is."""
+        return self.turn_with_pose and self.positions.shape[1] < 3
 
 
 class PoseVariations(NamedTuple):
@@ -93,12 +93,12 @@ class HeldPose:
     """Pose and directions in which a section is held.
 
     Attributes:
-        place: pose of the section in the other frame.
+        pose: pose of the section in the other frame.
         turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None where these
             are the same.
     """
 
-    place: Pose
+    pose: Pose
     turn: Matrix | None
 
     @property
@@ -108,20 +108,20 @@ class HeldPose:
 
     def seen_from(self, poses: ConstraintPoses) -> Pose:
         """The pose that the section is held to, in the rod's base."""
-        return poses.base.seen(poses.frame.then(self.place))
+        return poses.base.seen(poses.frame.then(self.pose))
 
 
 @dataclass(frozen=True)
 class SectionConstraint:
-    """A section of a rod held to a place on another frame.
+    """A section of a rod held at a pose in another frame.
 
     Attributes:
         rod: the rod.
         unit: EI/ℓ of the rod, J.
         at: abscissa of the section, a break of the rod's grid.
         held: the directions that are held.
-        place: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
-        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of the place, to the held directions;
+        pose: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
+        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of ``pose``, to the held directions;
             numbers or expressions; None for the directions ``held`` as they are.
     """
 
@@ -129,7 +129,7 @@ class SectionConstraint:
     unit: float
     at: Scalar
     held: HeldDirections
-    place: NumericPose | Pose
+    pose: NumericPose | Pose
     turn: Matrix | None = None
 
     @property
@@ -160,7 +160,7 @@ class SectionConstraint:
         basis[:3, displacements:] = moment
         # Sparse, so that directions along the axes of the base cost no product.
         in_given_axes = ca.sparsify(ca.DM(basis))
-        if not self.held.turn_with_place:
+        if not self.held.turn_with_pose:
             return in_given_axes
         rotation = target.seen_from(poses).rotation
         if target.axes is not None:
@@ -169,7 +169,7 @@ class SectionConstraint:
 
     def wrench_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> PoseVariations:
         """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
-        if not self.held.turn_with_place:
+        if not self.held.turn_with_pose:
             zero = ca.DM(6, 6)
             return PoseVariations(zero, zero, zero)
         _, *by_poses = self._kernels.wrench(*poses.stacked, *self._free_target, multipliers)
@@ -187,26 +187,26 @@ class SectionConstraint:
 
     @cached_property
     def _kernels(self) -> _Kernels:
-        place = None
-        if isinstance(self.place, NumericPose):
-            place = (_exact(self.place.position), _exact(self.place.quaternion))
+        pose = None
+        if isinstance(self.pose, NumericPose):
+            pose = (_exact(self.pose.position), _exact(self.pose.quaternion))
         turn: Hashable = None
         if self.turn is not None:
             # An expression is an argument of the kernels.
             turn = "free" if is_symbolic(self.turn) else _exact(self.turn)
-        held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_place)
-        return _shared(_Kernels((self.rod.length, self.unit, held, place, turn), self))
+        held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_pose)
+        return _shared(_Kernels((self.rod.length, self.unit, held, pose, turn), self))
 
     @property
     def _given_target(self) -> HeldPose:
         """The pose and the directions in which the section is held, as expressions."""
-        place = self.place if isinstance(self.place, Pose) else self.place.pose
-        return HeldPose(place, self.turn)
+        pose = self.pose if isinstance(self.pose, Pose) else self.pose.pose
+        return HeldPose(pose, self.turn)
 
     @property
     def _free_target(self) -> list[Matrix]:
         """The expressions of the held pose as arguments of the kernels; numbers of it are constants of the kernels."""
-        arguments = [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
+        arguments = [self.pose.position, self.pose.quaternion] if isinstance(self.pose, Pose) else []
         if is_symbolic(self.turn):
             arguments.append(self.turn)
         return arguments
@@ -215,9 +215,9 @@ class SectionConstraint:
         """The target that the kernels are written in, and its symbols."""
         target = self._given_target
         symbols = []
-        if isinstance(self.place, Pose):
+        if isinstance(self.pose, Pose):
             symbols = [ca.SX.sym("place_position", 3), ca.SX.sym("place_quaternion", 4)]
-            target = replace(target, place=Pose(*symbols))
+            target = replace(target, pose=Pose(*symbols))
         if is_symbolic(self.turn):
             symbols.append(ca.SX.sym("held_quaternion", 4))
             target = replace(target, turn=symbols[-1])
@@ -228,7 +228,7 @@ class SectionConstraint:
         section = poses.section
         held_to = target.seen_from(poses)
         back = quaternion_conjugate(held_to.quaternion)
-        if self.held.turn_with_place:
+        if self.held.turn_with_pose:
             displacement = held_to.rotation.T @ (section.position - held_to.position)
             turn = quaternion_product(back, section.quaternion)[1:]
         else:
@@ -247,7 +247,7 @@ class SectionConstraint:
         return self._wrench_basis(poses, target) @ multipliers
 
     def reaction_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
-        """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
+        """The opposite of the wrench on the section, at the held pose, or at the section where that may slide."""
         wrench = self.wrench_of(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
@@ -255,7 +255,7 @@ class SectionConstraint:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:
-            arm = poses.frame.rotation @ target.place.position
+            arm = poses.frame.rotation @ target.pose.position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 

@@ -28,7 +28,7 @@ class TipHolder(Kind, ABC, Generic[RecordType]):
     def held(self, record: RecordType, rotation: FloatArray) -> HeldDirections:
         """Directions along and about which the tip is held.
 
-        Directions in the axes of the tip turn with the place: ``HeldDirections(…, turn_with_place=True)``.
+        Directions in the axes of the tip turn with the held pose: ``HeldDirections(…, turn_with_pose=True)``.
 
         Args:
             record: the record of the scene.

@@ -204,7 +204,7 @@ class Assembly:
         work = self._section_motion(placed).T / -constraint.unit
         multipliers = self.discrete.multipliers(placed)
         blocks.add(strains, multipliers, work @ constraint.wrench_basis(poses))
-        if not constraint.held.turn_with_place:
+        if not constraint.held.turn_with_pose:
             return
         variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
         for name, derivative in self._of_floating(placed, variations):
@@ -372,7 +372,7 @@ class Assembly:
         moment_rows = ca.horzcat(ca.DM.eye(3), hat(poses.section.position))
         force_rows = ca.horzcat(ca.DM(3, 3), ca.DM.eye(3))
         to_base = to_world @ ca.vertcat(moment_rows, force_rows)
-        if constraint.held.turn_with_place:
+        if constraint.held.turn_with_pose:
             variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
             for moved, derivative in self._of_floating(placed, variations):
                 by_motion[moved] = by_motion[moved] + to_base @ derivative

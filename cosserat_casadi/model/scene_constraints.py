@@ -106,22 +106,22 @@ def written_constraints(
     axes = _axes(scene)
     constraints = []
     for entry in placed:
-        place = after[entry.where]
+        pose = after[entry.where]
         start = before[entry.where]
         assert isinstance(start, NumericPose)
-        # Of the two signs of a quaternion, the one that the nominal place has.
-        closing = entry.constraint.place
+        # Of the two signs of a quaternion, the one that the nominal pose has.
+        closing = entry.constraint.pose
         assert isinstance(closing, NumericPose)
         sign = float(np.sign(closing.quaternion @ start.quaternion))
-        if isinstance(place, Pose):
-            place = Pose(place.position, sign * place.quaternion)
+        if isinstance(pose, Pose):
+            pose = Pose(pose.position, sign * pose.quaternion)
         else:
-            place = NumericPose(place.position, sign * place.quaternion)
+            pose = NumericPose(pose.position, sign * pose.quaternion)
         at = carriers.get(entry.where, entry.constraint.at)
         turn = None
         if entry.where in axes_before:
-            turn = _turn_of_axis(start, axes_before[entry.where], place, axes[entry.where])
-        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, place=place, turn=turn)))
+            turn = _turn_of_axis(start, axes_before[entry.where], pose, axes[entry.where])
+        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, pose=pose, turn=turn)))
     return constraints
 
 
@@ -143,14 +143,14 @@ def _holders(scene: scenes.Scene) -> Iterator[tuple[str, TipHolder[Any], Any]]:
         yield f"joints[{i}]", JOINT_KINDS[joint.kind], joint
 
 
-def _turn_of_axis(start: NumericPose, before: Numbers, place: NumericPose | Pose, after: Numbers) -> Matrix | None:
+def _turn_of_axis(start: NumericPose, before: Numbers, pose: NumericPose | Pose, after: Numbers) -> Matrix | None:
     """Shortest rotation from the line of an axis to another, both seen from their places, as a quaternion.
 
     None where it is none. Neither the length of an axis nor its sign matters.
     """
     old = ca.DM(start.rotation.T @ known(before))
     unit_old = old / ca.norm_2(old)
-    new: Matrix = as_matrix(place.rotation).T @ as_matrix(after)
+    new: Matrix = as_matrix(pose.rotation).T @ as_matrix(after)
     if is_symbolic(new) and not ca.symvar(new):
         new = ca.evalf(new)
     unit_new = new / ca.norm_2(new)
@@ -252,8 +252,8 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     floats = unloaded.floating_base(rod) is not None
     stays = _supported_in_plane(unloaded, support, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
     if stays:
-        # Directions that turn with the place are given in its axes, others in those of the base.
-        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_place else NORMAL
+        # Directions that turn with the pose are given in its axes, others in those of the base.
+        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_pose else NORMAL
         directions = in_plane(directions, normal)
     if floats:
         return tip.held_to(tip.nearer_sign(target, None), directions, None, words)

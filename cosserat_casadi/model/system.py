@@ -392,7 +392,7 @@ class System:
         constraint = placed.constraint
         held = constraint.held
         multipliers = self.multipliers(placed)
-        if held.turn_with_place:
+        if held.turn_with_pose:
             poses = self._poses_but_section(placed)
             wrench = constraint.wrench_basis(poses) @ multipliers
             return WrenchAt(constraint.at, wrench[3:], wrench[:3], follower=False)
