@@ -38,7 +38,12 @@ def is_symbolic(value: object) -> TypeIs[Matrix]:
 
 def any_symbolic(values: Iterable[object]) -> bool:
     """Whether there is an expression among values, or in a sequence among them."""
-    return any(any_symbolic(value) if isinstance(value, tuple | list) else is_symbolic(value) for value in values)
+    for value in values:
+        if isinstance(value, ca.MX):
+            return True
+        if isinstance(value, tuple | list) and any_symbolic(value):
+            return True
+    return False
 
 
 def known(numbers: Numbers) -> FloatArray:

@@ -13,7 +13,7 @@ from enum import Enum
 from functools import cached_property
 from importlib import import_module
 from operator import attrgetter
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import casadi as ca
 
@@ -222,7 +222,7 @@ class FunctionSpec:
 
 def _entry_of(module: str, method: str) -> FunctionSpec:
     """The entry of a method, such as "ModelFunctions.residual" of a module."""
-    function: NamedFunction[Any] = attrgetter(method)(import_module(module))
+    function: NamedFunction = attrgetter(method)(import_module(module))
     return function.spec
 
 
@@ -269,8 +269,11 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
 
 
 @dataclass
-class NamedFunction(Generic[Result]):
-    """A member of a model that is built when it is first asked for, and kept."""
+class NamedFunction:
+    """A member of a model that is built when it is first asked for, and kept.
+
+    Of the scene it is one function, of rods, actuators or bodies a function for each, by name.
+    """
 
     spec: FunctionSpec = field(init=False)
     options: dict[str, Any]
@@ -284,26 +287,13 @@ class NamedFunction(Generic[Result]):
     def __get__(self, model: Any, model_class: type | None = None) -> Any:
         if model is None:
             return self
-        built = self._build(model)
+        built: ca.Function | dict[str, ca.Function] | None
+        if self.spec.owner is Owner.SCENE:
+            built = self.spec.build(model)
+        else:
+            built = {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}
         model.__dict__[self.spec.name] = built
         return built
-
-    def _build(self, model: Any) -> Any:
-        raise NotImplementedError
-
-
-class SceneFunction(NamedFunction[ca.Function]):
-    """One function of the whole scene."""
-
-    def _build(self, model: Any) -> ca.Function | None:
-        return self.spec.build(model)
-
-
-class OwnedFunctions(NamedFunction[dict[str, ca.Function]]):
-    """One function for each rod, actuator or body, by name."""
-
-    def _build(self, model: Any) -> dict[str, ca.Function | None]:
-        return {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}
 
 
 def scene_function(
@@ -312,7 +302,7 @@ def scene_function(
     kernel: str = "",
     header: str = "",
     differentiable: bool = False,
-) -> Callable[[Write], SceneFunction]:
+) -> Callable[[Write], NamedFunction]:
     """Make a method one named function of the scene.
 
     Args:
@@ -330,7 +320,7 @@ def scene_function(
         "header": header,
         "differentiable": differentiable,
     }
-    return lambda write: SceneFunction(options, write)
+    return lambda write: NamedFunction(options, write)
 
 
 def owned_functions(
@@ -342,7 +332,7 @@ def owned_functions(
     kernel_outputs: int | None = None,
     header: str = "",
     differentiable: bool = False,
-) -> Callable[[Write], OwnedFunctions]:
+) -> Callable[[Write], NamedFunction]:
     """Make a method one named function for each rod, actuator or body.
 
     Args:
@@ -363,7 +353,7 @@ def owned_functions(
         "header": header,
         "differentiable": differentiable,
     }
-    return lambda write: OwnedFunctions(options, write)
+    return lambda write: NamedFunction(options, write)
 
 
 def table(model_class: type) -> list[FunctionSpec]:

@@ -156,9 +156,7 @@ def _hooke(rod: scenes.Rod) -> Field:
     youngs_modulus = rod.material.youngs_modulus
     shear = shear_modulus(rod.material)
     correction = rod.section.shear_correction
-    shape = _section_shape(rod.section)
-    hooke: Field = lambda X: hooke_tensor(shape(X), youngs_modulus, shear, correction)  # noqa: E731
-    return _shared(hooke, *sizes_of(rod.section).values())
+    return _of_sections(rod.section, lambda shape: hooke_tensor(shape, youngs_modulus, shear, correction))
 
 
 def shear_modulus(material: scenes.Material) -> Scalar:
@@ -181,10 +179,20 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
     return _shared(lambda X: side_by_side([_along(f, X) for f in linear]), *fields)
 
 
-def _section_shape(record: scenes.Section) -> Callable[[Numbers], SectionShape]:
-    """Abscissae ↦ areas and second moments of the sections there."""
+def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numbers]) -> Field:
+    """A quantity of the areas and second moments of the sections, as a field."""
     shape = SHAPES[record.shape]
-    return lambda X: shape.shape(sizes_along(record, X))
+    vary = any(isinstance(size, tuple) for size in sizes_of(record).values())
+
+    def at(X: Numbers) -> Numbers:
+        if not vary:
+            # All sections are alike: where the quantity is an expression, one row stands for all.
+            anywhere = quantity(shape.shape(sizes_along(record, X[:1])))
+            if is_symbolic(anywhere):
+                return anywhere
+        return quantity(shape.shape(sizes_along(record, X)))
+
+    return at
 
 
 def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
@@ -204,8 +212,7 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density
-    shape = _section_shape(rod.section)
-    return _shared(lambda X: density * shape(X).area, *sizes_of(rod.section).values())
+    return _of_sections(rod.section, lambda shape: density * shape.area)
 
 
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
@@ -218,16 +225,15 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density
-    shape = _section_shape(rod.section)
-    return _shared(lambda X: density * shape(X).second_moments, *sizes_of(rod.section).values())
+    return _of_sections(rod.section, lambda shape: density * shape.second_moments)
 
 
 def _area(rod: scenes.Rod) -> Field | None:
     """Area of the sections (k,); None of a rod that is given by its stiffness."""
     if rod.section is None:
         return None
-    shape = _section_shape(rod.section)
-    return lambda X: shape(X).area
+    section = rod.section
+    return lambda X: SHAPES[section.shape].shape(sizes_along(section, X)).area
 
 
 def _diameter(rod: scenes.Rod) -> Field | None:

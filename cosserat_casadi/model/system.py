@@ -93,8 +93,13 @@ class System:
 
     @cached_property
     def rods(self) -> dict[str, InverseGeometricModel]:
-        """Balance of every rod, in its base frame."""
-        return {name: self._rod(name) for name in self.discrete.rods}
+        """Balance of every rod in its base frame, under its loads, constraints, actuators and cables."""
+        balances = {}
+        for name, shape_of_rod in self.shapes.items():
+            wrenches = [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
+            loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
+            balances[name] = InverseGeometricModel(Statics(shape_of_rod, loads), self.actuators.on_rod(name))
+        return balances
 
     @cached_property
     def tangents(self) -> dict[str, Tangent]:
@@ -379,13 +384,6 @@ class System:
         ratio = ratio_of(self.discrete, rod, self.arguments)
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
-
-    def _rod(self, name: str) -> InverseGeometricModel:
-        """Balance of a rod under its loads, the wrenches of its constraints, its actuators and its cables."""
-        constraints = self.discrete.constraints_on(name)
-        wrenches = [self._constraint_wrench(placed) for placed in constraints]
-        loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
-        return InverseGeometricModel(Statics(self.shapes[name], loads), self.actuators.on_rod(name))
 
     def _constraint_wrench(self, placed: PlacedConstraint) -> WrenchAt:
         """Wrench of a constraint on its section, in the axes of the rod's base."""

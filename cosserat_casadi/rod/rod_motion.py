@@ -135,21 +135,21 @@ class _MovingInterval:
 
     def __init__(self, kernels: IntervalKernels) -> None:
         self._kernels = kernels
-        self.at_rest = kernels.symbols()
+        self.at_rest = kernels.symbols
         self._turn_rate = ca.SX.sym("turn_rate", kernels.size)
         self._turn_acceleration = ca.SX.sym("turn_acceleration", kernels.size)
 
     @cached_property
     def by_turn(self) -> tuple[ca.SX, ca.SX, ca.SX]:
         """∂Ω/∂turn and its rates, 3×size each."""
-        value = ca.jacobian(self._kernels.rotation_vector(self.at_rest.turn), self.at_rest.turn)
+        value = ca.jacobian(self._kernels.rotation_vector, self.at_rest.turn)
         first = self._rate(value)
         return value, first, self._rate(first)
 
     @cached_property
     def increment(self) -> IncrementRates:
         """The rotation of the interval in motion."""
-        first = self._rate(self._kernels.rotation_vector(self.at_rest.turn))
+        first = self._rate(self._kernels.rotation_vector)
         return IncrementRates(self.at_rest.increment, first, self._rate(first))
 
     def function(self, name: str, more: list[ca.SX], outputs: list[ca.SX], names: list[str]) -> ca.Function:

@@ -122,12 +122,13 @@ class Tangent:
         """Columns of the turns, or of all angular coordinates, where moments pass."""
         if self.given is not None:
             return self.given
+        section_rotation = self.section_rotation
         linear = {component: self._linear_rows(component) for component in self.rod.linear}
         following = {}
         force = self._turned.force
         if force is not None:
             following = {component: self._following_rows(component, force) for component in self.rod.linear}
-        return Columns(self.section_rotation, self._angular_product, linear, following)
+        return Columns(section_rotation, self._angular_product, linear, following)
 
     def under(self, load: LoadedSections) -> Tangent:
         """The same variations of the same shape where one load that depends on poses acts alone."""
