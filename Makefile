@@ -78,7 +78,7 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
-	$(BIN)/python -m cosserat_casadi.scene.reference
+	$(BIN)/python -m cosserat_casadi.scene.scene_reference
 
 api: $(STAMP)
 	$(BIN)/python docs/api_pages.py

@@ -226,9 +226,9 @@ def test_every_page_is_in_the_table_of_contents() -> None:
 
 
 def test_every_load_actuator_and_support_is_on_the_page_of_robots() -> None:
-    from cosserat_casadi.scene.actuators import ACTUATORS
-    from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS
-    from cosserat_casadi.scene.loads import LOADS
+    from cosserat_casadi.scene.actuator_records import ACTUATORS
+    from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS
+    from cosserat_casadi.scene.load_records import LOADS
 
     page = (DOCS / "robots.md").read_text()
     for kind in (*LOADS.records, *ACTUATORS.records, *SUPPORTS.records, *JOINTS.records):

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
-from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
 from cosserat_casadi.numerics.neutral import regular, regular_inverse
@@ -181,7 +181,7 @@ class Preview:
         """
         kept = self.kept(modes)
         regridded = self._regridded(x, grids)
-        residual = _numbers(Equations(regridded).residual)[kept, 0]
+        residual = _numbers(SceneEquations(regridded).residual)[kept, 0]
         # One Newton step with the Jacobian of the reference's grid.
         corrected = x.copy()
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
@@ -217,12 +217,12 @@ class Preview:
         # Of the tips the modes alone: what the grid does to them is a look of its own.
         tips = _tips_of(current)
         for _ in range(max(sweeps, 1)):
-            _, lacking = richer.split(_as_numbers(Equations(current).residual))
+            _, lacking = richer.split(_as_numbers(SceneEquations(current).residual))
             step, missing_step = richer.split(richer.elastic_step(lacking))
             known = known + _column(step)
             missing = missing + _column(missing_step)
             if sweeps > 0:
-                residual, _ = richer.split(_as_numbers(Equations(system(known, missing)).residual))
+                residual, _ = richer.split(_as_numbers(SceneEquations(system(known, missing)).residual))
                 known = known - inverse @ _column(residual)
             current = system(known, missing)
         return FinerShift(

@@ -22,13 +22,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.enrichment import nodes_for
-from cosserat_casadi.model.input_ranges import limits_of, narrowed
+from cosserat_casadi.model.input_bounds import limits_of, narrowed
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
 from cosserat_casadi.model.unknowns import BlockKind

@@ -17,7 +17,7 @@ from cosserat_casadi.bench.reference import Errors, Reference, with_tolerance
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.discretisation import Discretisation
 
 LARGEST = 400_000

@@ -13,7 +13,7 @@ from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.bench.motion_times import MotionCost
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
-from cosserat_casadi.model.price import Price
+from cosserat_casadi.model.operation_cost import Price
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
 """Columns that are always shown."""

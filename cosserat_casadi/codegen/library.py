@@ -40,13 +40,13 @@ from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.input_ranges import ranges_of_inputs
+from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""

@@ -23,12 +23,12 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
-from cosserat_casadi.model.input_ranges import ranges_of_inputs
+from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 MANIFEST = "manifest.json"
 

@@ -38,7 +38,7 @@ DRAWS = 20
 """Random inputs that are tried for a target before it counts as out of reach."""
 
 LARGEST = float(np.finfo(np.float64).max)
-"""Bound of what is seen: any finite number."""
+"""Bound of the observations: any finite number."""
 
 Observation = npt.NDArray[np.float64]
 
@@ -266,7 +266,7 @@ def _finite(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     """Numbers that are all finite, as a vector of a known size.
 
     Raises:
-        ValueError: they are not; the name says what they are.
+        ValueError: a number is not finite; the name says which argument.
     """
     numbers = vector(value, size, name)
     if not np.all(np.isfinite(numbers)):

@@ -2,7 +2,7 @@
 
 Counting degrees of freedom against constraints is not enough: a platform on six legs of three bending modes each has
 eighteen degrees of freedom more than constraints, and all of them leave the platform where it is. So the compliance of
-each load, how far the least push of it moves what is watched, is set beside that on a model with modes added.
+each load, how far the least push of it moves the watched poses, is set beside that on a model with modes added.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
 
 
 def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Motion of what is watched per unit of each entry of every input but lengths, by the input's name."""
+    """Motion of the watched poses per unit of each entry of every input but lengths, by the input's name."""
     inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
     responses = -inverse @ residual_by_inputs(model, x, inputs)
     for entry, span in model.inputs:
@@ -88,7 +88,7 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 
 
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
-    """How far a step of the unknowns moves what is watched, to first order: over the length, or in quaternions."""
+    """How far a step of the unknowns moves the watched poses, to first order: over the length, or in quaternions."""
     share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
     change = _watched(model, x + share * step, inputs) - _watched(model, x, inputs)
     return float(np.abs(change).max(initial=0.0)) / share
@@ -107,7 +107,7 @@ NOT_KNOWN = (
 
 
 def locking_sentence(locked: Sequence[str]) -> str:
-    """What a user must know of modes that leave these inputs no motion; empty where there is none of them."""
+    """A sentence for modes that leave these inputs no motion; empty without such inputs."""
     if not locked:
         return ""
     return (
@@ -117,7 +117,7 @@ def locking_sentence(locked: Sequence[str]) -> str:
 
 
 def may_be_locked(model: Model) -> bool:
-    """Whether constraints meet modes that the scene fixes: those that were chosen are free to move.
+    """Whether constraints meet modes that the scene fixes: modes that were chosen are free to move.
 
     False in exact contact too, whose forces are inputs of another model for every arrangement.
     """

@@ -19,13 +19,13 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.page.drawn_model import DrawnModel
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
 
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
 
-SCRIPTS = ("spectrum.js", "shapes.js", "painter.js", "scenery.js", "panel.js", "hand.js")
+SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.js", "panel.js", "tip_dragging.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 
@@ -35,7 +35,7 @@ def export_page(solution: Solution, file: Path, asked: Given | None = None) -> P
     Args:
         solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
-        file: what is written.
+        file: path of the page.
         asked: ranges of the sliders; by default those that modes are chosen for.
 
     Raises:
@@ -55,7 +55,7 @@ def export_page(solution: Solution, file: Path, asked: Given | None = None) -> P
 
 
 def asked_accuracy(solution: Solution) -> dict[str, Any]:
-    """What errors are judged by: the tolerance, None where none has a meaning, and what helps above it."""
+    """The tolerance by which errors are judged, None where none has a meaning, and the remedy above it."""
     accuracy = solution.model.scene.accuracy
     return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
 

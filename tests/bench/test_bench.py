@@ -25,7 +25,7 @@ from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import NoReferenceError
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.price import is_damped, price, price_of_motion, without_damping
+from cosserat_casadi.model.operation_cost import is_damped, price, price_of_motion, without_damping
 from tests.moving_scenes import model_of
 from tests.scenes import push, rod, scene
 

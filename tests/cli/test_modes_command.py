@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import read_scene
-from cosserat_casadi.motion.modes import modes_of_scene
+from cosserat_casadi.motion.vibration_modes import modes_of_scene
 from cosserat_casadi.plots import modes_plot
 from tests.commands import Ended, cosserat
 

@@ -13,11 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Outcome, Solution, build, export, follow_path, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
+from cosserat_casadi.equilibrium.contact.contact_search import found_at
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
-from cosserat_casadi.equilibrium.contact.settle import found_at
-from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.verdict import _gap_curvature
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FrameName
@@ -26,7 +26,7 @@ from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.figure import figure_class
-from cosserat_casadi.plots.obstacles import surface_lines, surface_net
+from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
 from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.sweep.row_model import RowModel
 from tests.conftest import ROOT

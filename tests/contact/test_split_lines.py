@@ -9,10 +9,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_newton import sought
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
-from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.steps import sought
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 from cosserat_casadi.results.solution_file import result

@@ -67,7 +67,7 @@ def _in_place(model: Model, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     record = model.scene.joints[1]
     offset = world_R_plate.T @ (position - plate)[:, 0] - np.asarray(record.position)
     w, a, b, c = record.quaternion
-    place = model.discrete.constraint("joints[1]").place
+    place = model.discrete.constraint("joints[1]").pose
     assert_allclose(np.abs(place.quaternion), np.abs([w, a, b, c]), rtol=0, atol=1e-15)
     return offset, world_R_plate.T @ rotation @ place.rotation.T, AXIS / np.linalg.norm(AXIS)
 
@@ -99,7 +99,7 @@ def test_multipliers_do_no_work_in_what_is_free(kind: str) -> None:
     solution = solve(model)
     assert solution.converged
     wrench = model.fields["b"](solution.x, solution.inputs)[2].full()[:, -1]
-    place = model.discrete.constraint("joints[1]").place
+    place = model.discrete.constraint("joints[1]").pose
     _, turn, axis = _in_place(model, solution.x)
     axis_in_section = place.rotation.T @ turn.T @ axis
     part = wrench[:3] if kind == "revolute" else wrench[3:]

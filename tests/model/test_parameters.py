@@ -21,7 +21,7 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.load_records import LoadRecord
 from tests.families import mostly_slow
 from tests.loads.kinds import BedRecord, DipoleRecord, registered, with_loads
 from tests.scenes import WEIGHT, push

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict, solve, solve_scene
 from cosserat_casadi.plots.scenery import actuator_routing
-from cosserat_casadi.plots.shapes import SAMPLES
+from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
 from tests.families import mostly_slow
 from tests.reference.tendons import TendonRod

@@ -12,8 +12,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Motion, MotionOutcome, build, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.endings import independence_of
 from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.motion_ending import independence_of
 from cosserat_casadi.motion.simulate import moving_inputs, started
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings

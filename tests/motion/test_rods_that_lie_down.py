@@ -13,13 +13,13 @@ from typer.testing import CliRunner
 from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve, write_motion
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.laid_sections import lobatto
+from cosserat_casadi.motion.lying_sections import lobatto
 from cosserat_casadi.motion.simulate import moving_inputs
-from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.consistent_start import response, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -267,7 +267,7 @@ def test_what_happens_shortly_after_is_a_step_of_the_implicit_method() -> None:
     assert_allclose(response(equations, instant, np.ones((1, 1))), 1.0 / mass, rtol=1e-12, atol=0)
 
 
-def guarded(height: float, arrangement: Arrangement, force: FloatArray, time: float) -> FloatArray:
+def guarded(height: float, arrangement: ContactPhase, force: FloatArray, time: float) -> FloatArray:
     """Guards of the straight rod above the table by a part of its length, with forces of contact at a time."""
     (radius, bottom) = (8e-3, -height * LENGTH)
     changes = [f"table.point=[0,0,{bottom - radius}]", "rod.base.position=[0,0,0]"]
@@ -277,7 +277,7 @@ def guarded(height: float, arrangement: Arrangement, force: FloatArray, time: fl
     touches = tuple(touch._replace(height=height) for touch in arrangement.touches)
     follower = Follower(contacts.facings, touches)
     floors = tuple(np.zeros(max(1, len(facing.laid_at))) for facing in contacts.facings)
-    whole = Arrangement(touches, arrangement.laid, follower, floors, arrangement.forces_from)
+    whole = ContactPhase(touches, arrangement.laid, follower, floors, arrangement.forces_from)
     _, guards = contacts.arranged(equations_of(model, piece), piece, whole)
     none = np.zeros(model.size + len(touches))
     return guards(Instant(time, np.concatenate([model.unloaded(), force]), none, none))
@@ -285,13 +285,13 @@ def guarded(height: float, arrangement: Arrangement, force: FloatArray, time: fl
 
 def test_a_force_that_may_pull_for_a_while_is_no_event_until_then() -> None:
     """A guard that is zero would be one at once, and the contact would be taken up and given up without end."""
-    tip = Arrangement((Touch(0, 1.0, False),), forces_from=0.01)
+    tip = ContactPhase((MovingContact(0, 1.0, False),), forces_from=0.01)
     assert guarded(0.0, tip, np.array([-0.3]), 0.005)[0] > 1e3 * ON_GUARD
     assert guarded(0.0, tip, np.array([-0.3]), 0.02)[0] == -0.3
 
 
 def test_a_rod_has_got_up_where_none_of_its_sections_would_touch() -> None:
     """Less high it would lie down again in the same moment: its sections count as touching up to there."""
-    lying = Arrangement(laid=frozenset({0}))
+    lying = ContactPhase(laid=frozenset({0}))
     assert guarded(5e-8, lying, np.zeros(0), 0.0)[-1] > 0.0
     assert guarded(2e-7, lying, np.zeros(0), 0.0)[-1] < 0.0

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from PIL import Image
 
-from cosserat_casadi.motion.modes import Modes, modes_of_scene
+from cosserat_casadi.motion.vibration_modes import Modes, modes_of_scene
 from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes, save_mode_animation, save_modes_plot
 from tests.scenes import rod, scene

@@ -9,9 +9,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from cosserat_casadi import all_equilibria, follow_scene_path, solve_scene
 from cosserat_casadi.maths.composition import SHARES
-from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.stability import stability_of
+from cosserat_casadi.tubes.tube_model import TubeModel
+from cosserat_casadi.tubes.tube_stability import stability_of
 from tests.tubes.pendulum import Pendulum
 
 SHORT = Pendulum(1.2)

@@ -29,9 +29,9 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
-from cosserat_casadi.model.input_ranges import ranges_of_inputs
-from cosserat_casadi.tubes.solution import tip_error
-from cosserat_casadi.tubes.solve import model_of, solution_near, solve_at
+from cosserat_casadi.model.input_bounds import ranges_of_inputs
+from cosserat_casadi.tubes.tube_solution import tip_error
+from cosserat_casadi.tubes.tube_solve import model_of, solution_near, solve_at
 from tests.commands import cosserat
 from tests.families import mostly_slow
 

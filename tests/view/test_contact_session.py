@@ -12,10 +12,10 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, Solution, build, scene_from_dict, solve
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.server import RobotServer
-from cosserat_casadi.view.session import opened
+from cosserat_casadi.view.view_session import opened
 from tests.browser import PATIENCE, browser
 from tests.scenes import rod
 

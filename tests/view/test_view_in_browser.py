@@ -18,9 +18,9 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, solve
 from cosserat_casadi.view.server import CONNECTIONS, HOST, RobotServer
-from cosserat_casadi.view.session import opened
+from cosserat_casadi.view.view_session import opened
 from tests.browser import PATIENCE, browser
-from tests.view.test_session import strip
+from tests.view.test_view_session import strip
 
 
 @pytest.fixture(scope="module")

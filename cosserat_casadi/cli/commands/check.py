@@ -20,8 +20,8 @@ from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.price import is_damped, price, prices_of_effects, without_damping
-from cosserat_casadi.motion.checks import check_simulation
+from cosserat_casadi.model.operation_cost import is_damped, price, prices_of_effects, without_damping
+from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values

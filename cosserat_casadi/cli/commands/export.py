@@ -37,8 +37,8 @@ from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import solve_tubes
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import solve_tubes
 
 
 def export(

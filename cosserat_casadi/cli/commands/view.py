@@ -38,7 +38,7 @@ def view(
     """
     # Imported here, because motions and inverse problems are needed by few commands.
     from cosserat_casadi.view.server import RobotServer, check_port
-    from cosserat_casadi.view.session import is_compiled, opened
+    from cosserat_casadi.view.view_session import is_compiled, opened
 
     check_port(port)
     viewed_scene = read_scene(scene, tuple(settings or ()))

@@ -21,7 +21,13 @@ from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
-from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
+from cosserat_casadi.equilibrium.contact import (
+    contact_alternatives,
+    contact_equations,
+    contact_search,
+    contact_state,
+    passing_through,
+)
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.path_stretch import VANISHED
@@ -71,7 +77,7 @@ GOLDEN_SECTIONS = 24
 """Golden sections to where a gap is least between three sections."""
 
 SHORTER = 0.7
-"""Share of a line of contact that stays where a rod curls up, as in settle.py."""
+"""Share of a line of contact that stays where a rod curls up, as in contact_search.py."""
 
 
 def contact_files(
@@ -178,12 +184,12 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "max_reuses": newton.MAX_REUSES,
         "reuse_decrease": newton.REUSE_DECREASE,
         "accepted": chosen.tolerance,
-        "shortest_element": state.SHORTEST,
+        "shortest_element": contact_state.SHORTEST,
         "longest_way": LONGEST_WAY,
         "min_step": MIN_STEP,
-        "stride": passage.STRIDE,
-        "most_looks": passage.MOST_LOOKS,
-        "deep": passage.DEEP,
+        "stride": passing_through.STRIDE,
+        "most_looks": passing_through.MOST_LOOKS,
+        "deep": passing_through.DEEP,
         "vanished": VANISHED,
         "fastest": FASTEST,
         "closest": CLOSEST,
@@ -191,13 +197,13 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "farthest": FARTHEST,
         "looked_along": LOOKED_ALONG,
         "golden_sections": GOLDEN_SECTIONS,
-        "near": alternatives.NEAR,
-        "at_tip": settle.AT_TIP,
-        "lies_from": alternatives.LIES_FROM,
+        "near": contact_alternatives.NEAR,
+        "at_tip": contact_search.AT_TIP,
+        "lies_from": contact_alternatives.LIES_FROM,
         "shorter": SHORTER,
-        "alike": settle.ALIKE,
-        "fit": equations.FIT,
-        "samples": len(settle.SAMPLES) - 1,
+        "alike": contact_search.ALIKE,
+        "fit": contact_equations.FIT,
+        "samples": len(contact_search.SAMPLES) - 1,
     }
 
 

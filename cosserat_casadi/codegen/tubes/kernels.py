@@ -16,8 +16,8 @@ import casadi as ca
 from cosserat_casadi.codegen.kernels import loops
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.tubes.functions import TubeFunctions
-from cosserat_casadi.tubes.solve import model_of
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_solve import model_of
 
 RESOLVED = 64.0
 """Residual that half of the steps may leave, over the tolerance, where all of them are called enough.

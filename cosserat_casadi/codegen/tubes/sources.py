@@ -34,8 +34,8 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 NEAR = 0.3
 """Twist, rad, by which a turn may change the tubes at once; farther on the way is followed."""
