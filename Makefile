@@ -4,6 +4,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Small matrices: a second BLAS thread only takes the other worker's core.
 export OPENBLAS_NUM_THREADS := 1
+# What Python has compiled serves the other processes of a run, and the next run.
+unexport PYTHONDONTWRITEBYTECODE
 STAMP := $(VENV)/.installed
 
 .PHONY: help demo gallery test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
@@ -26,7 +28,8 @@ help:
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	# Compiled when it is imported: most modules of these packages never are.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[test]'
 	@touch $@
 
 demo: $(STAMP)
@@ -75,7 +78,7 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
-	$(BIN)/python -m cosserat_casadi.scene.reference
+	$(BIN)/python -m cosserat_casadi.scene.scene_reference
 
 api: $(STAMP)
 	$(BIN)/python docs/api_pages.py

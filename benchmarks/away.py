@@ -42,7 +42,7 @@ from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, p
 from cosserat_casadi.errors import CosseratError  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.model.watched import SAMPLES  # noqa: E402
-from cosserat_casadi.page.ranges import sliders  # noqa: E402
+from cosserat_casadi.page.slider_ranges import sliders  # noqa: E402
 from tests.reference.assembled_scenes import assembled_scene  # noqa: E402
 from tests.reference.random_scenes import random_scene  # noqa: E402
 

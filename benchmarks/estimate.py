@@ -34,8 +34,8 @@ from cosserat_casadi.estimation.beforehand import knowledge_of, stacked_indices,
 from cosserat_casadi.estimation.estimate import start_tables
 from cosserat_casadi.estimation.stacking import differences, sections_of, stacked
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.identification.unknowns import unknown_layout
+from cosserat_casadi.identification.fit_unknowns import unknown_layout
+from cosserat_casadi.identification.measured_cases import read_cases
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.scene import Scene, Unknown

@@ -27,7 +27,7 @@ import numpy as np
 
 from cosserat_casadi import Model, build, identify, read_scene
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.identification.cases import Data
+from cosserat_casadi.identification.measured_cases import Data
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import NAMES, TRUTH, WIRE, measured_shapes

@@ -24,7 +24,7 @@ from motion_rivals import INTERVAL, LENGTH, LIMITS, TIMES, Paths, Rival, Run, ri
 from rich.progress import Progress
 
 from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate_scene
-from cosserat_casadi.motion.poses import tip_poses
+from cosserat_casadi.motion.pose_series import tip_poses
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.figure import figure_class, write_figure

@@ -22,7 +22,7 @@ from rich.progress import Progress
 from cosserat_casadi import Model, build, discretise, scene_from_dict
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History, integrated
-from cosserat_casadi.motion.poses import tip_poses
+from cosserat_casadi.motion.pose_series import tip_poses
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.integration import StepSettings

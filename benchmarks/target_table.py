@@ -19,7 +19,7 @@ from rich.progress import track
 
 from cosserat_casadi import Scene, build, discretise, read_scene, solve
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
-from cosserat_casadi.scene.targets import PositionTarget
+from cosserat_casadi.scene.target_records import PositionTarget
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "control.md"

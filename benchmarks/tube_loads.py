@@ -12,10 +12,10 @@ import numpy as np
 
 from cosserat_casadi import read_scene
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.solve import solve_at
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_solve import solve_at
 
 SCENE = Path(__file__).resolve().parents[1] / "examples" / "loaded_tubes.toml"
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from cosserat_casadi import export, parse_scene, read_scene
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.tubes.solve import solve_tubes
+from cosserat_casadi.tubes.tube_solve import solve_tubes
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 

@@ -21,7 +21,7 @@ from cosserat_casadi import read_scene
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.view.questions import Question
 from cosserat_casadi.view.server import RobotServer
-from cosserat_casadi.view.session import opened
+from cosserat_casadi.view.view_session import opened
 from tests.browser import browser
 
 PAGE = Path("docs/view.md")

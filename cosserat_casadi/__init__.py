@@ -45,29 +45,29 @@ if TYPE_CHECKING:
     from cosserat_casadi.errors import Problem as Problem
     from cosserat_casadi.errors import SceneError as SceneError
     from cosserat_casadi.errors import SolveError as SolveError
-    from cosserat_casadi.identification.found import Identification as Identification
-    from cosserat_casadi.identification.search import identify as identify
-    from cosserat_casadi.identification.search import identify_scene as identify_scene
+    from cosserat_casadi.identification.identification_result import Identification as Identification
+    from cosserat_casadi.identification.model_identification import identify as identify
+    from cosserat_casadi.identification.model_identification import identify_scene as identify_scene
     from cosserat_casadi.model.build import Model as Model
     from cosserat_casadi.model.build import build as build
     from cosserat_casadi.model.discretise import discretise as discretise
     from cosserat_casadi.motion.linear_model import LinearModel as LinearModel
     from cosserat_casadi.motion.linear_model import linearise as linearise
-    from cosserat_casadi.motion.modes import Mode as Mode
-    from cosserat_casadi.motion.modes import Modes as Modes
-    from cosserat_casadi.motion.modes import modes_of as modes_of
-    from cosserat_casadi.motion.modes import modes_of_scene as modes_of_scene
-    from cosserat_casadi.motion.resolve import simulate_scene as simulate_scene
+    from cosserat_casadi.motion.motion_refinement import simulate_scene as simulate_scene
     from cosserat_casadi.motion.simulate import simulate as simulate
     from cosserat_casadi.motion.trajectory import Motion as Motion
     from cosserat_casadi.motion.trajectory import MotionOutcome as MotionOutcome
+    from cosserat_casadi.motion.vibration_modes import Mode as Mode
+    from cosserat_casadi.motion.vibration_modes import Modes as Modes
+    from cosserat_casadi.motion.vibration_modes import modes_of as modes_of
+    from cosserat_casadi.motion.vibration_modes import modes_of_scene as modes_of_scene
     from cosserat_casadi.numerics.outcome import Outcome as Outcome
     from cosserat_casadi.numerics.trace import PathOutcome as PathOutcome
     from cosserat_casadi.page.page import export_page as export_page
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath as EquilibriumPath
     from cosserat_casadi.paths.equilibrium_path import PathEvent as PathEvent
     from cosserat_casadi.paths.follow import follow_path as follow_path
-    from cosserat_casadi.paths.refine import follow_scene_path as follow_scene_path
+    from cosserat_casadi.paths.path_refinement import follow_scene_path as follow_scene_path
     from cosserat_casadi.results.identification_file import identification_result as identification_result
     from cosserat_casadi.results.inverse_file import inverse_result as inverse_result
     from cosserat_casadi.results.modes_file import modes_result as modes_result
@@ -88,12 +88,12 @@ if TYPE_CHECKING:
     from cosserat_casadi.sweep.sobol import SobolIndices as SobolIndices
     from cosserat_casadi.sweep.sobol import sobol_indices as sobol_indices
     from cosserat_casadi.sweep.table import sobol_table as sobol_table
-    from cosserat_casadi.tubes.equilibria import TubeEquilibria as TubeEquilibria
-    from cosserat_casadi.tubes.equilibria import all_equilibria as all_equilibria
-    from cosserat_casadi.tubes.model import TubeModel as TubeModel
-    from cosserat_casadi.tubes.path import TubeEvent as TubeEvent
-    from cosserat_casadi.tubes.path import TubePath as TubePath
-    from cosserat_casadi.tubes.solution import TubeSolution as TubeSolution
+    from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria as TubeEquilibria
+    from cosserat_casadi.tubes.tube_equilibria import all_equilibria as all_equilibria
+    from cosserat_casadi.tubes.tube_model import TubeModel as TubeModel
+    from cosserat_casadi.tubes.tube_path import TubeEvent as TubeEvent
+    from cosserat_casadi.tubes.tube_path import TubePath as TubePath
+    from cosserat_casadi.tubes.tube_solution import TubeSolution as TubeSolution
 
     __version__: str
 
@@ -124,21 +124,21 @@ _NAMES = {
     "equilibrium.solution": ("Solution",),
     "equilibrium.solve": ("solve",),
     "errors": ("CosseratError", "ExportError", "Problem", "SceneError", "SolveError"),
-    "identification.found": ("Identification",),
-    "identification.search": ("identify", "identify_scene"),
+    "identification.identification_result": ("Identification",),
+    "identification.model_identification": ("identify", "identify_scene"),
     "model.build": ("Model", "build"),
     "model.discretise": ("discretise",),
     "motion.linear_model": ("LinearModel", "linearise"),
-    "motion.modes": ("Mode", "Modes", "modes_of", "modes_of_scene"),
-    "motion.resolve": ("simulate_scene",),
+    "motion.motion_refinement": ("simulate_scene",),
     "motion.simulate": ("simulate",),
     "motion.trajectory": ("Motion", "MotionOutcome"),
+    "motion.vibration_modes": ("Mode", "Modes", "modes_of", "modes_of_scene"),
     "numerics.outcome": ("Outcome",),
     "numerics.trace": ("PathOutcome",),
     "page.page": ("export_page",),
     "paths.equilibrium_path": ("EquilibriumPath", "PathEvent"),
     "paths.follow": ("follow_path",),
-    "paths.refine": ("follow_scene_path",),
+    "paths.path_refinement": ("follow_scene_path",),
     "results.identification_file": ("identification_result",),
     "results.inverse_file": ("inverse_result",),
     "results.modes_file": ("modes_result",),
@@ -152,10 +152,10 @@ _NAMES = {
     "sweep.run": ("sweep_scene",),
     "sweep.sobol": ("SobolIndices", "sobol_indices"),
     "sweep.table": ("sobol_table",),
-    "tubes.equilibria": ("TubeEquilibria", "all_equilibria"),
-    "tubes.model": ("TubeModel",),
-    "tubes.path": ("TubeEvent", "TubePath"),
-    "tubes.solution": ("TubeSolution",),
+    "tubes.tube_equilibria": ("TubeEquilibria", "all_equilibria"),
+    "tubes.tube_model": ("TubeModel",),
+    "tubes.tube_path": ("TubeEvent", "TubePath"),
+    "tubes.tube_solution": ("TubeSolution",),
 }
 """Public names by the module that defines them."""
 

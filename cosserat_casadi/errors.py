@@ -13,7 +13,7 @@ class Problem:
 
     Attributes:
         where: path of the offending key, such as ``rods[0].section.radius``.
-        problem: what is wrong, with the offending value.
+        problem: the fault in words, with the offending value.
         remedy: what to do about it; empty when the problem says it already.
     """
 
@@ -53,7 +53,7 @@ def _with_sentence(error_class: type[CosseratError], *sentence: str) -> Cosserat
 
 
 class WriteError(CosseratError, OSError):
-    """A file could not be written, as on a full disk; what was there before is as it was."""
+    """A file could not be written, as on a full disk; its former content is still there."""
 
     def __init__(self, file: str | os.PathLike[str], error: OSError) -> None:
         reason = error.strerror or str(error)

@@ -47,7 +47,7 @@ def check_writable(path: Path, option: str, *, folder: bool = False) -> None:
 
 
 def is_special(path: Path) -> bool:
-    """Whether a path leads to something that is there and holds no content of its own: a device, a pipe, a socket."""
+    """Whether a path leads to an existing thing that stores no content: a device, a pipe, a socket."""
     return path.exists() and not path.is_file() and not path.is_dir()
 
 

@@ -136,7 +136,7 @@ CONCEPTS = (
             "write_acados",
         ),
         (
-            "Gap",
+            "TargetMiss",
             "lifted",
             "Lifted",
             "embedded",

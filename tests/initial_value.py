@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Scene
-from cosserat_casadi.model.rods import base_pose, rod_properties
+from cosserat_casadi.model.scene_rods import base_pose, rod_properties
 
 
 @dataclass(frozen=True)

@@ -45,29 +45,29 @@ from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.constraints.held_directions import NONE, across
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint, Support
-from cosserat_casadi.control.targets import Gap, Target, length_of
-from cosserat_casadi.identification.quantities import Site, StateQuantity
+from cosserat_casadi.control.targets import Target, TargetMiss, length_of
+from cosserat_casadi.identification.measured_quantities import MeasurementSite, StateQuantity
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.sections import CrossSection, Sizes
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.obstacles.obstacle import Obstacle
 from cosserat_casadi.obstacles.obstacle import across as normal_to
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.rod.actuation import StrainSum
 from cosserat_casadi.rod.section import SectionShape
-from cosserat_casadi.scene.actuators import ActuatorRecord
-from cosserat_casadi.scene.constraints import JointRecord, SupportRecord
+from cosserat_casadi.scene.actuator_records import ActuatorRecord
+from cosserat_casadi.scene.constraint_records import JointRecord, SupportRecord
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
-from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.load_records import LoadRecord
 from cosserat_casadi.scene.measurement_record import MovingMeasurement
-from cosserat_casadi.scene.obstacles import ObstacleRecord
-from cosserat_casadi.scene.rods import SectionRecord
-from cosserat_casadi.scene.targets import TargetRecord
+from cosserat_casadi.scene.obstacle_records import ObstacleRecord
+from cosserat_casadi.scene.rod_records import SectionRecord
+from cosserat_casadi.scene.target_records import TargetRecord
 from cosserat_casadi.scene.values import Direction, Positive, Size, Vector
 from tests.families import mostly_slow
 from tests.initial_value import integrate
@@ -177,7 +177,7 @@ class Cylindrical(Joint[CylindricalRecord]):
 
     def held(self, record: CylindricalRecord, rotation: FloatArray) -> HeldDirections:
         across_axis = across(record.axis, rotation)
-        return HeldDirections(across_axis, across_axis, turn_with_place=True)
+        return HeldDirections(across_axis, across_axis, turn_with_pose=True)
 
 
 class RollerRecord(SupportRecord):
@@ -198,7 +198,7 @@ class Roller(Support[RollerRecord]):
 
     def held(self, record: RollerRecord, rotation: FloatArray) -> HeldDirections:
         normal = rotation.T @ np.asarray(record.axis) / np.linalg.norm(record.axis)
-        return HeldDirections(normal[:, None], NONE, turn_with_place=True)
+        return HeldDirections(normal[:, None], NONE, turn_with_pose=True)
 
 
 class EndlessBarRecord(ObstacleRecord):
@@ -251,9 +251,9 @@ class Height(Target[HeightRecord]):
         position: Matrix = model.tip[target.rod](x, inputs)[0]
         return (position[2] - target.height) / length_of(model, target)
 
-    def gap(self, target: HeightRecord, solution: Solution) -> Gap:
+    def gap(self, target: HeightRecord, solution: Solution) -> TargetMiss:
         height = solution.tip(target.rod).position[0, 2]
-        return Gap(f"height of {target.rod}", abs(float(height - target.height)), None)
+        return TargetMiss(f"height of {target.rod}", abs(float(height - target.height)), None)
 
 
 class AltitudeRecord(MovingMeasurement):
@@ -275,7 +275,7 @@ class Altitude(StateQuantity[AltitudeRecord]):
 
     record = AltitudeRecord
 
-    def difference(self, site: Site) -> Matrix:
+    def difference(self, site: MeasurementSite) -> Matrix:
         heights = [position[2] for position, _ in site.frames()]
         return ca.horzcat(*heights) - site.measured
 

@@ -110,7 +110,7 @@ def test_program_loads_no_more_than_it_needs(program: str, unwanted: tuple[str, 
 def test_solve_loads_no_more_than_it_needs() -> None:
     program = """
 from cosserat_casadi import read_scene, result, solve_scene
-from cosserat_casadi.scene.loads import TipWrench
+from cosserat_casadi.scene.load_records import TipWrench
 from cosserat_casadi.scene.measurements import MeasuredPosition
 assert result(solve_scene(read_scene('examples/nitinol_wire.toml')))['converged']
 assert TipWrench.__pydantic_complete__

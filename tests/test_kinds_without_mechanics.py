@@ -8,14 +8,14 @@ import pytest
 from pydantic import BaseModel
 
 from cosserat_casadi import SceneError, build, inverse, scene_from_dict, solve
-from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.scene import ACTUATORS, JOINTS, LOADS, SUPPORTS
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS
-from cosserat_casadi.scene.obstacles import OBSTACLES
-from cosserat_casadi.scene.rods import SECTIONS
-from cosserat_casadi.scene.targets import TARGETS
+from cosserat_casadi.scene.obstacle_records import OBSTACLES
+from cosserat_casadi.scene.rod_records import SECTIONS
+from cosserat_casadi.scene.target_records import TARGETS
 from tests.scenes import push, rod
 
 WORD = "unheard_of"

@@ -36,7 +36,7 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.errors import WriteError
-from cosserat_casadi.tubes.solve import solve_tubes
+from cosserat_casadi.tubes.tube_solve import solve_tubes
 from tests.scenes import push, scene
 from tests.tubes.pendulum import Pendulum
 

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
-from cosserat_casadi.equilibrium.contact.answer_error import same_contacts, with_contact_error
-from cosserat_casadi.equilibrium.contact.equations import Grids
-from cosserat_casadi.equilibrium.contact.solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise

@@ -19,15 +19,14 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.locking import motion, residual_by_inputs
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, motion, residual_by_inputs
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
-from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
 from cosserat_casadi.numerics.neutral import regular, regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -182,7 +181,7 @@ class Preview:
         """
         kept = self.kept(modes)
         regridded = self._regridded(x, grids)
-        residual = _numbers(Equations(regridded).residual)[kept, 0]
+        residual = _numbers(SceneEquations(regridded).residual)[kept, 0]
         # One Newton step with the Jacobian of the reference's grid.
         corrected = x.copy()
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
@@ -218,12 +217,12 @@ class Preview:
         # Of the tips the modes alone: what the grid does to them is a look of its own.
         tips = _tips_of(current)
         for _ in range(max(sweeps, 1)):
-            _, lacking = richer.split(_as_numbers(Equations(current).residual))
+            _, lacking = richer.split(_as_numbers(SceneEquations(current).residual))
             step, missing_step = richer.split(richer.elastic_step(lacking))
             known = known + _column(step)
             missing = missing + _column(missing_step)
             if sweeps > 0:
-                residual, _ = richer.split(_as_numbers(Equations(system(known, missing)).residual))
+                residual, _ = richer.split(_as_numbers(SceneEquations(system(known, missing)).residual))
                 known = known - inverse @ _column(residual)
             current = system(known, missing)
         return FinerShift(
@@ -241,12 +240,11 @@ class Preview:
 
     def _has_ample_freedom(self, kept: Mask) -> bool:
         """Whether so many coordinates are free that nothing can lock; so where nothing is constrained."""
-        discrete = self.model.discrete
-        multipliers = [entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
-        constraints = sum(entries.stop - entries.start for entries in multipliers)
-        # Each constraint has a multiplier among the unknowns, and takes one coordinate's freedom.
-        free = int(kept.sum()) - 2 * constraints
-        return not multipliers or free >= AMPLE_FREEDOM * max(len(discrete.bodies), 1)
+        freedom = degrees_of_freedom(self.model)
+        if freedom is None:
+            return True
+        dropped = int(np.count_nonzero(~kept))
+        return freedom - dropped >= AMPLE_FREEDOM * max(len(self.model.discrete.bodies), 1)
 
     @cached_property
     def _pushes(self) -> FloatArray:

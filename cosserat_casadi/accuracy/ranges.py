@@ -22,13 +22,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.enrichment import nodes_for
-from cosserat_casadi.model.input_ranges import limits_of, narrowed
+from cosserat_casadi.model.input_bounds import limits_of, narrowed
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
 from cosserat_casadi.model.unknowns import BlockKind
@@ -140,8 +140,7 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
     layout = case_layout(scene)
     asked = _entries(layout, given or {}, Origin.ASKED, "--range")
     in_table = _entries(layout, scene.ranges, Origin.RANGES, "ranges")
-    chosen_for = dict(_column_and_ends(text) for text in scene.accuracy.chosen_for or ())
-    chosen = _entries(layout, chosen_for, Origin.CHOSEN_FOR, "accuracy.chosen_for")
+    chosen = _entries(layout, scene.accuracy.chosen_ranges, Origin.CHOSEN_FOR, "accuracy.chosen_for")
     known = {**(chosen or _bounded(scene, layout)), **in_table, **asked}
     if not chosen:
         without = [k for k in range(layout.inputs.size) if k not in known]
@@ -159,13 +158,6 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
 def ranges_of_cases(layout: CaseLayout, rows: FloatArray) -> CaseRanges:
     """What load cases, shape (count, size of a case), range over."""
     return CaseRanges(layout, rows.min(axis=0), rows.max(axis=0), (Origin.ASKED,) * rows.shape[1])
-
-
-def _column_and_ends(text: str) -> tuple[str, tuple[float, float]]:
-    """Column and ends of ``column=low:high``."""
-    column, _, ends = text.rpartition("=")
-    low, _, high = ends.partition(":")
-    return column, (float(low), float(high))
 
 
 def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> Entries:

@@ -52,7 +52,7 @@ from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.rod.discretisation import Discretisation
 
 if TYPE_CHECKING:
-    from cosserat_casadi.tubes.solution import TubeSolution
+    from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
 """Shape error, relative to the length, above which a discretisation fixed by the user is reported as UNRESOLVED."""
@@ -107,8 +107,8 @@ def solve_scene(
     if not scene.tubes:
         return solve_rods(scene, values, stable=stable, progress=progress, report=report)
     # Imported here, because no scene of rods needs the modules of tubes.
-    from cosserat_casadi.tubes.equilibria import stable_tubes
-    from cosserat_casadi.tubes.solve import solve_tubes
+    from cosserat_casadi.tubes.tube_equilibria import stable_tubes
+    from cosserat_casadi.tubes.tube_solve import solve_tubes
 
     return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
 

@@ -22,8 +22,8 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.rods import rod_properties
-from cosserat_casadi.model.signals import signal_modes
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome

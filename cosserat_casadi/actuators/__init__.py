@@ -1,1 +1,1 @@
-"""What acts inside a rod, between its sections: tendons and pressure chambers, along their routings."""
+"""Actuators inside a rod, which act between its sections: tendons and pressure chambers, along their routings."""

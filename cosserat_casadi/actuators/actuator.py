@@ -1,4 +1,4 @@
-"""What an actuator is: an effort, and the quantity of the strains that the effort works on.
+"""Base class of actuators: an effort, and the quantity of the strains that the effort works on.
 
 A member is one file and one line of the registry. It names its effort and the conjugate quantity with their units, and
 gives that quantity on the grid of a rod; residual, Jacobian, energy and outputs follow from it.
@@ -15,8 +15,8 @@ from cosserat_casadi.loads.load import EFFECTS
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.actuation import Quantity
-from cosserat_casadi.scene.actuators import ACTUATORS, ActuatorRecord
+from cosserat_casadi.rod.actuation import ShapeQuantity
+from cosserat_casadi.scene.actuator_records import ACTUATORS, ActuatorRecord
 from cosserat_casadi.scene.families import Kind
 
 RecordType = TypeVar("RecordType", bound=ActuatorRecord)
@@ -51,15 +51,15 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return self.record.inputs[self.effort].unit
 
     @abstractmethod
-    def quantity(self, actuator: RecordType, grid: Grid) -> Quantity:
+    def quantity(self, actuator: RecordType, grid: Grid) -> ShapeQuantity:
         """The conjugate quantity on the grid of the rod."""
 
-    def worked_on(self, actuator: RecordType, grid: Grid, values: Mapping[str, Matrix]) -> Quantity:
+    def worked_on(self, actuator: RecordType, grid: Grid, values: Mapping[str, Matrix]) -> ShapeQuantity:
         """The conjugate quantity for these inputs, 1×1 each; by default it does not depend on them."""
         return self.quantity(actuator, grid)
 
     def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
-        """Extension of what is prescribed by a unit of effort: 1/EA of each metre, and 1/k; zero of what is rigid."""
+        """Extension of the prescribed quantity by a unit of effort: 1/EA of each metre, and 1/k; zero if rigid."""
         return 0.0, 0.0
 
     def resting_effort(self, actuator: RecordType) -> Scalar:
@@ -79,5 +79,5 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return False
 
     def may_go_slack(self, actuator: RecordType) -> bool:
-        """Whether an unknown effort vanishes where the quantity is below what is prescribed."""
+        """Whether an unknown effort vanishes where the quantity is below its prescribed value."""
         return False

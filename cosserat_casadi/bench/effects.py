@@ -8,7 +8,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.model.build import build
-from cosserat_casadi.model.price import without_load
+from cosserat_casadi.model.operation_cost import without_load
 
 
 def effect_times(

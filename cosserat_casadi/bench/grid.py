@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.discretisation import TRANSPORTS, Discretisation
 
 Item = TypeVar("Item")

@@ -8,7 +8,7 @@ import numpy as np
 
 from cosserat_casadi.bench.measurement import best_time
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.price import MotionPrice, price_of_motion
+from cosserat_casadi.model.operation_cost import MotionPrice, price_of_motion
 
 TURNS = 5
 """Times that each model is timed beside others."""

@@ -31,8 +31,8 @@ from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.motion.checks import check_movable
-from cosserat_casadi.motion.stage import algebraic_places, differential_places
+from cosserat_casadi.motion.collocated_stage import algebraic_places, differential_places
+from cosserat_casadi.motion.motion_checks import check_movable
 
 
 @dataclass(frozen=True)

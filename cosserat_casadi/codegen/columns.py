@@ -23,8 +23,8 @@ from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 
@@ -134,7 +134,7 @@ def on_path(model: Model) -> WrittenJacobian:
         arguments = {"x": x, "inputs": inputs, PARAMETERS: model.parameters.symbol, "load_factor": load_factor}
     system = System(model.discrete, Arguments(x, inputs, load_factor))
     return WrittenJacobian(
-        arguments, system, lambda known: Equations(known).jacobian, with_parameters_behind_inputs, GIVEN
+        arguments, system, lambda known: SceneEquations(known).jacobian, with_parameters_behind_inputs, GIVEN
     )
 
 

@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.names import Names, library_names, model_names, sce
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_files
 from cosserat_casadi.codegen.turn_budget import ALWAYS, costs_of, fitting
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -36,7 +36,7 @@ from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 
 def export(
@@ -101,7 +101,7 @@ def export(
         files = tube_files(model, chosen, error_estimate)
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
-        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
+        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate, verified)
     else:
         files = folder_files(
             model,

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 from cosserat_casadi.codegen.motion_outputs import MotionOutput
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene.inputs import column_suffixes
+from cosserat_casadi.scene.input_fields import column_suffixes
 
 STEP_NAME = "step"
 """Name of the parameter that is the step of the integrator."""

@@ -33,6 +33,7 @@ from cosserat_casadi.codegen.statements import (
     Block,
     Statement,
     in_parts,
+    number_in_c,
 )
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -385,7 +386,7 @@ class _Writing:
             place = row * form.stride
             made = entries.get(row)
             if made is None or self.listing.values[made] == Constant(0.0):
-                statements.append(Statement(f"CLEAR(columns + {place});", []))
+                statements.append(Statement(f"FILL(columns + {place}, 0);", []))
             elif self.in_column[made]:
                 statements.append(Statement(f"STORE(columns + {place}, {{0}});", [made]))
             else:
@@ -428,6 +429,10 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
     for start, entries in zip(results, listing.outputs, strict=True):
         for entry, number in entries.items():
             place = width * (start + entry)
+            value = listing.values[number]
+            if wide and isinstance(value, Constant):
+                block.statements.append(Statement(f"FILL(made + {place}, {number_in_c(value.value)});", []))
+                continue
             store = f"STORE(made + {place}, {{0}});" if wide else f"made[{place}] = {{0}};"
             block.statements.append(Statement(store, [number]))
 

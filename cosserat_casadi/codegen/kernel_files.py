@@ -158,10 +158,15 @@ def _patterns(side: str, patterns: Sequence[ca.Sparsity]) -> str:
     """Constant arrays of sparsity patterns, and one of pointers to them."""
     tables = []
     for i, pattern in enumerate(patterns):
-        numbers = [*pattern.shape, 1] if pattern.is_dense() else [*pattern.shape, *pattern.colind(), *pattern.row()]
+        numbers = [*pattern.shape, 1] if _is_full(pattern) else [*pattern.shape, *pattern.colind(), *pattern.row()]
         tables.append(f"  static const casadi_int {side}_{i}[] = {{{_listed(map(str, numbers))}}};\n")
     pointers = _listed(f"{side}_{i}" for i in range(len(patterns)))
     return "".join(tables) + f"  static const casadi_int *const every[] = {{{pointers}}};\n"
+
+
+def _is_full(pattern: ca.Sparsity) -> bool:
+    """Whether all entries are stored."""
+    return int(pattern.nnz()) == int(pattern.numel())
 
 
 def _listed(texts: Iterable[str]) -> str:

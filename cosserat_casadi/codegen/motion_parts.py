@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
-from cosserat_casadi.motion.checks import immovable
+from cosserat_casadi.motion.motion_checks import immovable
 
 MATRICES = ("stiffness", "damping", "mass")
 """Derivatives of the equations by x, v and a."""

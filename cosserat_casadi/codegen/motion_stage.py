@@ -31,7 +31,7 @@ from cosserat_casadi.codegen.stage import (
     written_in_c,
 )
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.motion.stage import MotionStage, StageEquations
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 
 
 @dataclass(frozen=True)

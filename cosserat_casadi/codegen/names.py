@@ -10,7 +10,7 @@ from cosserat_casadi.codegen.texts import files_in_c
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import FunctionSpec, Owner, table
-from cosserat_casadi.model.functions import ModelFunctions
+from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.faults import shown
 

@@ -207,7 +207,9 @@ def function_of(program: Program) -> ca.Function:
             columns[owner] = ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz())))
 
     def matrix(value: Value) -> ca.MX:
-        return ca.sparsity_cast(_gathered(origins, columns, value.numbers), value.pattern)
+        entries = _gathered(origins, columns, value.numbers)
+        made: ca.MX = ca.sparsity_cast(entries, value.pattern)
+        return made
 
     symbols = []
     for argument in program.arguments:
@@ -243,4 +245,5 @@ def _gathered(origins: Origins, columns: dict[int, ca.MX], numbers: Numbers) -> 
         places[own] = size + within
         size += column_of_owner.numel()
     # Of one entry that is taken several times CasADi makes a row.
-    return ca.vec(ca.vertcat(*pool).nz[places.tolist()])
+    entries: ca.MX = ca.vec(ca.vertcat(*pool).nz[places.tolist()])
+    return entries

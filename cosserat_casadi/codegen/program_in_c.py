@@ -18,8 +18,8 @@ import numpy as np
 from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.fours import callee, in_fours
 from cosserat_casadi.codegen.fours_sources import Callee, InFours
-from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.codegen.numbered import Numbers, Program, Step
+from cosserat_casadi.codegen.listing import Computed, Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.codegen.numbered import Numbers, Program, Step, Value
 from cosserat_casadi.codegen.products import Product
 from cosserat_casadi.codegen.statements import FEWEST, FOURS, LONGEST_OF_NUMBERS, SINGLE, Block, Statement, in_parts
 from cosserat_casadi.codegen.steps import program_of
@@ -331,7 +331,7 @@ class _Writing:
         listing = Listing(ca.Function("entry", symbols, [apply(step.operation, *symbols)]))
         block = Block("casadi_real", "a", [])
         for number, value in enumerate(listing.values):
-            if not isinstance(value, Constant | Read):
+            if isinstance(value, Computed):
                 block.statements.append(SINGLE.operation(value.operation, value.operands, number))
         (made,) = listing.outputs[0].values()
         block.statements.append(Statement("z[i] = {0};", [made]))
@@ -365,9 +365,9 @@ class _Writing:
         if start:
             self.lines.append(f"  program_move(w + {first}, {start[0]}, {count});")
         self.statements += 1
-        if left.pattern.is_dense():
+        if _is_full(left):
             rows, inner = left.pattern.shape
-            dense = right.pattern.is_dense()
+            dense = _is_full(right)
             product = Product(rows, dense, not start)
             self.products[product] = None
             columns = right.pattern.size2()
@@ -409,7 +409,7 @@ class _Writing:
         """Write scalars that read and store numbers at these places, in functions that are not too long."""
         statements = []
         for number, value in enumerate(listing.values):
-            if not isinstance(value, Constant | Read):
+            if isinstance(value, Computed):
                 statements.append(SINGLE.operation(value.operation, value.operands, number))
         # What is read may lie where nothing is stored: places are freed behind the unit alone.
         outputs = listing.outputs[0]
@@ -574,6 +574,11 @@ def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
             length = step.instructions
         bundles[-1].append(step)
     return bundles
+
+
+def _is_full(value: Value) -> bool:
+    """Whether all entries of a matrix are stored."""
+    return len(value.numbers) == int(value.pattern.numel())
 
 
 def _joined(vectors: Sequence[Numbers]) -> Numbers:

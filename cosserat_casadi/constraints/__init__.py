@@ -1,1 +1,1 @@
-"""What holds sections of rods: supports of tips, joints, cables of given length."""
+"""Constraints on sections of rods: supports of tips, joints, cables of given length."""

@@ -76,7 +76,7 @@ class CableLength:
 
     @cached_property
     def sag(self) -> Matrix:
-        """What the wanted length exceeds that of the cable by, relative to the rod's length, 1×1."""
+        """Excess of the wanted length over the length of the cable, relative to the rod's length, 1×1."""
         length = self.wanted
         if not self.elasticity.rigid:
             length = length + self._compliance * self._stretching

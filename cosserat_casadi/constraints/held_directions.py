@@ -59,12 +59,12 @@ def in_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirection
     positions = _basis((ALL - along_normal) @ held.positions)
     rotations = _basis(along_normal @ held.rotations)
     # All displacements in the plane are those along its axes, whichever way the place has turned.
-    turn_with_place = held.turn_with_place and positions.shape[1] == 1
+    turn_with_pose = held.turn_with_pose and positions.shape[1] == 1
     if positions.shape[1] == 2:
         positions = IN_PLANE
     if rotations.shape[1]:
         rotations = NORMAL[:, None]
-    return HeldDirections(positions, rotations, turn_with_place)
+    return HeldDirections(positions, rotations, turn_with_pose)
 
 
 def upright(held: HeldDirections) -> HeldDirections:

@@ -1,4 +1,4 @@
-"""Joints that ship: what they hold of a tip in a body."""
+"""Joints that ship: the directions of a tip that each holds in a body."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cosserat_casadi.constraints.held_directions import ALL, CLAMPED, PINNED, ac
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraints import FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint
+from cosserat_casadi.scene.constraint_records import FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint
 from cosserat_casadi.scene.families import register
 
 JOINT_KINDS = Joint.kinds
@@ -48,7 +48,7 @@ class Revolute(Joint[RevoluteJoint]):
 
     def held(self, record: RevoluteJoint, rotation: FloatArray) -> HeldDirections:
         """All but the rotation about the axis."""
-        return HeldDirections(ALL, across(record.axis, rotation), turn_with_place=True)
+        return HeldDirections(ALL, across(record.axis, rotation), turn_with_pose=True)
 
 
 @final
@@ -60,4 +60,4 @@ class Prismatic(Joint[PrismaticJoint]):
 
     def held(self, record: PrismaticJoint, rotation: FloatArray) -> HeldDirections:
         """All but the displacement along the axis."""
-        return HeldDirections(across(record.axis, rotation), ALL, turn_with_place=True)
+        return HeldDirections(across(record.axis, rotation), ALL, turn_with_pose=True)

@@ -1,4 +1,4 @@
-"""Constraints that hold a section of a rod to a place on another frame: the world, a body, the base of a carried rod.
+"""Constraints that hold a section of a rod at a pose in another frame: the world, a body, the base of a carried rod.
 
 The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
 wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
@@ -36,13 +36,13 @@ class HeldDirections:
     Attributes:
         positions: unit vectors of the held displacements, shape (3, k).
         rotations: unit vectors of the held rotations, shape (3, m).
-        turn_with_place: whether the vectors are given in the axes of the place and turn with it; else they are given
+        turn_with_pose: whether the vectors are given in the axes of the held pose and turn with it; else they are given
             in the axes of the rod's base.
     """
 
     positions: FloatArray
     rotations: FloatArray
-    turn_with_place: bool = False
+    turn_with_pose: bool = False
 
     @property
     def size(self) -> int:
@@ -51,11 +51,11 @@ class HeldDirections:
 
     @property
     def slides(self) -> bool:
-        """Whether the section may move along the place, so that the wrench on it acts where the section is."""
-        return self.turn_with_place and self.positions.shape[1] < 3
+        """Whether the section may move along the held pose, so that the wrench on it acts where the section is."""
+        return self.turn_with_pose and self.positions.shape[1] < 3
 
 
-class Variations(NamedTuple):
+class PoseVariations(NamedTuple):
     """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
 
     The section moves in the axes of the rod's base, the other two in world axes.
@@ -66,7 +66,7 @@ class Variations(NamedTuple):
     frame: Matrix
 
 
-class Poses(NamedTuple):
+class ConstraintPoses(NamedTuple):
     """The poses that a constraint reads.
 
     Attributes:
@@ -89,15 +89,16 @@ class Poses(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Target:
-    """What a section is held to.
+class HeldPose:
+    """Pose and directions in which a section is held.
 
     Attributes:
-        place: pose of the section in the other frame.
-        turn: quaternion that takes the directions of :class:`HeldDirections` to what is held; None where it is these.
+        pose: pose of the section in the other frame.
+        turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None where these
+            are the same.
     """
 
-    place: Pose
+    pose: Pose
     turn: Matrix | None
 
     @property
@@ -105,30 +106,30 @@ class Target:
         """The same as a matrix, 3×3."""
         return None if self.turn is None else quaternion_to_matrix(self.turn)
 
-    def seen_from(self, poses: Poses) -> Pose:
+    def seen_from(self, poses: ConstraintPoses) -> Pose:
         """The pose that the section is held to, in the rod's base."""
-        return poses.base.seen(poses.frame.then(self.place))
+        return poses.base.seen(poses.frame.then(self.pose))
 
 
 @dataclass(frozen=True)
 class SectionConstraint:
-    """A section of a rod held to a place on another frame.
+    """A section of a rod held at a pose in another frame.
 
     Attributes:
         rod: the rod.
         unit: EI/ℓ of the rod, J.
         at: abscissa of the section, a break of the rod's grid.
         held: the directions that are held.
-        place: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
-        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of the place, to what is held; numbers
-            or expressions; None where that is ``held`` itself.
+        pose: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
+        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of ``pose``, to the held directions;
+            numbers or expressions; None for the directions ``held`` as they are.
     """
 
     rod: RodProperties
     unit: float
     at: Scalar
     held: HeldDirections
-    place: NumericPose | Pose
+    pose: NumericPose | Pose
     turn: Matrix | None = None
 
     @property
@@ -136,21 +137,21 @@ class SectionConstraint:
         """Number of multipliers."""
         return self.held.size
 
-    def residual(self, poses: Poses) -> Matrix:
-        """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
+    def residual(self, poses: ConstraintPoses) -> Matrix:
+        """Residual of the constraint, size×1: displacements relative to the rod's length, then rotations, rad."""
         residual: Matrix = self._kernels.residual(*poses.stacked, *self._free_target)[0]
         return residual
 
-    def residual_variation(self, poses: Poses) -> Variations:
+    def residual_variation(self, poses: ConstraintPoses) -> PoseVariations:
         """Derivative of the residual with the poses, size×6 each."""
         _, *by_poses = self._kernels.residual(*poses.stacked, *self._free_target)
-        return Variations(*by_poses)
+        return PoseVariations(*by_poses)
 
-    def wrench_basis(self, poses: Poses) -> Matrix:
+    def wrench_basis(self, poses: ConstraintPoses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
         return self._wrench_basis(poses, self._given_target)
 
-    def _wrench_basis(self, poses: Poses, target: Target) -> Matrix:
+    def _wrench_basis(self, poses: ConstraintPoses, target: HeldPose) -> Matrix:
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
@@ -159,75 +160,75 @@ class SectionConstraint:
         basis[:3, displacements:] = moment
         # Sparse, so that directions along the axes of the base cost no product.
         in_given_axes = ca.sparsify(ca.DM(basis))
-        if not self.held.turn_with_place:
+        if not self.held.turn_with_pose:
             return in_given_axes
         rotation = target.seen_from(poses).rotation
         if target.axes is not None:
             rotation = rotation @ target.axes
         return ca.diagcat(rotation, rotation) @ in_given_axes
 
-    def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
+    def wrench_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> PoseVariations:
         """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
-        if not self.held.turn_with_place:
+        if not self.held.turn_with_pose:
             zero = ca.DM(6, 6)
-            return Variations(zero, zero, zero)
+            return PoseVariations(zero, zero, zero)
         _, *by_poses = self._kernels.wrench(*poses.stacked, *self._free_target, multipliers)
-        return Variations(*by_poses)
+        return PoseVariations(*by_poses)
 
-    def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
+    def reaction(self, poses: ConstraintPoses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
         reaction: Matrix = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)[0]
         return reaction
 
-    def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
+    def reaction_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> tuple[Matrix, PoseVariations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
         _, by_multipliers, *by_poses = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)
-        return by_multipliers, Variations(*by_poses)
+        return by_multipliers, PoseVariations(*by_poses)
 
     @cached_property
     def _kernels(self) -> _Kernels:
-        place = None
-        if isinstance(self.place, NumericPose):
-            place = (_exact(self.place.position), _exact(self.place.quaternion))
+        pose = None
+        if isinstance(self.pose, NumericPose):
+            pose = (_exact(self.pose.position), _exact(self.pose.quaternion))
         turn: Hashable = None
         if self.turn is not None:
             # An expression is an argument of the kernels.
             turn = "free" if is_symbolic(self.turn) else _exact(self.turn)
-        held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_place)
-        return _shared(_Kernels((self.rod.length, self.unit, held, place, turn), self))
+        held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_pose)
+        return _shared(_Kernels((self.rod.length, self.unit, held, pose, turn), self))
 
     @property
-    def _given_target(self) -> Target:
-        """What the section is held to, as expressions."""
-        place = self.place if isinstance(self.place, Pose) else self.place.pose
-        return Target(place, self.turn)
+    def _given_target(self) -> HeldPose:
+        """The pose and the directions in which the section is held, as expressions."""
+        pose = self.pose if isinstance(self.pose, Pose) else self.pose.pose
+        return HeldPose(pose, self.turn)
 
     @property
     def _free_target(self) -> list[Matrix]:
-        """The same as arguments of the kernels; what is known is no argument but a constant of them."""
-        arguments = [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
+        """The expressions of the held pose as arguments of the kernels; numbers of it are constants of the kernels."""
+        arguments = [self.pose.position, self.pose.quaternion] if isinstance(self.pose, Pose) else []
         if is_symbolic(self.turn):
             arguments.append(self.turn)
         return arguments
 
-    def target_symbols(self) -> tuple[Target, list[ca.SX]]:
+    def target_symbols(self) -> tuple[HeldPose, list[ca.SX]]:
         """The target that the kernels are written in, and its symbols."""
         target = self._given_target
         symbols = []
-        if isinstance(self.place, Pose):
+        if isinstance(self.pose, Pose):
             symbols = [ca.SX.sym("place_position", 3), ca.SX.sym("place_quaternion", 4)]
-            target = replace(target, place=Pose(*symbols))
+            target = replace(target, pose=Pose(*symbols))
         if is_symbolic(self.turn):
             symbols.append(ca.SX.sym("held_quaternion", 4))
             target = replace(target, turn=symbols[-1])
         return target, symbols
 
-    def residual_of(self, poses: Poses, target: Target) -> Matrix:
+    def residual_of(self, poses: ConstraintPoses, target: HeldPose) -> Matrix:
         """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
         section = poses.section
         held_to = target.seen_from(poses)
         back = quaternion_conjugate(held_to.quaternion)
-        if self.held.turn_with_place:
+        if self.held.turn_with_pose:
             displacement = held_to.rotation.T @ (section.position - held_to.position)
             turn = quaternion_product(back, section.quaternion)[1:]
         else:
@@ -241,12 +242,12 @@ class SectionConstraint:
         about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
 
-    def wrench_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
+    def wrench_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
         """The wrench on the section, base axes of the rod, 6×1."""
         return self._wrench_basis(poses, target) @ multipliers
 
-    def reaction_of(self, poses: Poses, target: Target, multipliers: Matrix) -> Matrix:
-        """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
+    def reaction_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
+        """The opposite of the wrench on the section, at the held pose, or at the section where that may slide."""
         wrench = self.wrench_of(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
@@ -254,7 +255,7 @@ class SectionConstraint:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:
-            arm = poses.frame.rotation @ target.place.position
+            arm = poses.frame.rotation @ target.pose.position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 
@@ -318,22 +319,22 @@ def _exact(matrix: Matrix | FloatArray) -> Hashable:
     return (numbers.shape, numbers.tobytes())
 
 
-def _symbols() -> tuple[Poses, list[ca.SX]]:
+def _symbols() -> tuple[ConstraintPoses, list[ca.SX]]:
     """Symbols of the three poses and of their motions."""
     poses = []
     motions = []
-    for name in Poses._fields:
+    for name in ConstraintPoses._fields:
         position = ca.SX.sym(f"{name}_position", 3)
         quaternion = ca.SX.sym(f"{name}_quaternion", 4)
         poses.append(Pose(position, quaternion))
         motions.append(ca.SX.sym(f"{name}_motion", 6))
-    return Poses(*poses), motions
+    return ConstraintPoses(*poses), motions
 
 
-def _moved(poses: Poses, motions: list[ca.SX]) -> Poses:
+def _moved(poses: ConstraintPoses, motions: list[ca.SX]) -> ConstraintPoses:
     """The poses after small motions."""
     moved = [pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)]
-    return Poses(*moved)
+    return ConstraintPoses(*moved)
 
 
 def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:

@@ -1,4 +1,4 @@
-"""Supports that ship: what they hold of a tip in the world."""
+"""Supports that ship: the directions of a tip that each holds in the world."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cosserat_casadi.constraints.held_directions import CLAMPED, PINNED
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Support
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraints import ClampedSupport, PinnedSupport
+from cosserat_casadi.scene.constraint_records import ClampedSupport, PinnedSupport
 from cosserat_casadi.scene.families import register
 
 SUPPORT_KINDS = Support.kinds

@@ -1,4 +1,4 @@
-"""What holds the tip of a rod: a support in the world, or a joint at a body.
+"""Members that hold the tip of a rod: a support in the world, or a joint at a body.
 
 A kind differs from others in the directions that it holds, and in nothing else. A member is one class: it gives
 :meth:`TipHolder.held`, and everything follows from these directions: multipliers, wrenches, what remains of them where
@@ -15,7 +15,7 @@ from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.maths.numbers import Scalar, as_vector, known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, JointRecord, SupportRecord
+from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, JointRecord, SupportRecord
 from cosserat_casadi.scene.families import Kind, Kinds
 
 RecordType = TypeVar("RecordType", bound=JointRecord | SupportRecord)
@@ -28,7 +28,7 @@ class TipHolder(Kind, ABC, Generic[RecordType]):
     def held(self, record: RecordType, rotation: FloatArray) -> HeldDirections:
         """Directions along and about which the tip is held.
 
-        Directions in the axes of the tip turn with the place: ``HeldDirections(…, turn_with_place=True)``.
+        Directions in the axes of the tip turn with the held pose: ``HeldDirections(…, turn_with_pose=True)``.
 
         Args:
             record: the record of the scene.

@@ -7,20 +7,20 @@ from cosserat_casadi.control.inverse_accuracy import inverse_scene
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.judgement import judged
 from cosserat_casadi.control.margin import stability_margin
-from cosserat_casadi.control.targets import Gap
-from cosserat_casadi.motion.stage import MotionStage, StageEquations, motion_stage
+from cosserat_casadi.control.targets import TargetMiss
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, motion_stage
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
 __all__ = [
     "Collocation",
     "Condensed",
     "Condensing",
-    "Gap",
     "Horizon",
     "Inverse",
     "Lifted",
     "MotionStage",
     "StageEquations",
+    "TargetMiss",
     "embedded",
     "gauss",
     "inverse",

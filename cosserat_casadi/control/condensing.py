@@ -2,8 +2,8 @@
 
 Newton's method on all stages at once takes the unknowns of each from its linearised equations of motion, and the
 states from one stage to the next: lifted Newton's method with condensing, J. Albersmeyer and M. Diehl, *SIAM J. Optim.*
-20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. What is left for a quadratic
-problem are the rates: a few numbers a stage, however many unknowns the rods have.
+20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. The unknowns of the
+quadratic problem are the rates: a few numbers a stage, however many unknowns the rods have.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.stage import MotionStage, StageEquations
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Horizon:
     """A guess of a motion over N stages; its stages need not meet, and its equations need not hold.
 
     Attributes:
-        states: at the ends of all stages, shape (N + 1, state_size); the first one is given.
+        states: at the ends of all stages, shape (N + 1, state_size); the first one is a datum, the others are guesses.
         unknowns: of all stages, shape (N, unknowns_size).
     """
 
@@ -74,7 +74,7 @@ class Condensing:
         stage: every stage of it.
         equations: those of the stage, compiled or not.
         stages: number of stages N.
-        steered: numbers of the inputs whose rates are to be chosen; the others move as given.
+        steered: indices of the inputs whose rates are decision variables; the other inputs move as prescribed.
 
     Raises:
         ValueError: there is no stage, or no such input.

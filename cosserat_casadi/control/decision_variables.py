@@ -11,7 +11,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.input_ranges import narrowed
+from cosserat_casadi.model.input_bounds import narrowed
 
 UNFELT = 1e-9
 """Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""

@@ -38,16 +38,16 @@ def inverse(
 ) -> Inverse:
     """Inputs for which a model's equilibrium meets the targets of its scene.
 
-    Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds
-    or at all, the weighted squares of what is missed are least, as far as a local method can tell.
+    Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds or
+    at all, the weighted sum of squared target errors is least, as far as a local method can tell.
 
     Args:
         model: of a scene with targets, and with inputs that it lists or bounds.
         start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
         stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
             once. For loads that have a potential.
-        starts: further starts where a gap stays: scattered, by a seed of our own, over the inputs that are bounded on
-            both sides; the best end counts. 0 for none.
+        starts: further starts where a target error remains: scattered, by a fixed seed, over the inputs that are
+            bounded on both sides; the best end counts. 0 for none.
         estimate_error: whether the error that modes and nodes leave at the inputs found is estimated; targets count as
             met where it is within the tolerance too.
 
@@ -144,7 +144,7 @@ def _satisfies(result: Inverse, stable: bool) -> bool:
 
 
 def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
-    """What is less is better: an equilibrium, a stable one where that is wanted, the smaller weighted gap."""
+    """Sort key of results, less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
     return not result.solution.converged, stable and result.unstable, gap_left(result)
 
 

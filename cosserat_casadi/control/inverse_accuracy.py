@@ -14,7 +14,7 @@ from cosserat_casadi.control.inverse import STARTS, check_targets, first_solutio
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses
-from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
+from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -33,15 +33,15 @@ Progress = Callable[[int, int], None]
 """Told how many of how many rows are settled."""
 
 Targets = tuple[scenes.Target, ...]
-"""What is to be where at once."""
+"""Targets that are to be met at once."""
 
 
 def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report | None = None) -> Inverse:
     """Inputs for which a scene meets its targets, with modes and nodes that meet its tolerance there.
 
-    The equilibrium at the inputs found is solved with more modes too. Where that moves the poses by more than half of
-    the tolerance, the search goes on with those. Where the scene fixes modes or nodes, the error is only estimated:
-    targets count as met where the gap and this estimate are both within the tolerance.
+    The equilibrium at these inputs is solved with more modes too. Where that moves the poses by more than half of the
+        tolerance, the search goes on with those modes. Where the scene fixes modes or nodes, the error is only
+        estimated: targets count as met where the target error and this estimate are both within the tolerance.
 
     Args:
         scene: a validated scene with targets.
@@ -172,7 +172,7 @@ def _refined(
     return found
 
 
-def _distance(gaps: Sequence[Gap], lengths: FloatArray) -> float:
+def _distance(gaps: Sequence[TargetMiss], lengths: FloatArray) -> float:
     """How far a solution is from targets: the largest of distances over the lengths of their rods, and angles."""
     distances = [0.0]
     for gap, length in zip(gaps, lengths, strict=True):

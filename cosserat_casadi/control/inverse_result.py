@@ -1,4 +1,4 @@
-"""What an inverse problem ends with, and its verdict: whether the targets are met, in words too."""
+"""The end of an inverse problem, and its verdict: whether the targets are met, in words too."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
-from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
+from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.solution import Solution
 
@@ -27,7 +27,7 @@ class Inverse:
 
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
-        targets: what was to be where: those of the scene, or of a row of a table.
+        targets: targets of the scene, or of a row of a table.
         gaps: how far each target is missed, in their order.
         met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
             estimated the error of the model too; where a stable one was wanted, whether it is that as well.
@@ -39,7 +39,7 @@ class Inverse:
 
     solution: Solution
     targets: tuple[scenes.Target, ...]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[TargetMiss, ...]
     met: bool
     rounds: int
     starts: int = 1
@@ -139,7 +139,7 @@ def _model_sentence(result: Inverse) -> str:
     )
 
 
-def _words(gap: Gap) -> str:
+def _words(gap: TargetMiss) -> str:
     distance = f"{gap.what} by {gap.position:.3g} m"
     if gap.angle is None:
         return distance
@@ -159,7 +159,7 @@ def _reached(result: Inverse) -> list[bool]:
     return [gap.reached(length, tolerance) for gap, length in _gaps_and_lengths(result)]
 
 
-def _gaps_and_lengths(result: Inverse) -> list[tuple[Gap, float]]:
+def _gaps_and_lengths(result: Inverse) -> list[tuple[TargetMiss, float]]:
     """The gap of each target, and the length that it is measured by, m."""
     lengths = [length_of(result.solution.model, target) for target in result.targets]
     return list(zip(result.gaps, lengths, strict=True))

@@ -1,4 +1,4 @@
-"""What the end of an optimisation is worth: the equilibrium at its unknowns, judged as ``solve`` judges its own."""
+"""The end of an optimisation as an equilibrium: judged by the test that ``solve`` applies."""
 
 from __future__ import annotations
 

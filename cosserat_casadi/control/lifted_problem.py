@@ -56,7 +56,7 @@ class LiftedProblem:
 
     Attributes:
         model: the model.
-        targets: what is to be where.
+        targets: poses and positions to reach.
         variables: the decision variables.
         scale: a change of each that matters, shape (n,).
         origin: stacked inputs that changes count from.
@@ -223,7 +223,7 @@ def lifted_problem(
 
     Args:
         model: as in :func:`inverse`.
-        targets: what is to be where.
+        targets: poses and positions to reach.
         start: the equilibrium whose inputs and sensitivities scale the problem.
         stable: as in :func:`inverse`.
 

@@ -31,9 +31,9 @@ WIDTH = 0.02
 def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = False) -> ca.Function:
     """A smooth lower bound of the smallest eigenvalue of the second variation, relative to the elastic stiffness.
 
-    Where it is positive ``solve`` judges the equilibrium stable, on the same variations: those that supports, joints
-    and cables of given length admit. First and second derivatives are exact, at multiple eigenvalues too. NumPy finds
-    the eigenvalues, so the function cannot be exported to C.
+    Where it is positive ``solve`` judges the equilibrium stable, on the same variations: the ones that supports, joints
+        and cables of given length admit. First and second derivatives are exact, at multiple eigenvalues too. NumPy
+        finds the eigenvalues, so the function cannot be exported to C.
 
     Args:
         model: with loads that have a potential, and without cables that may go slack.

@@ -57,7 +57,7 @@ class _Linearised:
 
 
 def followed(problem: LiftedProblem, start: Solution) -> Inverse | None:
-    """What Newton's method finds from an equilibrium near the targets, judged; None where it finds none.
+    """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge.
 
     Args:
         problem: the problem.

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.control.targets import TARGET_KINDS, Gap, length_of
+from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -35,7 +35,7 @@ def weighted_errors(
 
     Args:
         model: the model.
-        targets: what is to be where; their positions and orientations are not read, but for the points of curves.
+        targets: the targets; their positions and orientations are not read, but for the points of curves.
         wanted: these, as in :func:`wanted_poses`.
         x: unknowns.
         inputs: stacked inputs.
@@ -49,7 +49,7 @@ def weighted_errors(
     return stacked
 
 
-def target_errors(solution: Solution, targets: Sequence[scenes.Target]) -> tuple[Gap, ...]:
+def target_errors(solution: Solution, targets: Sequence[scenes.Target]) -> tuple[TargetMiss, ...]:
     """How far a solution is from each of the targets, and how far the model itself may be off there."""
     gaps = []
     for target in targets:

@@ -1,4 +1,4 @@
-"""Kinds of targets: what is to be where, how far a state is from it, and how a figure marks it."""
+"""Kinds of targets: poses and positions to reach, the errors of a state, and their marks in figures."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_prod
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.families import Kind, Kinds, register
-from cosserat_casadi.scene.targets import TARGETS, FrameTarget, TargetRecord
+from cosserat_casadi.scene.target_records import TARGETS, FrameTarget, TargetRecord
 
 RecordType = TypeVar("RecordType", bound=TargetRecord)
 FrameType = TypeVar("FrameType", bound=FrameTarget)
 
 
 @dataclass(frozen=True)
-class Gap:
+class TargetMiss:
     """Error of one target: how far it is missed.
 
     Attributes:
@@ -88,7 +88,7 @@ class Target(Kind, ABC, Generic[RecordType]):
         """
 
     @abstractmethod
-    def gap(self, target: RecordType, solution: Solution) -> Gap:
+    def gap(self, target: RecordType, solution: Solution) -> TargetMiss:
         """How far a solution is from the target."""
 
     def model_error(self, target: RecordType, solution: Solution) -> float | None:
@@ -120,10 +120,10 @@ class _OfFrame(Target[FrameType]):
         position, _ = self._pose(target, model, x, inputs)
         return (position - wanted[:3]) / length_of(model, target)
 
-    def gap(self, target: Any, solution: Solution) -> Gap:
+    def gap(self, target: Any, solution: Solution) -> TargetMiss:
         """The distance."""
         what, position, _ = self._reached(target, solution)
-        return Gap(what, float(np.linalg.norm(position - np.array(target.position))), None)
+        return TargetMiss(what, float(np.linalg.norm(position - np.array(target.position))), None)
 
     def model_error(self, target: Any, solution: Solution) -> float | None:
         """That of the tips, of which a body is held; of a section in between that of the shapes."""
@@ -147,7 +147,7 @@ class _OfFrame(Target[FrameType]):
         return list(outputs[:2])
 
     def _reached(self, target: Any, solution: Solution) -> tuple[str, FloatArray, FloatArray]:
-        """What the target is for in words, with its position, shape (3,), and quaternion, shape (1, 4)."""
+        """Name of the section or body of the target, its position, shape (3,), and its quaternion, shape (1, 4)."""
         if target.rod is None:
             what = f"body {target.body}"
             pose = solution.body(target.body)
@@ -183,12 +183,12 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
         position_error = (position - wanted[:3]) / length_of(model, target)
         return ca.vertcat(position_error, 2 * _half_rotation(wanted[3:], quaternion))
 
-    def gap(self, target: scenes.PoseTarget, solution: Solution) -> Gap:
+    def gap(self, target: scenes.PoseTarget, solution: Solution) -> TargetMiss:
         """The distance and the angle."""
         what, position, quaternion = self._reached(target, solution)
         distance = float(np.linalg.norm(position - np.array(target.position)))
         angles = rotation_angles(np.array([target.quaternion]), quaternion)
-        return Gap(what, distance, float(angles[0]))
+        return TargetMiss(what, distance, float(angles[0]))
 
 
 @final
@@ -209,13 +209,13 @@ class PointsAlongRod(Target[scenes.CurveTarget]):
         scaled: Matrix = stacked / (length_of(model, target) * np.sqrt(len(target.at)))
         return scaled
 
-    def gap(self, target: scenes.CurveTarget, solution: Solution) -> Gap:
+    def gap(self, target: scenes.CurveTarget, solution: Solution) -> TargetMiss:
         """The largest distance."""
         pose = solution.pose(np.array(target.at), target.rod)
         differences = pose.position - np.array(target.points)
         distances = np.linalg.norm(differences, axis=1)
         what = f"{len(target.at)} points along {target.rod}"
-        return Gap(what, float(distances.max()), None)
+        return TargetMiss(what, float(distances.max()), None)
 
     def points(self, target: scenes.CurveTarget) -> Sequence[Sequence[float]]:
         """Its points."""

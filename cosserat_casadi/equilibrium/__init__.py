@@ -1,1 +1,1 @@
-"""Equilibria of a model: solving, judging what was found, stability, relaxing to a stable one."""
+"""Equilibria of a model: solving, judging the end of a solve, stability, relaxing to a stable equilibrium."""

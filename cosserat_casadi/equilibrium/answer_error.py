@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.neutral import regular_inverse
@@ -67,7 +68,7 @@ class AnswerError:
     Attributes:
         watched: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the lengths of
             cables over the length; of held rods at sections between the ends too.
-        shape: of the poses of all sections, those between nodes included; no smaller than that of what is watched.
+        shape: of the poses of all sections, between the nodes too; no smaller than the error of the watched poses.
         wrench: of the forces and moments of bases, supports and joints, and of tensions that are unknown, relative.
     """
 
@@ -83,9 +84,9 @@ class Correction:
     Attributes:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
-        change: of what is watched.
+        change: change of the watched poses and lengths.
         contracts: whether the missing modes moved by at most half of their step before. A wall that they run into is
-            not in their stiffness: then they bounce, and what is watched may settle by chance.
+            not in their stiffness: then they bounce, and watched poses may settle by chance.
         settled: whether the correction before it gave about the same change.
     """
 
@@ -123,7 +124,7 @@ def with_tolerance_note(solution: Solution) -> Solution:
 
 
 def _tolerance_note(solution: Solution) -> str:
-    """What a user must know of an answer whose estimated error is above the tolerance; empty where it is not."""
+    """A sentence for an answer whose estimated error is above the tolerance; empty for other answers."""
     if solution.within_tolerance is not False or not solution.converged:
         return ""
     accuracy = solution.model.scene.accuracy
@@ -137,11 +138,22 @@ def _tolerance_note(solution: Solution) -> str:
 
 
 def remedy(solution: Solution) -> str:
-    """What brings an answer above the tolerance below it."""
+    """The remedy for an answer whose error is above the tolerance."""
     accuracy = solution.model.scene.accuracy
-    if accuracy.fixed and not accuracy.chosen_for:
+    if accuracy.fixed_by_hand:
         return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+    if _is_in_chosen_ranges(solution):
+        return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
     return "the modes were chosen for other inputs: choose them for the range of these inputs."
+
+
+def _is_in_chosen_ranges(solution: Solution) -> bool:
+    """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
+    ranges = solution.model.scene.accuracy.chosen_ranges
+    indices = column_indices(solution.model.inputs)
+    if not ranges or not ranges.keys() <= indices.keys():
+        return False
+    return all(low <= solution.inputs[indices[column]] <= high for column, (low, high) in ranges.items())
 
 
 def answer_error(solution: Solution) -> AnswerError:
@@ -162,7 +174,7 @@ def answer_error(solution: Solution) -> AnswerError:
 
 
 def watched_error(solution: Solution) -> float:
-    """Estimate the error of what is watched alone, at less cost.
+    """Estimate the error of the watched poses and lengths alone, at less cost.
 
     Args:
         solution: a converged one, at any inputs and parameters.
@@ -264,7 +276,7 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
 
 
 def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -> float:
-    """Largest change of what is watched by a correction; not a number where one of the changes is none."""
+    """Largest change of a watched pose or length by a correction; not a number where one of the changes is none."""
     changes = column(solution.model.richer_changes(solution.x, known, missing, solution.inputs))
     return float(np.max(changes))
 
@@ -274,7 +286,7 @@ def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, co
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
-    """What modes beyond those of the richer model would add: the rest of a geometric series.
+    """Change by modes beyond the modes of the richer model: the rest of a geometric series.
 
     The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E. A first look
     does not know the highest degrees well enough to tell e.

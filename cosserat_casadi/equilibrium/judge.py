@@ -13,8 +13,8 @@ from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import (
+    ConstrainedVariations,
     Stability,
-    Variations,
     admissible_spectrum,
     second_variation,
     stability_of,
@@ -48,7 +48,7 @@ def judge(
     """The solution that a method's end amounts to: its residual is computed again, the method is not believed.
 
     Args:
-        model: what was solved.
+        model: the solved model.
         inputs: stacked inputs, shape (model.inputs.size,).
         x: where the method stopped, shape (model.size,).
         outcome: how the method says that it ended.
@@ -142,7 +142,7 @@ def _with_stability(solution: Solution) -> Solution:
 
 
 def stability_note(stability: Stability, critical: bool) -> str:
-    """What a user must know of an equilibrium that not every variation costs energy."""
+    """A sentence for an equilibrium in which some variation costs no energy, or releases it; else empty."""
     if critical:
         return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."
     if stability.neutral:
@@ -183,7 +183,7 @@ def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatA
     return second_variation(jacobian, allowed).neutral
 
 
-def _multipliers_along(jacobian: FloatArray, allowed: Variations, variation: FloatArray) -> FloatArray:
+def _multipliers_along(jacobian: FloatArray, allowed: ConstrainedVariations, variation: FloatArray) -> FloatArray:
     """Rates of the multipliers, shape (m,), with which a variation that costs no energy leaves all in balance."""
     forces = jacobian[np.ix_(allowed.free, allowed.free)] @ variation
     by_multipliers = jacobian[np.ix_(allowed.free, allowed.held)]

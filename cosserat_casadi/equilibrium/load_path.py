@@ -65,19 +65,22 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     """
     no_change = np.zeros(model.inputs.size)
     given = (inputs,) if p is None else (inputs, p)
+    path_residual = model.path_residual
+    path_jacobian = model.path_jacobian
+    path_rate = model.path_rate
 
     # The load factor is t itself.
     def residual(x: FloatArray, load_factor: float) -> FloatArray:
-        g = model.path_residual(x, *given, load_factor)
+        g = path_residual(x, *given, load_factor)
         return column(g)
 
     def jacobian(x: FloatArray, load_factor: float) -> Jacobian:
-        sparse = model.path_jacobian(x, *given, load_factor)
+        sparse = path_jacobian(x, *given, load_factor)
         return _solvable(model, sparse)
 
     def rate(x: FloatArray, load_factor: float) -> FloatArray:
         load_factor_rate = 1.0
-        dg_dt = model.path_rate(x, *given, load_factor, no_change, load_factor_rate)
+        dg_dt = path_rate(x, *given, load_factor, no_change, load_factor_rate)
         return column(dg_dt)
 
     return Path(
@@ -102,6 +105,8 @@ def input_path(model: PathFunctions, start: FloatArray, before: FloatArray, afte
     """
     change = after - before
     load_factor = 1.0
+    path_residual = model.path_residual
+    path_jacobian = model.path_jacobian
 
     def inputs_at(t: float) -> FloatArray:
         # Exact at both ends, however far apart they are.
@@ -109,11 +114,11 @@ def input_path(model: PathFunctions, start: FloatArray, before: FloatArray, afte
         return left + t * after
 
     def residual(x: FloatArray, t: float) -> FloatArray:
-        g = model.path_residual(x, inputs_at(t), load_factor)
+        g = path_residual(x, inputs_at(t), load_factor)
         return column(g)
 
     def jacobian(x: FloatArray, t: float) -> Jacobian:
-        sparse = model.path_jacobian(x, inputs_at(t), load_factor)
+        sparse = path_jacobian(x, inputs_at(t), load_factor)
         return _solvable(model, sparse)
 
     def rate(x: FloatArray, t: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 Counting degrees of freedom against constraints is not enough: a platform on six legs of three bending modes each has
 eighteen degrees of freedom more than constraints, and all of them leave the platform where it is. So the compliance of
-each load, how far the least push of it moves what is watched, is set beside that on a model with modes added.
+each load, how far the least push of it moves the watched poses, is set beside that on a model with modes added.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
 
 
 def _compliances(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    """Motion of what is watched per unit of each entry of every input but lengths, by the input's name."""
+    """Motion of the watched poses per unit of each entry of every input but lengths, by the input's name."""
     inverse = regular_inverse(model.path_jacobian(x, inputs, 1.0).full())
     responses = -inverse @ residual_by_inputs(model, x, inputs)
     for entry, span in model.inputs:
@@ -88,7 +88,7 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 
 
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
-    """How far a step of the unknowns moves what is watched, to first order: over the length, or in quaternions."""
+    """How far a step of the unknowns moves the watched poses, to first order: over the length, or in quaternions."""
     share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
     change = _watched(model, x + share * step, inputs) - _watched(model, x, inputs)
     return float(np.abs(change).max(initial=0.0)) / share
@@ -99,8 +99,15 @@ def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
     return np.concatenate([part.full().ravel() for part in model.watched(x, inputs)])
 
 
+NOT_KNOWN = (
+    "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
+    "inputs, and an equilibrium tells."
+)
+"""What a user must know where there is no equilibrium at which to look."""
+
+
 def locking_sentence(locked: Sequence[str]) -> str:
-    """What a user must know of modes that leave these inputs no motion; empty where there is none of them."""
+    """A sentence for modes that leave these inputs no motion; empty without such inputs."""
     if not locked:
         return ""
     return (
@@ -110,12 +117,12 @@ def locking_sentence(locked: Sequence[str]) -> str:
 
 
 def may_be_locked(model: Model) -> bool:
-    """Whether constraints meet modes that the scene fixes: those that were chosen are free to move.
+    """Whether constraints meet modes that the scene fixes: modes that were chosen are free to move.
 
     False in exact contact too, whose forces are inputs of another model for every arrangement.
     """
     scene = model.scene
-    if scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for:
+    if scene.touches_exactly or not scene.accuracy.fixed_by_hand:
         return False
     return degrees_of_freedom(model) is not None
 

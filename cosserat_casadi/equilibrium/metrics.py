@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
@@ -58,7 +58,7 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
     Args:
         first: a solution.
         second: another of the same scene.
-        X: abscissae to compare, shape (k,); by default those that the tolerance binds.
+        X: abscissae to compare, shape (k,); by default the sections that the tolerance binds.
     """
     distances = [0.0]
     for name, discrete_rod in first.model.discrete.rods.items():
@@ -126,7 +126,7 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
     return np.concatenate(blocks)
 
 
-def _distance(first: Pose, second: Pose, length: float) -> float:
+def _distance(first: SolvedPoses, second: SolvedPoses, length: float) -> float:
     distances = np.linalg.norm(first.position - second.position, axis=1)
     angles = rotation_angles(first.quaternion, second.quaternion)
     largest_distance = float(distances.max()) / length

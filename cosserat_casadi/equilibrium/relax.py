@@ -2,8 +2,8 @@
 
 A free rod is released where the load path ended, off its saddle. A held rod is pulled in to its supports by springs
 that grow from limp to rigid, the loads growing along, and relaxes anew at every stage: at a bifurcation it leaves for
-the branch of less energy. What it relaxes to is corrected by Newton's method and judged like any other solution. See
-docs/theory.md, section 9, "Settling".
+the branch of less energy. The minimum of the energy is corrected by Newton's method and judged like any other solution.
+See docs/theory.md, section 9, "Settling".
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 16))
 """Stiffnesses of the springs for supports, stage by stage: EI/ℓ³ for a force, EI/ℓ for a moment."""
 
 STIFF = 4.0**9
-"""Stiffness from which on Newton may close what is left; a rod that is drawn tight asks for stiffer springs."""
+"""Stiffness of the springs from which on Newton may close the supports; a rod that is drawn tight asks for more.
+"""
 
 SIDES = (1.0, -1.0)
 """Sides on which a saddle is left, one try after the other."""
@@ -40,7 +41,7 @@ OFF = 0.3
 """Length of such a perturbation (2-norm of the strain coordinates)."""
 
 PATH_OF_ENERGY = " It was reached by letting the rod settle to less energy, not by growing the load."
-"""What the message of a relaxed solution adds."""
+"""Sentence in the message of a relaxed solution."""
 
 
 @dataclass(frozen=True)

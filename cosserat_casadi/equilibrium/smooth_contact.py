@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, runs
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
 from cosserat_casadi.maths.typing import FloatArray

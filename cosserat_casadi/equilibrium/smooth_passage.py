@@ -11,7 +11,7 @@ from functools import cached_property
 from math import isfinite
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.passage import DEEP, LookedAt, is_inside_between
+from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -28,7 +28,7 @@ class SmoothBarriers:
 
     @cached_property
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
-        """Rods with what has another side that they could come out on."""
+        """Pairs of a rod and an obstacle that has another side, on which the rod could come out."""
         scene = self.model.scene
         smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]

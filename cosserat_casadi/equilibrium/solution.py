@@ -18,7 +18,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 
 
 @dataclass(frozen=True)
-class Pose:
+class SolvedPoses:
     """Poses of k sections in the world frame.
 
     Attributes:
@@ -34,7 +34,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class BaseWrench:
-    """What the clamp exerts on the rod, world frame, about the base point.
+    """Wrench of the clamp on the rod, world frame, about the base point.
 
     Attributes:
         force: shape (3,), N.
@@ -150,12 +150,12 @@ class Solution:
         # Written so that an estimate which is not a number counts as too large.
         return error <= accuracy.tolerance
 
-    def tip(self, rod: str | None = None) -> Pose:
+    def tip(self, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip."""
         tip = np.array([1.0])
         return self.pose(tip, rod)
 
-    def body(self, name: str | None = None) -> Pose:
+    def body(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
 
         Raises:
@@ -169,13 +169,13 @@ class Solution:
             raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
         pose = self.model.body[chosen]
         position, quaternion, rotation = pose(self.x, self.inputs)
-        return Pose(
+        return SolvedPoses(
             position=position.full().T,
             rotation=rotation.full()[None],
             quaternion=quaternion.full().T,
         )
 
-    def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
+    def pose(self, X: npt.ArrayLike, rod: str | None = None) -> SolvedPoses:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
 
         Args:
@@ -189,7 +189,7 @@ class Solution:
         quaternion = interpolation @ fields.quaternion.T
         # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
         quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
-        return Pose(position, rotations(quaternion), quaternion)
+        return SolvedPoses(position, rotations(quaternion), quaternion)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""

@@ -1,4 +1,4 @@
-"""Solve a model: by load continuation, or by CasADi's own solvers, judged by one test of our own.
+"""Solve a model: by load continuation, or by CasADi's own solvers, judged by one test for all methods.
 
 See docs/theory.md, section 9.
 """
@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.answer_error import with_error_estimate
-from cosserat_casadi.equilibrium.contact.answer_error import with_error_in_contact
-from cosserat_casadi.equilibrium.contact.equations import Grids
-from cosserat_casadi.equilibrium.contact.solve import solve_contact
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_answer_error import with_error_in_contact
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
@@ -34,13 +34,13 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
 CANNOT_RELAX = " Assemblies and cables of given length cannot be let settle to less energy."
-"""What the message of a solution adds where relaxing is not offered."""
+"""Sentence in the message of a solution where relaxing is not offered."""
 
 IN_CONTACT = " Rods in contact cannot be let settle to less energy."
-"""What the message of an unstable solution adds where rods touch obstacles."""
+"""Sentence in the message of an unstable solution where rods touch obstacles."""
 
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
-"""What the message of a solution adds where no try led to a stable equilibrium."""
+"""Sentence in the message of a solution where no try led to a stable equilibrium."""
 
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
@@ -48,7 +48,7 @@ Start = Solution | FloatArray | None
 
 @dataclass(frozen=True)
 class _Task:
-    """What a method is given.
+    """Arguments of a method: the problem that it solves, and its limits.
 
     Attributes:
         model: what to solve.
@@ -302,7 +302,7 @@ def _corrected_guess(task: _Task) -> NewtonResult | None:
 
 
 def _rootfinder(task: _Task) -> _End:
-    """CasADi's Newton at the full load; what it says of its success is not asked for."""
+    """CasADi's Newton at the full load; its own word on its success is not used."""
     newton = task.limits.newton
     options = {
         "abstol": newton.tolerance,

@@ -22,7 +22,7 @@ DEPENDENT = 1e-12
 
 
 @dataclass(frozen=True)
-class Variations:
+class ConstrainedVariations:
     """Which unknowns vary freely, and which equations restrict them.
 
     Attributes:
@@ -36,12 +36,12 @@ class Variations:
     units: FloatArray
 
 
-def variations(model: Model) -> Variations:
-    """Sort a model's unknowns into those that vary and those that restrict."""
+def variations(model: Model) -> ConstrainedVariations:
+    """Sort a model's unknowns into unknowns that vary and unknowns of constraints, which restrict them."""
     unknowns = model.discrete.unknowns
     free = np.flatnonzero(unknowns.differential)
     held = np.flatnonzero(~unknowns.differential)
-    return Variations(free, held, unknowns.units[free])
+    return ConstrainedVariations(free, held, unknowns.units[free])
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Stability:
         return not self.negative
 
 
-def second_variation(jacobian: FloatArray, allowed: Variations) -> Stability:
+def second_variation(jacobian: FloatArray, allowed: ConstrainedVariations) -> Stability:
     """Test an equilibrium by the eigenvalues of its second variation.
 
     Args:
@@ -83,11 +83,11 @@ def second_variation(jacobian: FloatArray, allowed: Variations) -> Stability:
     return stability_of(admissible_eigenvalues(jacobian, allowed))
 
 
-def admissible_eigenvalues(jacobian: FloatArray, allowed: Variations) -> FloatArray:
+def admissible_eigenvalues(jacobian: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
     """Eigenvalues of the second variation over the admissible variations, ascending.
 
-    Each unknown counts in the energy unit of its own rod or frame. A frame whose quaternion changes its length, which
-    moves nothing, has the eigenvalue 2 there.
+    Each unknown counts in the energy unit of the rod or frame that it belongs to. A frame whose quaternion changes its
+    length, which moves nothing, has the eigenvalue 2 there.
 
     Args:
         jacobian: as in :func:`second_variation`.
@@ -96,7 +96,7 @@ def admissible_eigenvalues(jacobian: FloatArray, allowed: Variations) -> FloatAr
     return admissible_spectrum(jacobian, allowed)[0]
 
 
-def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[FloatArray, FloatArray]:
+def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) -> tuple[FloatArray, FloatArray]:
     """Eigenvalues of the second variation over the k admissible variations, ascending, and those variations, n×k.
 
     Args:
@@ -126,7 +126,7 @@ def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[Floa
     return np.asarray(eigenvalues), np.asarray(admissible)
 
 
-def _active_constraints(jacobian: FloatArray, allowed: Variations) -> FloatArray:
+def _active_constraints(jacobian: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
     """Linearised constraints that restrict the variations, one a row."""
     block = np.ix_(allowed.held, allowed.free)
     constraints = jacobian[block]
@@ -146,7 +146,9 @@ def _null_space(constraints: FloatArray) -> FloatArray:
     return np.asarray(rows[rank:].T)
 
 
-def restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations) -> tuple[FloatArray, Variations]:
+def restricted(
+    jacobian: FloatArray, held: list[FloatArray], allowed: ConstrainedVariations
+) -> tuple[FloatArray, ConstrainedVariations]:
     """A Jacobian with further rows that restrict the variations.
 
     Args:
@@ -164,7 +166,7 @@ def restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations
 
 
 def stability_of(eigenvalues: FloatArray) -> Stability:
-    """What eigenvalues of the second variation, ascending, mean."""
+    """Stability from the eigenvalues of the second variation, ascending."""
     if not eigenvalues.size:
         return Stability(np.inf)
     sizes = np.abs(eigenvalues)

@@ -47,10 +47,10 @@ def first_vanished(model: Model, x: FloatArray, inputs: FloatArray) -> VanishedP
 
 
 def with_paths(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outcome) -> tuple[Outcome, str]:
-    """How a solve has ended, and what is to be said of it, in view of the paths of its tendons.
+    """Outcome of a solve and its sentence, after a look at the paths of its tendons.
 
     Args:
-        model: what was solved.
+        model: the solved model.
         x: where the method stopped, shape (model.size,).
         inputs: stacked inputs, shape (model.inputs.size,).
         outcome: how it has ended but for the paths.

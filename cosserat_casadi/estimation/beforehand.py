@@ -1,4 +1,4 @@
-"""What is known before an estimate begins: which numbers differ from row to row, their ranges, priors and sizes.
+"""Prior knowledge of an estimate: the numbers that differ from row to row, their ranges, priors and sizes.
 
 These numbers are stacked as the solver in C has them: inputs, and the parameters behind them.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import Knowledge
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout
+from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
@@ -69,7 +69,7 @@ def unknown_parameters(scene: scenes.Scene) -> tuple[str | tuple[str, ...], ...]
 
 
 def with_unknown_parameters(model: Model) -> Model:
-    """The model with these parameters alone: what is known is a constant of it."""
+    """The model with these parameters alone: all other numbers are constants of it."""
     wanted = unknown_parameters(model.scene)
     if not wanted:
         return model.at()
@@ -87,10 +87,12 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
         SceneError: with what the scene says of the first corner that it refuses, for each unknown.
     """
     sides: list[tuple[int, float]] = []
-    for entry in layout.own:
+    for entry in (*layout.own, *layout.shared):
         if not entry.of_input:
             lower, upper, _, _ = entry.limits()
-            sides += list(zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True))
+            ends = zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True)
+            # What all rows share has a prior, and need have no bounds.
+            sides += [(index, end) for index, end in ends if np.isfinite(end)]
     corners = [[side] for side in sides]
     corners += [list(pair) for pair in combinations(sides, 2) if pair[0][0] != pair[1][0]]
     problems: dict[str, Problem] = {}
@@ -129,7 +131,7 @@ def of_parameters(layout: UnknownLayout) -> list[int]:
 
 
 def knowledge_of(layout: UnknownLayout) -> Knowledge:
-    """What a scene says beforehand of the unknowns of each row: bounds, priors, typical sizes."""
+    """Prior knowledge of the unknowns of each row in a scene: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
     # What is known beforehand says best what is much and what is little.
@@ -139,10 +141,10 @@ def knowledge_of(layout: UnknownLayout) -> Knowledge:
 
 
 def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
-    """What is known of a row's own unknowns, and of those that all rows share where these are held.
+    """Prior knowledge of a row's unknowns, and of the numbers that all rows share where these are held.
 
     Args:
-        known: of the row's own.
+        known: knowledge of the row's unknowns.
         shared: values of the others, shape (q,).
     """
     # The cost of their priors is counted once, not for each row.
@@ -158,7 +160,7 @@ def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
 
 
 def expected_values(known: Knowledge, values: FloatArray) -> FloatArray:
-    """What is expected of the unknowns, within their bounds; the given values where nothing is."""
+    """Prior means of the unknowns, within their bounds; the values of the arguments where there is no prior."""
     expected: FloatArray = np.clip(np.where(known.weight > 0.0, known.mean, values), known.lower, known.upper)
     return expected
 

@@ -1,8 +1,8 @@
 """Whether model, priors and stated noise explain the data of all rows together.
 
-Twice the cost of a row is a sum of squares that has the chi-square distribution of as many degrees of freedom as
-numbers were measured and expected, less those that were found, if all is as stated. So has the sum over rows. What each
-sensor reads is off by as much on one side as on the other. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with
+Twice the cost of a row is a sum of squares that has the chi-square distribution of as many degrees of freedom as there
+are measurements and priors, less the estimated numbers, if all is as stated. So has the sum over rows. The differences
+of each sensor are off by as much on one side as on the other. Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with
 Applications to Tracking and Navigation*, Wiley 2001, section 5.4.
 """
 
@@ -33,7 +33,7 @@ class Consistency:
 
     Attributes:
         squares: sum of the squares of all deviations from data and priors.
-        freedom: what it is expected to be.
+        freedom: its expected value.
         deviations: by how much it is larger, in standard deviations of a normal distribution.
         row_deviations: the same of each row, shape (cases,); NaN where it was not found, or nothing is left over.
         bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name; of sensors
@@ -48,7 +48,7 @@ class Consistency:
 
     @property
     def holds(self) -> bool:
-        """Whether chance explains what is left over."""
+        """Whether chance explains the residuals."""
         return self.deviations <= DOUBTED and not self.biased and not np.any(self.outlying)
 
     @property
@@ -64,7 +64,7 @@ class Consistency:
         return outlying
 
     def sentences(self, cases: Sequence[str]) -> Iterator[str]:
-        """What does not go together, for the user."""
+        """Sentences on the disagreements, for the user."""
         if self.deviations > DOUBTED:
             yield (
                 f"Model and priors do not explain the data to the accuracy that sigma states: the squares of all "
@@ -89,20 +89,25 @@ class Consistency:
 
 
 def consistency(
-    squares: FloatArray, freedom: npt.NDArray[np.int64], shared: float, residuals: dict[str, FloatArray]
+    squares: FloatArray,
+    freedom: npt.NDArray[np.int64],
+    shared: float,
+    residuals: dict[str, FloatArray],
+    shared_freedom: int = 0,
 ) -> Consistency:
     """How well rows go together with a model.
 
     Args:
         squares: twice the cost of each row, shape (cases,); NaN where it was not found.
-        freedom: numbers measured and expected in each, less those found, shape (cases,).
+        freedom: measurements and priors of each, less estimated numbers, shape (cases,).
         shared: squared deviations of the numbers that all rows share from their priors; each has one, so that they
             add no freedom.
         residuals: by the name of a sensor its deviations in all rows, those not measured left out.
+        shared_freedom: how many of the shared numbers a bound holds: they were not fitted, and their priors stay.
     """
     found = np.isfinite(squares)
     total = float(squares[found].sum()) + shared
-    left = int(freedom[found].sum())
+    left = int(freedom[found].sum()) + shared_freedom
     bias = {name: _mean_deviation(values) for name, values in residuals.items() if len(values) > 1}
     by_row = np.array([chi_square_deviations(*row) for row in zip(squares.tolist(), freedom.tolist(), strict=True)])
     return Consistency(total, left, chi_square_deviations(total, left), by_row, bias)

@@ -1,4 +1,4 @@
-"""What a robot feels: inputs and places of each measured case that explain it best, given what is known beforehand.
+"""Estimates of the inputs and places that explain each measured case best, by maximum a posteriori.
 
 The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores; where a place along a rod or
 another parameter is unknown, from several values between its bounds. Its covariance is that of
@@ -38,14 +38,14 @@ from cosserat_casadi.estimation.beforehand import (
     with_unknown_parameters,
 )
 from cosserat_casadi.estimation.consistency import Consistency, consistency
+from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
 from cosserat_casadi.estimation.optima import best_of, spread_starts
-from cosserat_casadi.estimation.outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.row_library import row_library
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
 from cosserat_casadi.estimation.stacking import sections_of, sensor_names, stacked
-from cosserat_casadi.identification.cases import Data, read_cases
-from cosserat_casadi.identification.unknowns import UnknownEntry, UnknownLayout, unknown_layout
+from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
+from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
@@ -62,7 +62,7 @@ TOLD = 3
 """Cases that a sentence names."""
 
 Progress = Callable[[str, int, int], None]
-"""Told what is being done, how much of it is done, and of how much."""
+"""Called with the work under way, how much of it is done, and of how much."""
 
 
 def estimate(
@@ -72,14 +72,14 @@ def estimate(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Estimate:
-    """What explains each measured case of a model's scene best.
+    """Estimate the unknowns of each measured case of a model's scene.
 
     Args:
         model: of a scene with measurements, whose unknowns are ``per_row`` or have priors:
             ``build(scene.with_unknowns())``.
         data: columns by measurement, by its name or its file, that stand for the file.
         cores: threads, at least 1; those of this machine by default.
-        progress: told what is being done.
+        progress: called with the work under way.
 
     Raises:
         SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
@@ -144,7 +144,7 @@ def _units(entries: Sequence[UnknownEntry]) -> tuple[str, ...]:
 
 
 def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, SharedNumbers | None, FloatArray]:
-    """The rows; what they share; and what the uncertainty of that adds to their covariances."""
+    """The rows; the shared numbers; and the share of the uncertainty of these in the rows' covariances."""
     if not layout.shared:
         return search.rows(np.zeros(0)), None, np.zeros(())
     names = SharedLabels(layout.shared_labels, _units(layout.shared))
@@ -161,18 +161,23 @@ def _consistency(
     sensors: Sequence[str],
 ) -> Consistency:
     """How well some rows, in which data and priors determine every unknown, go together with the model."""
+    own = len(layout.own_labels)
     priors = int(np.count_nonzero(layout.own_limits.weight))
-    freedom = np.count_nonzero(table.weights, axis=1) + priors - len(layout.own_labels)
+    # A number that a bound holds is not fitted to the data.
+    fitted = np.count_nonzero(~layout.own_limits.at_end(found.unknowns[:, :own]), axis=1)
+    freedom = np.count_nonzero(table.weights, axis=1) + priors - fitted
     squares = np.where(rows, 2 * found.cost, np.nan)
     residuals: dict[str, list[FloatArray]] = {}
     for column, name in enumerate(sensors):
         measured = rows & (table.weights[:, column] > 0.0)
         residuals.setdefault(name, []).append(found.residuals[measured, column])
     of_shared = 0.0
+    held = 0
     if shared is not None:
         of_shared = float(np.sum(layout.shared_limits.residual(shared.values) ** 2))
+        held = int(np.count_nonzero(layout.shared_limits.at_end(shared.values)))
     by_sensor = {name: np.concatenate(values) for name, values in residuals.items()}
-    return consistency(squares, freedom, of_shared, by_sensor)
+    return consistency(squares, freedom, of_shared, by_sensor, held)
 
 
 @dataclass(frozen=True)
@@ -182,7 +187,7 @@ class Search:
     Attributes:
         library: the solver in C.
         tables: the cases, each with the values from which the searches begin.
-        known: what is known beforehand of the numbers of each row.
+        known: prior knowledge of the numbers of each row.
         indices: places of these numbers, and of the shared ones behind them, in a row of the inputs.
         cores: threads.
         report: told how many rows are found.
@@ -215,7 +220,7 @@ class Search:
         return replace(table, inputs=inputs)
 
     def sampled(self, found: Estimates, covariance: FloatArray, draws: int) -> Sampled:
-        """Mean squared deviations by draws around what was found; NaN where it was not, or is not determined.
+        """Mean squared deviations by draws around the estimates; NaN without an estimate, or if not determined.
 
         Args:
             found: the rows.
@@ -259,7 +264,7 @@ def estimate_scene(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Estimate:
-    """What explains each measured case of a scene best, on modes and nodes that meet its tolerance.
+    """Estimate the unknowns of each measured case of a scene, on modes and nodes that meet its tolerance.
 
     They are chosen for loads within two deviations of the priors, and some cases are solved again at the end on a finer
     discretisation that tells their error.
@@ -323,7 +328,7 @@ def start_tables(
 def _found(
     library: EstimatorLibrary, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: Progress
 ) -> list[Estimates]:
-    """What was found from each table of starts, in chunks on all cores."""
+    """Estimates from each table of starts, in chunks on all cores."""
     count = len(tables[0].inputs)
     chunks = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
     parts = [table.part(chunk) for table in tables for chunk in chunks]
@@ -357,7 +362,7 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
 
 
 def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Iterator[str]:
-    """What a user must know of what was found."""
+    """Remarks on the estimates, for the user."""
     for outcome, reason in REASONS.items():
         rows = [case for case, word in zip(result.cases, result.outcomes, strict=True) if word == outcome]
         if rows:

@@ -1,9 +1,9 @@
-"""Several searches for each row, and what they found together: the best, the second best, and how sure the choice is.
+"""Several searches for each row, and their minima: the best, the second best, and how sure the choice is.
 
-Where a place along the rod is unknown the misfit may have several minima: a small force far out bends a rod much like
-a large one near its base. Each search finds one; those that differ are counted by the mass of the posterior around
-them, each as a normal distribution: D. J. C. MacKay, *Information Theory, Inference, and Learning Algorithms*,
-Cambridge University Press 2003, chapter 27.
+Where a place along the rod is unknown the misfit may have several minima: a small force far out bends a rod much like a
+large one near its base. Each search finds one; different minima are counted by the mass of the posterior around them,
+each as a normal distribution: D. J. C. MacKay, *Information Theory, Inference, and Learning Algorithms*, Cambridge
+University Press 2003, chapter 27.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SEED = 16
 
 @dataclass(frozen=True)
 class SecondBest:
-    """What else explains the rows.
+    """The second best minimum of each row.
 
     Attributes:
         values: unknowns of the second-best minimum that the searches found, shape (cases, k); NaN where they found one
@@ -59,7 +59,7 @@ def best_of(runs: Sequence[Estimates], own: int) -> tuple[Estimates, SecondBest]
 
     Args:
         runs: searches for the same cases, each from other values.
-        own: how many numbers are found in each row; those behind them are held.
+        own: number of estimated unknowns in each row; further ones behind them are held.
     """
     cases = len(runs[0].outcome)
     rows = np.arange(cases)

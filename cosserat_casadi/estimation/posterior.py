@@ -30,7 +30,7 @@ Costs = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class Sampled:
-    """What draws from the posteriors of rows tell, in the unknowns' units.
+    """Moments of draws from the posteriors of rows, in the unknowns' units.
 
     Attributes:
         covariance: mean products of the deviations from the estimates, shape (cases, k, k).

@@ -21,10 +21,11 @@ def row_library(
     """The library for rows of these sections; the model keeps it.
 
     Args:
-        model: what is measured.
+        model: the measured model.
         sections: rows of each measurement in one case, by its number.
         indices: of the numbers that are found among the stacked inputs and the parameters behind them.
-        abscissae: of all cases, shape (cases, sections); those that are the same in all are constants of the library.
+        abscissae: of all cases, shape (cases, sections); an abscissa that is the same in all cases is a constant of the
+            library.
 
     Raises:
         ExportError: two things of the scene would have one name in C.

@@ -42,7 +42,7 @@ Searched = tuple[Estimates, SecondBest | None]
 
 @dataclass(frozen=True)
 class SharedNumbers:
-    """What was found of the numbers that all rows share.
+    """Estimates of the numbers that all rows share.
 
     Attributes:
         labels: their names.
@@ -90,7 +90,7 @@ class _Reduced:
 def find_shared(
     search: Callable[[FloatArray], Searched], limits: Limits, names: SharedLabels, own: tuple[FloatArray, FloatArray]
 ) -> tuple[Searched, SharedNumbers, FloatArray]:
-    """What all rows share, and the rows with it.
+    """Estimate the numbers that all rows share, and the rows with them.
 
     Args:
         search: shared numbers ↦ the rows with these held; their own numbers stand before the shared ones.
@@ -137,7 +137,7 @@ def _expansion(
     found: Searched,
     own: tuple[FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What the rows say of the shared numbers to second order: slope, curvature; and how the rows move with them."""
+    """The rows' cost in the shared numbers to second order: slope, curvature; and how the rows move with them."""
     reduced = _reduced(found[0], own)
     slope = reduced.slope
     curvature = reduced.curvature
@@ -173,7 +173,7 @@ def _volumes(found: Estimates, own: tuple[FloatArray, FloatArray]) -> FloatArray
 
 
 def _of_own(found: Estimates, own: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """Information of the own numbers of rows that were found, and which of these numbers are at no bound."""
+    """Information of rows with an estimate on their numbers, and which of these numbers are at no bound."""
     k = len(own[0])
     rows = found.outcome == 0
     free = ~_at_bound(found.unknowns[rows, :k], own)

@@ -10,11 +10,11 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import MeasuredCases
 from cosserat_casadi.codegen.parameters import given_size
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.quantities import QUANTITIES, difference
+from cosserat_casadi.identification.measured_cases import Case
+from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene.inputs import AXES
+from cosserat_casadi.scene.input_fields import AXES
 
 
 def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
@@ -31,10 +31,11 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
     """The differences of all measurements as one function.
 
     Args:
-        model: what is measured.
+        model: the measured model.
         sections: rows of each measurement in one case, by its number.
         indices: of the numbers that are found among the stacked inputs and the parameters behind them.
-        abscissae: of all cases, shape (cases, sections); those that are the same in all are constants of the function.
+        abscissae: of all cases, shape (cases, sections); an abscissa that is the same in all cases is a constant of the
+            function.
 
     Returns:
         (x, inputs, at, measured) ↦ differences, and their derivatives with x and with these numbers. Behind the inputs
@@ -107,7 +108,7 @@ def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) 
     """Names of the differences in their order: the measurement, the number, and the section where cases share it.
 
     Args:
-        model: what is measured.
+        model: the measured model.
         sections: rows of each measurement in one case, by its number.
         abscissae: of all cases, shape (cases, sections).
     """

@@ -1,9 +1,9 @@
-"""Identification: numbers of a scene from what was measured, with what the data say of them and what not.
+"""Identification: numbers of a scene from measurements, with the statistics of how well the data determine them.
 
 table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ statistics ─▶ Identification
 """
 
-from cosserat_casadi.identification.found import Identification, Row
-from cosserat_casadi.identification.search import identify, identify_scene
+from cosserat_casadi.identification.identification_result import Identification, Row
+from cosserat_casadi.identification.model_identification import identify, identify_scene
 
 __all__ = ["Identification", "Row", "identify", "identify_scene"]

@@ -2,7 +2,7 @@
 
 A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z where the
 vectors are scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). Of r modes with one
-λ, such as the two bendings of a round rod, none has a derivative of its own. Their mean has one: the trace, over r, of
+λ, such as the two bendings of a round rod, none has a derivative. Their mean has one: the trace, over r, of
 the r×r matrix of these numbers. It is what all of them are compared with.
 """
 
@@ -17,14 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.identification.cases import Datum
-from cosserat_casadi.identification.quantities import QUANTITIES
+from cosserat_casadi.identification.measured_cases import Datum
+from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checks import immovable
 from cosserat_casadi.motion.eigenproblem import ComplexArray, eigenpairs
-from cosserat_casadi.motion.modes import small_motions
+from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.small_motions import SmallMotions
+from cosserat_casadi.motion.vibration_modes import small_motions
 from cosserat_casadi.scene.measurements import ModeMeasurement
 
 Indices = npt.NDArray[np.int64]
@@ -37,12 +37,12 @@ PARTED = 1e-6
 
 
 @dataclass(frozen=True)
-class Cluster:
+class ModeCluster:
     """Modes that have one eigenvalue.
 
     Attributes:
         value: λ, the mean of theirs, 1/s.
-        first: number of the first of them among those that swing, from 1 on.
+        first: index of the first of them among the oscillating modes, from 1 on.
         right: their vectors z in all unknowns, one a column, shape (size, r).
         left: vectors l of the same size, one a row, with l (2λ M + C) z = 1, shape (r, size).
     """
@@ -59,7 +59,7 @@ class Cluster:
 
     @property
     def numbers(self) -> range:
-        """Their numbers among those that swing, from 1 on."""
+        """Their indices among the oscillating modes, from 1 on."""
         return range(self.first, self.first + self.count)
 
 
@@ -74,14 +74,16 @@ class Vibrations:
         self.model = model
         self._slope: ca.Function | None = None
 
-    def clusters(self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]) -> dict[int, Cluster]:
-        """The modes of some numbers, each with those that have its eigenvalue; what does not swing is left out.
+    def clusters(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]
+    ) -> dict[int, ModeCluster]:
+        """The modes of some indices, each with all modes of its eigenvalue; modes that do not oscillate are left out.
 
         Args:
             x: unknowns of an equilibrium, shape (size,).
             inputs: stacked inputs.
             p: stacked parameters.
-            numbers: of modes among those that swing, from 1 on.
+            numbers: indices among the oscillating modes, from 1 on.
 
         Returns:
             clusters by the numbers of their modes.
@@ -92,7 +94,7 @@ class Vibrations:
         conservative = self.model.has_potential(inputs)
         pairs = eigenpairs(motions.free_stiffness, motions.free_damping, motions.free_mass, conservative=conservative)
         swinging = pairs.values[pairs.values.imag > 0.0]
-        found: dict[int, Cluster] = {}
+        found: dict[int, ModeCluster] = {}
         for number in numbers:
             if number in found or number > len(swinging):
                 continue
@@ -100,7 +102,7 @@ class Vibrations:
             found.update(dict.fromkeys(cluster.numbers, cluster))
         return found
 
-    def derivatives(self, cluster: Cluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
+    def derivatives(self, cluster: ModeCluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
         """The matrices −l_i (λ² dM + λ dC + dK) z_j by x, inputs and p, stacked, shape (r, r, arguments), 1/s."""
         function = self._slope_function()
         given = [x, inputs, p] if self.model.parameters.size else [x, inputs]
@@ -156,7 +158,7 @@ class Vibrations:
         return self._slope
 
 
-def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> Cluster:
+def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeCluster:
     """The modes that have the eigenvalue of one of them.
 
     Args:
@@ -185,7 +187,7 @@ def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> Clust
         left[algebraic] = -np.linalg.lstsq(gradients, inside.T @ left[moving], rcond=None)[0]
     slope = 2.0 * value * motions.mass + motions.damping
     normalised = np.linalg.solve(left.T @ slope @ right, left.T)
-    return Cluster(value, int(chosen[0]) + 1, right, normalised)
+    return ModeCluster(value, int(chosen[0]) + 1, right, normalised)
 
 
 def _pencil(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, value: complex) -> ComplexArray:
@@ -215,7 +217,7 @@ class MeasuredModes:
         cases: the cases that have such rows, shape (count,).
         data: these rows, in the order of the residuals, each with the number of its entry.
         row_cases: the case of each.
-        places: where its case stands among those that have rows, shape (rows,).
+        places: positions of their cases among the cases that have rows, shape (rows,).
         sigma: standard deviation of each entry.
     """
 
@@ -292,7 +294,7 @@ class MeasuredModes:
 
 
 def check_vibrations(model: Model) -> None:
-    """Refuse vibrations of what has no mass.
+    """Refuse measured vibrations of rods without mass.
 
     Raises:
         SceneError: a measurement of them is of a scene in which a rod has none.

@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.identification.cases import Datum
-from cosserat_casadi.identification.equilibria import split
-from cosserat_casadi.identification.quantities import QUANTITIES, difference
+from cosserat_casadi.identification.case_equilibria import split
+from cosserat_casadi.identification.measured_cases import Datum
+from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 

@@ -1,7 +1,7 @@
-"""How far the model is from what was measured in all cases, with exact derivatives by the implicit function theorem.
+"""Differences of model and measurements in all cases, with exact derivatives by the implicit function theorem.
 
 Each case has its own equilibrium g(x, inputs, p) = 0, so that dx = −(∂g/∂x)⁻¹ (∂g/∂inputs d inputs + ∂g/∂p dp). A case
-that was measured over time begins there, or unloaded, and moves on by the steps of identification/motions.py.
+that was measured over time begins there, or unloaded, and moves on by the steps of identification/case_motions.py.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.case_equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.case_motions import Motions, Run
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout
+from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.identification.measured_modes import JointModes, MeasuredModes, Vibrations
 from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
-from cosserat_casadi.identification.motions import Motions, Run
-from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.measurements import ModeMeasurement
@@ -56,9 +56,9 @@ class Misfit:
 
     Attributes:
         model: with the parameters that are unknown.
-        layout: what is unknown.
-        cases: what was measured.
-        equilibria: of the cases; of motions those where they start.
+        layout: the unknowns.
+        cases: the measured cases.
+        equilibria: of the cases; of a motion the equilibrium where it starts.
         moves: which cases are motions, shape (cases,).
         motions: of these cases.
         measurements: rows by measurement.
@@ -236,7 +236,7 @@ def without_rounding(
     Args:
         shared: derivatives with the shared unknowns, shape (m, n).
         own: derivatives with those of the row's case, shape (m, k).
-        sizes: of the shared unknowns, shape (n,), and of the own ones, shape (k,).
+        sizes: of the shared unknowns, shape (n,), and of the unknowns of the cases, shape (k,).
     """
     norms = [np.linalg.norm(columns, axis=0) * size for columns, size in zip((shared, own), sizes, strict=True)]
     least = ROUNDING * np.concatenate(norms).max(initial=0.0)

@@ -1,4 +1,4 @@
-"""The error that modes and nodes leave at what was measured: numbers that are found make up for it."""
+"""The error that modes and nodes leave in the measured equilibria: identified numbers make up for it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import replace
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.identification.cases import Case
-from cosserat_casadi.identification.found import Identification
+from cosserat_casadi.identification.identification_result import Identification
+from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.numerics.outcome import Outcome
 
 
@@ -20,7 +20,7 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
 
     Args:
         found: at the end of a search.
-        cases: what was fitted, by its first row in words.
+        cases: the fitted cases, by their first rows in words.
     """
     try:
         model = found.model.at(found.parameters)

@@ -1,9 +1,9 @@
-"""What the data say of the unknowns: covariance, and the directions that they do not determine.
+"""How well the data determine the unknowns: covariance, and the directions that they leave open.
 
 Near the optimum the misfit is that of a linear model: the covariance of the estimate is the inverse of the information
 JᵀJ, where J is the Jacobian in standard deviations, with the rows of the priors. G. A. F. Seber, C. J. Wild, *Nonlinear
-Regression*, Wiley 1989, chapters 2 and 3. Unknowns of single cases are eliminated first, so that what they leave
-open counts.
+Regression*, Wiley 1989, chapters 2 and 3. Unknowns of single cases are eliminated first, so that their uncertainty
+counts.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arrow_least_squares import Arrow
+from cosserat_casadi.numerics.arrow_least_squares import ArrowStep
 
 BLIND = 1e-10
 """Share of the largest singular value below which a direction is one that the data do not see: rounding."""
@@ -29,7 +29,7 @@ SMALL_PART = 1e-3
 
 
 class NoiseFrom(Enum):
-    """What intervals take the noise of the data from."""
+    """Source of the noise of the data, for intervals."""
 
     SIGMA = "what was stated"
     RESIDUALS = "what the residuals are"
@@ -51,10 +51,10 @@ class Direction:
 
 @dataclass(frozen=True)
 class Statistics:
-    """What is known of the shared unknowns.
+    """How well the shared unknowns are known.
 
     Attributes:
-        covariance: shape (n, n); rows of what is not determined are NaN, of what is held at a bound zero.
+        covariance: shape (n, n); rows of unknowns that are not determined are NaN, of unknowns held at a bound zero.
         determined: whether data and priors determine each unknown, and no bound holds it, shape (n,).
         unseen: directions that the data alone do not determine.
         settled: whether data and priors together determine every direction.
@@ -73,7 +73,7 @@ class Statistics:
 
     @property
     def sigma(self) -> FloatArray:
-        """Standard deviations, shape (n,); NaN where not determined, and of what is held at a bound."""
+        """Standard deviations, shape (n,); NaN where not determined, zero for unknowns held at a bound."""
         return np.sqrt(np.where(self.determined, np.diagonal(self.covariance), np.nan))
 
     @property
@@ -83,7 +83,7 @@ class Statistics:
 
 
 def statistics(
-    arrow: Arrow,
+    arrow: ArrowStep,
     labels: tuple[str, ...],
     scales: tuple[FloatArray, FloatArray],
     *,
@@ -91,7 +91,7 @@ def statistics(
     squares: float,
     noise_from: NoiseFrom,
 ) -> Statistics:
-    """What the data say at the optimum.
+    """Statistics of the unknowns at the optimum.
 
     Args:
         arrow: the misfit there, linear in the unknowns.
@@ -167,7 +167,7 @@ class _Directions:
         return directions
 
     def covariance(self) -> FloatArray:
-        """Inverse of the information; NaN for unknowns that have a part in what is not seen."""
+        """Inverse of the information; NaN for unknowns that have a part in directions that are not seen."""
         seen = ~self.blind
         scaled = self.vectors[seen] / self.singular[seen, None]
         covariance: FloatArray = scaled.T @ scaled
@@ -183,7 +183,7 @@ def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> Floa
     With the information A = D + P of data and priors, that of the estimate is A⁻¹ (noise² D + P) A⁻¹.
 
     Args:
-        covariance: A⁻¹, NaN for what is not seen, shape (n, n).
+        covariance: A⁻¹, NaN for unknowns that are not seen, shape (n, n).
         prior: weights of the priors, the root of P, shape (n, n).
         noise: the factor.
     """
@@ -202,7 +202,7 @@ def _directions(rows: FloatArray) -> _Directions:
 
 
 def _own_deviations(
-    arrow: Arrow, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
+    arrow: ArrowStep, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
 ) -> FloatArray:
     """Standard deviations of the unknowns of each case, with what the shared ones add; NaN where not determined."""
     n, k = arrow.sizes

@@ -1,1 +1,1 @@
-"""What acts on the sections of rods and on bodies: one file each kind, and the registry."""
+"""Loads on the sections of rods and on bodies: one file each kind, and the registry."""

@@ -20,7 +20,7 @@ class Arrow:
     Attributes:
         start: where it begins, world axes, shape (3,), m.
         vector: force, moment or force per length, world axes, shape (3,), in the unit of its sort.
-        sort: what it stands for.
+        sort: kind of vector that the arrow stands for.
         label: its entry in the legend; empty for one that another arrow speaks for.
     """
 

@@ -23,5 +23,5 @@ class BodyWrenchLoad(Load[scenes.BodyWrench]):
         return BodyPoint(load.position)
 
     def wrench(self, load: scenes.BodyWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment as given."""
+        """Force and moment of the scene, unchanged."""
         return values["force"], values["moment"]

@@ -7,8 +7,8 @@ With the gap g = d(r) − ρ between a section of radius ρ and the obstacle, th
 per length of the rod. From the gap w on there is no force; where the gap is zero it is k w/3. Energy, force and
 stiffness are continuous, and so is the derivative of the stiffness but for its kink at g = w.
 
-In motion the force is f (1 − δ ġ): what it takes, δ f ġ² per time, is never negative. K. H. Hunt and F. R. E. Crossley,
-J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
+In motion the force is f (1 − δ ġ): the power δ f ġ² that it dissipates is never negative. K. H. Hunt and F. R. E.
+Crossley, J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
 from cosserat_casadi.maths.numbers import Numbers, Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 
 
 class ContactLine(ObstacleLoadRecord):

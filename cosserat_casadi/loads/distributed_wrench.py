@@ -19,5 +19,5 @@ class DistributedWrenchLoad(Load[scenes.DistributedWrench]):
     def wrench(
         self, load: scenes.DistributedWrench, section: Section, values: Mapping[str, Matrix]
     ) -> tuple[Matrix, Matrix]:
-        """The coefficients as given, one column a degree."""
+        """The coefficients of the scene, unchanged, one column a degree."""
         return values["force"], values["moment"]

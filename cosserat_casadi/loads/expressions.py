@@ -1,7 +1,7 @@
 """Numbers of a record that are expressions of parameters, as values by name.
 
-A kernel of a section is written in scalar symbols of its own. Where a number of its load is an expression, the kernel
-has a symbol for it beside those of the inputs.
+A kernel of a section is written in scalar symbols. Where a number of its load is an expression, the kernel has a symbol
+for it beside the symbols of the inputs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a load is: a kind of table of the scene, as the wrench that it puts on one section of a rod or on a body.
+"""Base class of loads: a load is a kind of table of the scene, as the wrench on one section of a rod or on a body.
 
 A member is one file and one line of the registry. It gives :meth:`Load.wrench`, a small function of a section, or
 :meth:`Load.energy`, of which the wrench is the derivative. What the mechanics do with it follows from its structure: a
@@ -35,9 +35,9 @@ from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
-from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.families import Kind, Kinds
-from cosserat_casadi.scene.loads import LOADS, LoadRecord
+from cosserat_casadi.scene.load_records import LOADS, LoadRecord
 
 RecordType = TypeVar("RecordType", bound=LoadRecord)
 
@@ -152,7 +152,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         return None
 
     def axes(self, load: RecordType) -> Axes:
-        """Axes that force and moment are given in; what is given by an energy is in world axes."""
+        """Axes of the force and the moment in the scene; a load that is given by an energy is in world axes."""
         frame = getattr(load, "frame", "world")
         return "section" if frame == "body" else "world"
 
@@ -188,7 +188,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         return (at,)
 
     def faults(self, load: RecordType, site: Site) -> Iterator[Problem]:
-        """What is wrong with a load on an unloaded rod, at many sections of it; nothing by default."""
+        """Problems of a load on an unloaded rod, at many sections of it; none by default."""
         yield from ()
 
     def profiles(self, load: RecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
@@ -234,7 +234,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         return arrows
 
     def point_arrows(self, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
-        """Force and moment on one section or on a body, shape (3, 1) each; what is zero is not drawn."""
+        """Arrows of force and moment on one section or on a body, shape (3, 1) each; a zero vector is not drawn."""
         arrows = []
         vectors: dict[Sort, FloatArray] = {"point": force[:, 0], "moment": moment[:, 0]}
         for sort, vector in vectors.items():
@@ -277,7 +277,7 @@ def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers
 
 
 def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Matrix:
-    """The same where some are expressions; what is zero is not stored."""
+    """The same where some numbers are expressions; zeros are not stored."""
     rows = [component if isinstance(component, tuple) else (component,) for component in components]
     longest = max(len(row) for row in rows)
     padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]

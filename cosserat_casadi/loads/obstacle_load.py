@@ -1,4 +1,4 @@
-"""What all loads have in common that an obstacle exerts: on rods, which see it in its axes, and on bodies as balls."""
+"""Common part of the loads that an obstacle exerts: on rods, seen in the obstacle's axes, and on bodies as balls."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.load_records import LoadRecord
 
 
 class ObstacleLoadRecord(LoadRecord):

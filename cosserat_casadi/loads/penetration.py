@@ -1,7 +1,7 @@
 """A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: where contact is, before it is found exactly.
 
-Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. What it gives is a first
-guess of places and forces, never a result; no scene file names this load.
+Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. It gives a first guess
+of places and forces, never a result; no scene file names this load.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 
 
 class Penetration(ObstacleLoadRecord):

@@ -1,7 +1,7 @@
 """Force and moment on any section.
 
 The internal force jumps at the section, the strain too. An element of the grid ends there, with polynomials and nodes
-of its own on either side, so every field is smooth inside an element and the accuracy stays spectral.
+on either side, so every field is smooth inside an element and the accuracy stays spectral.
 """
 
 from __future__ import annotations
@@ -27,5 +27,5 @@ class PointWrenchLoad(Load[scenes.PointWrench]):
         return at
 
     def wrench(self, load: scenes.PointWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment as given."""
+        """Force and moment of the scene, unchanged."""
         return values["force"], values["moment"]

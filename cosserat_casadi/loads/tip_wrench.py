@@ -21,5 +21,5 @@ class TipWrenchLoad(Load[scenes.TipWrench]):
         return 1.0
 
     def wrench(self, load: scenes.TipWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment as given."""
+        """Force and moment of the scene, unchanged."""
         return values["force"], values["moment"]

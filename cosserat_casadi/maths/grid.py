@@ -180,7 +180,7 @@ class Grid:
         return elements_before * self._nodes_per_element - 1
 
     def nodes_in(self, start: Scalar, end: Scalar) -> Indices:
-        """Indices of the nodes of the elements between two element ends, each side of an end with its own."""
+        """Indices of the nodes between two element ends; nodes at an inner end appear once for each side."""
         first = self._end_number(start)
         behind_last = self._end_number(end)
         elements = self.element_of_node

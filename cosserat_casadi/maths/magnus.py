@@ -38,8 +38,8 @@ def coefficient_count(order: int) -> int:
 def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points on τ ∈ [−½, ½] and the matrix from samples of h K there to α₁ … α_count.
 
-    The α are those whose polynomial has the same moments ∫ τⁱ h K dτ, i < count, as the sampled function; so the
-    leading term of Ω is ∫ K dX without error as long as the samples integrate K.
+    The polynomial of the α has the same moments ∫ τⁱ h K dτ, i < count, as the sampled function; so the leading term of
+    Ω is ∫ K dX without error as long as the samples integrate K.
 
     Args:
         count: number of coefficients α.
@@ -94,8 +94,8 @@ def _order_four(a1: AnyMatrix, a2: AnyMatrix) -> AnyMatrix:
 def _order_six(a1: AnyMatrix, a2: AnyMatrix, a3: AnyMatrix) -> AnyMatrix:
     """The series up to h⁶.
 
-    Its nested products are multiplied out, a × (b × c) = b (a·c) − c (a·b): fewer operations. What is left is a sum
-    of the α, each times a scalar, and one cross product with α₂.
+    Its nested products are multiplied out, a × (b × c) = b (a·c) − c (a·b): fewer operations. The result is a sum of
+    the α, each times a scalar, and one cross product with α₂.
     """
     square = dot(a1, a1) / 720
     part_of_3 = dot(a1, a3) / 360

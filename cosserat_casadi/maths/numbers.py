@@ -1,7 +1,7 @@
 """Numbers that are known, or expressions of parameters: NumPy arrays and CasADi's MX under one roof.
 
-What is known stays NumPy, to the last bit; what a parameter enters is an MX. A vector of k numbers is an array of shape
-(k,) or an MX of shape (k, 1), a table an array or an MX of shape (k, m).
+Known numbers stay NumPy, to the last bit; a number that depends on a parameter is an MX. A vector of k numbers is an
+array of shape (k,) or an MX of shape (k, 1), a table an array or an MX of shape (k, m).
 """
 
 from __future__ import annotations
@@ -38,7 +38,12 @@ def is_symbolic(value: object) -> TypeIs[Matrix]:
 
 def any_symbolic(values: Iterable[object]) -> bool:
     """Whether there is an expression among values, or in a sequence among them."""
-    return any(any_symbolic(value) if isinstance(value, tuple | list) else is_symbolic(value) for value in values)
+    for value in values:
+        if isinstance(value, ca.MX):
+            return True
+        if isinstance(value, tuple | list) and any_symbolic(value):
+            return True
+    return False
 
 
 def known(numbers: Numbers) -> FloatArray:
@@ -64,7 +69,7 @@ def as_matrix(numbers: Numbers) -> Matrix:
 
 
 def as_vector(values: Sequence[Scalar]) -> Numbers:
-    """Scalars as a vector, of which those that are zero are not stored where one is an expression."""
+    """Scalars as a vector; where one is an expression, zeros are not stored."""
     if not any_symbolic(values):
         return np.asarray(values, dtype=float)
     entries = [value if isinstance(value, ca.MX) else ca.sparsify(ca.DM(value)) for value in values]
@@ -141,7 +146,7 @@ def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
 
 
 def reciprocal(numbers: Numbers | None) -> Numbers | None:
-    """One over each entry; none of none."""
+    """One over each entry; None for None."""
     if numbers is None:
         return None
     inverse: Numbers = 1 / numbers
@@ -184,7 +189,7 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
 
 
 def without_rounding(entries: FloatArray) -> FloatArray:
-    """Entries without those that are rounding beside the largest, which orthogonal polynomials leave."""
+    """Entries, with rounding errors set to zero: orthogonal polynomials leave them beside the largest entry."""
     largest = np.abs(entries).max(initial=0.0)
     return np.where(np.abs(entries) < ROUNDING * largest, 0.0, entries)
 

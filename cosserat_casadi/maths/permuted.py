@@ -16,7 +16,7 @@ from typing import Literal
 import casadi as ca
 
 from cosserat_casadi.maths.chebyshev import differentiation_matrix
-from cosserat_casadi.maths.shapes import check_shape
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
 
 End = Literal["base", "tip"]
@@ -52,7 +52,7 @@ class PermutedSystem:
     beta: Matrix
 
     def ivp(self, x_known: Matrix) -> Matrix:
-        """What the known value adds to the other derivatives: report (3.20).
+        """Contribution of the known value to the derivatives at the other points: report (3.20).
 
         Args:
             x_known: (m, 1).

@@ -34,7 +34,7 @@ class Pose:
         return quaternion_to_matrix(self.quaternion)
 
     def then(self, inner: Pose) -> Pose:
-        """Pose of a frame whose pose in this one is given."""
+        """Pose, in the outer axes, of a frame whose pose in this frame is ``inner``."""
         position = self.position + rotate(self.quaternion, inner.position)
         return Pose(position, quaternion_product(self.quaternion, inner.quaternion))
 
@@ -80,7 +80,7 @@ class NumericPose:
         return quaternion_to_matrix(self.quaternion)
 
     def then(self, inner: NumericPose) -> NumericPose:
-        """Pose of a frame whose pose in this one is given."""
+        """Pose, in the outer axes, of a frame whose pose in this frame is ``inner``."""
         position = self.position + self.rotation @ inner.position
         return NumericPose(position, quaternion_product(self.quaternion, inner.quaternion))
 

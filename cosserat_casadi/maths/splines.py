@@ -26,7 +26,7 @@ _CONTROL = np.linalg.inv(_BINOMIALS * _INSIDE[:, None] ** _DEGREES * (1 - _INSID
 _SQUARE = np.array(
     [np.outer(_BINOMIALS, _BINOMIALS) * (np.add.outer(_DEGREES, _DEGREES) == k) / math.comb(6, k) for k in range(7)]
 )
-"""Coefficients in Bernstein's basis of the product of two cubic polynomials from their own, shape (7, 4, 4)."""
+"""Matrices that take Bernstein coefficients of two cubic polynomials to those of their product, shape (7, 4, 4)."""
 
 _LEAST_NORM_ERROR = 1e-14
 """Of the largest norm: some tens of rounding errors."""

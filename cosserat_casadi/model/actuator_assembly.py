@@ -1,4 +1,4 @@
-"""What the actuators of a scene do to its rods, and whether their forces are gradients."""
+"""Actuators of a scene in the equations of its rods, and whether their forces are gradients."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from cosserat_casadi.maths.typing import Matrix
 
 @dataclass
 class BlockMatrix:
-    """A square matrix made of blocks, those that meet in the same rows and columns added.
+    """A square matrix made of blocks; blocks in the same rows and columns are added.
 
     Attributes:
         ends: last row of each block row, plus one; the same for columns.

@@ -1,4 +1,4 @@
-"""What the loads of a scene do to its bodies."""
+"""Loads of a scene on its bodies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import casadi as ca
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint
-from cosserat_casadi.loads.trace import TracedLoad, stored, traced
+from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -105,7 +105,7 @@ class BodyLoads:
     inputs: Matrix
 
     def all(self) -> list[BodyLoad]:
-        """What all loads do to the body."""
+        """All loads on the body."""
         body_loads = []
         for load in self.discrete.loads:
             body_load = self.of(load)
@@ -114,7 +114,7 @@ class BodyLoads:
         return body_loads
 
     def of(self, load: scenes.LoadRecord) -> BodyLoad | None:
-        """What one load does to the body; None where it does not act there, or is zero for good."""
+        """One load on the body; None where it does not act there, or is always zero."""
         point = EFFECTS[load.kind].on_body(load, self.body)
         if point is None:
             return None

@@ -16,17 +16,17 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import operations
 from cosserat_casadi.model.actuator_assembly import actuators_have_potential
-from cosserat_casadi.model.constraints import decisive_axes
+from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers, with_parameters
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.functions import ModelFunctions
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.load_potential import loads_have_potential
+from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout
-from cosserat_casadi.model.rank import check_constraints
+from cosserat_casadi.model.scene_constraints import decisive_axes
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -52,7 +52,7 @@ class Model(ModelFunctions, MotionFunctions):
 
     @property
     def scene(self) -> scenes.Scene:
-        """The scene this is a model of; its parameters have the values of its file, or those that are bound."""
+        """The scene of this model; its parameters have the values of its file, or the values that are bound."""
         if self.parameters.size:
             return self.discrete.nominal.scene
         return self.discrete.scene
@@ -65,7 +65,7 @@ class Model(ModelFunctions, MotionFunctions):
     def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Model:
         """The model with its parameters fixed: its functions take unknowns and inputs alone.
 
-        Unknowns mean what they mean here: they are counted in units of the scene's own numbers.
+        Unknowns keep their meaning: they are counted in units of the scene's numbers.
 
         Args:
             values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
@@ -93,7 +93,7 @@ class Model(ModelFunctions, MotionFunctions):
         return bound
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
-        """The model, without parameters, of a scene that differs in what is held, on the same modes and nodes.
+        """The model, without parameters, of a scene with other constraints, on the same modes and nodes.
 
         Args:
             change: the scene ↦ the other scene, of the same rods.

@@ -28,7 +28,8 @@ NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
 
 SHARE_ON_BODY = 0.25
-"""What the thickness of an obstacle on a body counts: it comes to meet the rod, and neither may pass its middle."""
+"""Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle.
+"""
 
 
 def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
@@ -67,7 +68,7 @@ def _stiffness(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> float:
 
 
 def _body_stiffness(obstacle: scenes.ObstacleRecord, body: scenes.Body, rods: Mapping[str, DiscreteRod]) -> float:
-    """Stiffness of an obstacle for a body, N/m: where it is given, that of a rod as long as the body is thick."""
+    """Stiffness of an obstacle for a body, N/m: the scene's, or that of a rod as long as the body is thick."""
     assert obstacle.width is not None
     if obstacle.stiffness is not None:
         return obstacle.stiffness * 2 * _radius(body)

@@ -19,18 +19,23 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.enrichment import enriched
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
-from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.rods import rod_properties
-from cosserat_casadi.model.signals import signal_modes
-from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.scene_constraints import (
+    FORCE_WEIGHT,
+    PlacedConstraint,
+    placed_constraints,
+    written_constraints,
+)
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
@@ -85,7 +90,7 @@ class DiscreteScene:
         layout: its inputs.
         rods: the constant matrices of each rod.
         parameters: the parameters that its expressions are of.
-        scaling: the scene with the numbers that scale the equations; None where these are its own.
+        scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
     """
 
     scene: scenes.Scene
@@ -105,7 +110,7 @@ class DiscreteScene:
 
     @property
     def nominal(self) -> DiscreteScene:
-        """The scene with the numbers that scale the equations: those that its file gives."""
+        """The scene with the numbers that scale the equations: the values of its file."""
         return self if self.scaling is None else self.scaling
 
     @cached_property
@@ -210,9 +215,9 @@ class DiscreteScene:
         ]
         return Unknowns(tuple(blocks))
 
-    def _strain_blocks(self) -> Iterator[Block]:
+    def _strain_blocks(self) -> Iterator[UnknownBlock]:
         for name, rod in self.rods.items():
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.STRAIN,
                 owner=name,
                 rod=name,
@@ -221,9 +226,9 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
-    def _multiplier_blocks(self) -> Iterator[Block]:
+    def _multiplier_blocks(self) -> Iterator[UnknownBlock]:
         for placed in self.constraints:
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.MULTIPLIER,
                 owner=placed.where,
                 rod=placed.rod,
@@ -232,10 +237,10 @@ class DiscreteScene:
                 step_weight=placed.step_weight,
             )
 
-    def _pose_blocks(self) -> Iterator[Block]:
+    def _pose_blocks(self) -> Iterator[UnknownBlock]:
         for name, frame in self.frames.items():
             # Several rods may meet in a frame, so that it is solved with none of them.
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.POSE,
                 owner=str(name),
                 rod=None,
@@ -244,10 +249,10 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
-    def _tension_blocks(self) -> Iterator[Block]:
+    def _tension_blocks(self) -> Iterator[UnknownBlock]:
         for cable in self.cables:
             tendon = cable.tendon
-            yield Block(
+            yield UnknownBlock(
                 kind=BlockKind.TENSION,
                 owner=tendon.name,
                 rod=tendon.rod,
@@ -294,7 +299,7 @@ class DiscreteScene:
         return Richer(self, discrete)
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
-        """What forces of contact on a rod, or on a body, are counted in, N."""
+        """Unit of contact forces on a rod, or on a body, N."""
         if not of_body:
             return self.tension_unit(name)
         frame = self.body_frame(name)
@@ -352,14 +357,14 @@ class Richer:
         return last[~self.known]
 
     def joined(self, x: Matrix, missing: Matrix) -> Matrix:
-        """Unknowns of the richer scene from those that the coarse one has and those that it lacks."""
+        """Unknowns of the richer scene from the unknowns of the coarse one and the missing ones."""
         places = np.empty(self.discrete.size, dtype=int)
         places[self.known] = np.arange(self.coarse.size)
         places[~self.known] = self.coarse.size + np.arange(self.missing_size)
         return ca.vertcat(x, missing)[places.tolist()]
 
     def split(self, richer: Matrix) -> tuple[Matrix, Matrix]:
-        """The entries of a vector of the richer scene that the coarse one has, and those that it lacks."""
+        """Entries of a vector of the richer scene, parted into unknowns of the coarse one and missing ones."""
         known = np.flatnonzero(self.known).tolist()
         missing = np.flatnonzero(~self.known).tolist()
         return richer[known], richer[missing]
@@ -373,7 +378,7 @@ class Richer:
             residual: of the richer scene in the missing coordinates, missing×1.
 
         Returns:
-            step of all unknowns of the richer scene, zero for those that are no strains.
+            step of all unknowns of the richer scene, zero for unknowns that are no strains.
         """
         lacking = self.joined(ca.DM(self.coarse.size, 1), residual)
         units = [self._stiffness_unit(name) for name in self.discrete.rods]
@@ -432,7 +437,7 @@ def with_numbers(
 
 
 def with_parameters(nominal: DiscreteScene) -> DiscreteScene:
-    """A scene whose parameters are entries of one symbol, under the scaling and the grids of its own numbers.
+    """A scene whose parameters are entries of one symbol; its file's values decide on the scaling and the grids.
 
     Raises:
         SceneError: a parameter would move a place that elements cannot follow.

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.model.element_ends import check_places, element_ends
 from cosserat_casadi.model.enrichment import nodes_for
-from cosserat_casadi.model.places import check_places, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
 

@@ -21,7 +21,7 @@ from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import matrix_to_quaternion
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
 
@@ -89,7 +89,7 @@ class UnloadedScene:
 
     @cached_property
     def floating_rods(self) -> list[scenes.Rod]:
-        """Rods whose bases float: carried ones, and those that nothing holds."""
+        """Rods whose bases float: rods that others carry, and rods that nothing holds."""
         return [rod for rod in self.scene.rods if self.floating_base(rod.name) is not None]
 
     @cached_property

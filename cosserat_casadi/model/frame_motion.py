@@ -17,8 +17,8 @@ from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FloatingFrame
 from cosserat_casadi.model.frame_pose import turn_matrix
-from cosserat_casadi.rod.motion import FrameMotion
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.rod_motion import FrameMotion
 
 
 def _turn_jet() -> ca.Function:

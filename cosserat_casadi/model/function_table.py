@@ -1,6 +1,6 @@
-"""What a named function of a model is, and the table of all of them.
+"""Entries of the table of a model's named functions, and the table.
 
-A function is one method of :class:`cosserat_casadi.model.functions.ModelFunctions` with one of the decorators below.
+A function is a method of :class:`cosserat_casadi.model.model_functions.ModelFunctions` with one of these decorators.
 The model's members, the manifest, the kernels in C with their headers, and what ``load`` offers follow from the table.
 """
 
@@ -13,7 +13,7 @@ from enum import Enum
 from functools import cached_property
 from importlib import import_module
 from operator import attrgetter
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import casadi as ca
 
@@ -43,7 +43,7 @@ PARAMETERS = "p"
 
 
 class Owner(Enum):
-    """What there is one function for each of."""
+    """Family of owners of a function: one function exists for each of its members."""
 
     SCENE = "scene"
     ROD = "rod"
@@ -69,7 +69,7 @@ class Output:
 
 @dataclass(frozen=True)
 class Expressions:
-    """What a function is written in.
+    """Discretisation, owner and symbols that the expressions of a function are written in.
 
     Attributes:
         discrete: the scene.
@@ -103,7 +103,7 @@ class Expressions:
 
     @property
     def _motion(self) -> MotionArguments:
-        """Rates of unknowns and inputs; what is no argument is zero for good."""
+        """Rates of unknowns and inputs; a rate that is no argument is zero."""
         unknowns = ca.DM(self.discrete.size, 1)
         inputs = ca.DM(self.discrete.layout.size, 1)
         return MotionArguments(
@@ -129,15 +129,15 @@ class FunctionSpec:
 
     Attributes:
         name: member of the model.
-        owner: what there is one for each of.
+        owner: family of its owners; the table has one function for each member.
         arguments: names of the arguments, without the parameters that a scene names.
-        outputs: what it gives, or a rule that says so for one owner.
+        outputs: names of its results, or a rule that gives them for one owner.
         write: gives the expressions; None where the scene has no such function.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
         header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
-        doc: what it is, in one sentence.
+        doc: the function in one sentence.
     """
 
     name: str
@@ -183,7 +183,7 @@ class FunctionSpec:
         return "v" in self.arguments
 
     def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
-        """What the function of one owner gives."""
+        """Names of the results for one owner."""
         return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs
 
     def function_of(self, model: Any, owner: str = "") -> ca.Function:
@@ -222,7 +222,7 @@ class FunctionSpec:
 
 def _entry_of(module: str, method: str) -> FunctionSpec:
     """The entry of a method, such as "ModelFunctions.residual" of a module."""
-    function: NamedFunction[Any] = attrgetter(method)(import_module(module))
+    function: NamedFunction = attrgetter(method)(import_module(module))
     return function.spec
 
 
@@ -269,8 +269,11 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
 
 
 @dataclass
-class NamedFunction(Generic[Result]):
-    """A member of a model that is built when it is first asked for, and kept."""
+class NamedFunction:
+    """A member of a model that is built when it is first asked for, and kept.
+
+    Of the scene it is one function, of rods, actuators or bodies a function for each, by name.
+    """
 
     spec: FunctionSpec = field(init=False)
     options: dict[str, Any]
@@ -284,26 +287,13 @@ class NamedFunction(Generic[Result]):
     def __get__(self, model: Any, model_class: type | None = None) -> Any:
         if model is None:
             return self
-        built = self._build(model)
+        built: ca.Function | dict[str, ca.Function] | None
+        if self.spec.owner is Owner.SCENE:
+            built = self.spec.build(model)
+        else:
+            built = {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}
         model.__dict__[self.spec.name] = built
         return built
-
-    def _build(self, model: Any) -> Any:
-        raise NotImplementedError
-
-
-class SceneFunction(NamedFunction[ca.Function]):
-    """One function of the whole scene."""
-
-    def _build(self, model: Any) -> ca.Function | None:
-        return self.spec.build(model)
-
-
-class OwnedFunctions(NamedFunction[dict[str, ca.Function]]):
-    """One function for each rod, actuator or body, by name."""
-
-    def _build(self, model: Any) -> dict[str, ca.Function | None]:
-        return {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}
 
 
 def scene_function(
@@ -312,12 +302,12 @@ def scene_function(
     kernel: str = "",
     header: str = "",
     differentiable: bool = False,
-) -> Callable[[Write], SceneFunction]:
+) -> Callable[[Write], NamedFunction]:
     """Make a method one named function of the scene.
 
     Args:
-        outputs: what it gives.
-        arguments: names of what it takes.
+        outputs: names of its results.
+        arguments: names of its arguments.
         kernel: name of its kernel in C; empty where it stays in Python.
         header: sentence of the header in C; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
@@ -330,7 +320,7 @@ def scene_function(
         "header": header,
         "differentiable": differentiable,
     }
-    return lambda write: SceneFunction(options, write)
+    return lambda write: NamedFunction(options, write)
 
 
 def owned_functions(
@@ -342,13 +332,13 @@ def owned_functions(
     kernel_outputs: int | None = None,
     header: str = "",
     differentiable: bool = False,
-) -> Callable[[Write], OwnedFunctions]:
+) -> Callable[[Write], NamedFunction]:
     """Make a method one named function for each rod, actuator or body.
 
     Args:
-        owner: what there is one for each of.
+        owner: family of its owners; each member has one function.
         outputs: what each gives, or a rule that says so for one owner.
-        arguments: names of what it takes.
+        arguments: names of its arguments.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
         header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
@@ -363,7 +353,7 @@ def owned_functions(
         "header": header,
         "differentiable": differentiable,
     }
-    return lambda write: OwnedFunctions(options, write)
+    return lambda write: NamedFunction(options, write)
 
 
 def table(model_class: type) -> list[FunctionSpec]:

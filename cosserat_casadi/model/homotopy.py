@@ -14,7 +14,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
 
 LoadFactor = Matrix | None
 """λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
@@ -53,7 +53,7 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
     return _scaled_wrench(load, load_factor)
 
 
-def _scaled_wrench(load: PointWrench | LineWrench, load_factor: Matrix) -> PointWrench | LineWrench:
+def _scaled_wrench(load: WrenchAt | LineWrench, load_factor: Matrix) -> WrenchAt | LineWrench:
     force = load.force
     moment = load.moment
     # An absent force or moment stays absent, so that it adds no instruction.
@@ -75,7 +75,7 @@ def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: Lo
     """An equation at a load factor, λ r + (1 − λ)^p s u.
 
     Args:
-        row: r, what is zero in the scene itself, k×1.
+        row: r, the equation of the scene itself, zero in equilibrium, k×1.
         unknown: u, the unknown that a spring of this equation acts on, k×1.
         compliance: p and s.
         load_factor: λ.
@@ -87,7 +87,7 @@ def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: Lo
 
 
 def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
-    """Derivatives of an equation at a load factor, but for those of its own spring."""
+    """Derivatives of an equation at a load factor, without the derivative of its spring."""
     if load_factor is None:
         return columns
     return load_factor * columns

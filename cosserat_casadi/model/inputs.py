@@ -1,4 +1,4 @@
-"""What stays free at run time: the model's inputs as records, their order and their values in the scene.
+"""Numbers that stay free at run time: the model's inputs as records, their order and their values in the scene.
 
 Names, units, bounds and shapes of an input are declared once, by the record of the scene that it belongs to
 (``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart.
@@ -18,9 +18,9 @@ from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.model.stacked import StackedLayout
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.records import Entry
 
 SHORTEST = 1e-3
@@ -38,7 +38,7 @@ class Input:
         default: the scene's value, shape (components, k): column k holds the k-th Legendre coefficient.
         axes: "none" of a number, else "world" or "section".
         of_rod: whether the owner is a rod.
-        upper: largest value that each entry may have by what it is; inf where there is none.
+        upper: largest value that physics allows each entry; inf where there is none.
     """
 
     owner: str
@@ -82,7 +82,7 @@ class Input:
         return self.declared.lower
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value."""
+        """Problems of a value."""
         if value.size != self.size:
             yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
         elif not np.all(np.isfinite(value)):
@@ -160,7 +160,7 @@ def _input(free: scenes.FreeInput) -> Input:
 
 
 def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:
-    """What may be free of a rod itself, as the scene has it: shape (1, 1), (3, 1) or (4, 1)."""
+    """Value of a free field of a rod itself in the scene: shape (1, 1), (3, 1) or (4, 1)."""
     position, quaternion = base_pose(rod)
     values = {
         "length": np.array([rod.length]),

@@ -1,4 +1,4 @@
-"""What the loads of a scene do to its rods."""
+"""Loads of a scene on its rods."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.load import Site, UnloadedPoses
-from cosserat_casadi.loads.trace import TracedLoad, stored, traced
+from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import (
     Numbers,
     among,
@@ -29,9 +29,9 @@ from cosserat_casadi.model.inputs import scene_value
 from cosserat_casadi.model.load_inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import RodMotion
+from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class RodBase:
         return self.base_R_world @ vector
 
     def seen_from(self, body: Pose) -> RodBase:
-        """The pose of the base in the axes of a body whose pose in the world is given."""
+        """The pose of the base in the axes of a body, from the pose of the body in the world."""
         world_R_body = body.rotation
         position = world_R_body.T @ (self.position - body.position)
         return RodBase(position, self.base_R_world @ world_R_body)
@@ -70,7 +70,8 @@ class RodLoads:
         inputs: stacked inputs.
         ratio: length of the rod relative to the scene's, where that is free.
         motion: of the rod; None at rest.
-        body_pose: world pose of a body, by name; None where bodies have none, and what they bear is left out.
+        body_pose: world pose of a body, by name; None where bodies have none: loads of obstacles on bodies are then
+            left out.
     """
 
     discrete: DiscreteScene
@@ -82,14 +83,14 @@ class RodLoads:
     body_pose: Callable[[str], Pose] | None = None
 
     def all(self) -> list[RodLoad]:
-        """What all loads do to the rod, in the axes of its base."""
+        """All loads on the rod, in the axes of its base."""
         rod_loads: list[RodLoad] = []
         for load in self.discrete.loads:
             rod_loads += self.of(load)
         return rod_loads
 
     def of(self, load: scenes.LoadRecord) -> list[RodLoad]:
-        """What one load does to the rod: nothing where it does not act there."""
+        """One load on the rod; empty where it does not act there."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
             return []
@@ -107,7 +108,7 @@ class RodLoads:
         moment = self.base.in_base_axes(given_moment, follower=kernel.follower)
         at = member.abscissa(load)
         if at is not None:
-            return [PointWrench(at, force, moment, kernel.follower)]
+            return [WrenchAt(at, force, moment, kernel.follower)]
         # Profiles of force and of moment may differ: a line wrench for each.
         force_line = self._line_wrench(kernel, site, force, None)
         moment_line = self._line_wrench(kernel, site, None, moment)

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.scene.inputs import column_suffixes
+from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.scene.number_table import finite_number, read_numbers
 
 
@@ -36,7 +36,7 @@ def column_indices(layout: InputLayout) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class CaseLayout:
-    """What a load case sets: the inputs of a scene, and the parameters behind them.
+    """Layout of a load case: the inputs of a scene, and the parameters behind them.
 
     Attributes:
         inputs: of the scene.
@@ -77,7 +77,7 @@ class CaseLayout:
         """The case of values by name; those not named keep the scene's.
 
         Raises:
-            SceneError: a value is refused; what is neither is called no input.
+            SceneError: a value is refused; a name that is neither input nor parameter is called no input.
         """
         parameters = {name: value for name, value in values.items() if name in self.parameters.names}
         inputs = {name: value for name, value in values.items() if name not in parameters}
@@ -98,7 +98,8 @@ def read_load_cases(path: Path, layout: CaseLayout) -> FloatArray:
     """Load cases of a CSV file with a header, shape (count, size of a case), SI units.
 
     Raises:
-        SceneError: with every fault: a column that is no input, a row of another length, what is not a finite number.
+        SceneError: with every fault: a column that is no input, a row of another length, a cell that is no finite
+            number.
     """
     header, numbers, _, problems = read_numbers(path)
     indices = layout.columns
@@ -157,6 +158,8 @@ def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[f
             problems.append(no_column("--range", column, indices))
         elif low is None or high is None:
             problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
+        elif indices[column] in bounds:
+            problems.append(Problem("--range", f"{column!r} has two ranges", "give one of them"))
         else:
             bounds[indices[column]] = (low, high)
     if problems:

@@ -14,7 +14,7 @@ from cosserat_casadi.model.inputs import InputLayout, scene_value
 def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
     """Inputs of a load or an actuator, and its numbers that are expressions of parameters.
 
-    What is zero for good is a matrix that stores nothing.
+    An input that is always zero is a matrix that stores nothing.
     """
     values = expressions_in(record)
     for field in record.inputs:

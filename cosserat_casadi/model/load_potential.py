@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.trace import TracedLoad, has_potential
+from cosserat_casadi.loads.load_trace import TracedLoad, has_potential
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.inputs import load_values

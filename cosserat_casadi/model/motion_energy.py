@@ -21,12 +21,12 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
-from cosserat_casadi.model.borne_loads import BorneLoad
+from cosserat_casadi.model.body_obstacle_loads import BorneLoad
 from cosserat_casadi.model.load_potential import is_dead_force
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import MotionArguments, System
-from cosserat_casadi.rod.motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench
 
@@ -89,9 +89,9 @@ class MotionEnergy:
 
     @cached_property
     def actuator_powers(self) -> Matrix:
-        """Power of each actuator on its rod, (actuators)×1, W: minus its effort times the rate of what it works on.
+        """Power of each actuator on its rod, (actuators)×1, W: minus its effort times the rate of its conjugate.
 
-        Where a cable rubs, what it loses on the way does not arrive.
+        Where a cable rubs, the losses along it are subtracted.
         """
         powers = []
         for actuator in self.system.discrete.scene.actuators:
@@ -192,7 +192,7 @@ class MotionEnergy:
         return _sum(powers)
 
     def _borne(self, load: scenes.LoadRecord) -> Iterator[BorneLoad]:
-        """What a load on rods does to the body that bears the opposite."""
+        """Wrench of a load on rods on the body that bears the opposite."""
         for rod in self.system.discrete.rods:
             for wrench in self.system.loads_of(load, rod):
                 if isinstance(wrench, PoseWrench) and wrench.borne_by is not None:
@@ -200,7 +200,7 @@ class MotionEnergy:
                     yield BorneLoad(self.system, rod, sections)
 
     def _contact_energy(self, load: scenes.LoadRecord) -> Matrix:
-        """What an obstacle with a width stores."""
+        """Energy stored in an obstacle with a width."""
         energies = []
         for rod in self.system.discrete.rods:
             for wrench in self.system.resting_loads_of(load, rod):

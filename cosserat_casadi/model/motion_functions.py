@@ -1,4 +1,4 @@
-"""The named functions of a model in motion: see model/functions.py and docs/theory.md, section 11.
+"""The named functions of a model in motion: see model/model_functions.py and docs/theory.md, section 11.
 
 Coordinates x are those of statics, v and a their first and second time derivatives. Multipliers and tensions have
 neither: their entries of v and a are not read.
@@ -12,7 +12,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.motion_energy import MotionEnergy
-from cosserat_casadi.model.motion_equations import MotionEquations
+from cosserat_casadi.model.scene_motion_equations import SceneMotionEquations
 
 MOTION = ("x", "v", "a", "inputs", "inputs_rate", "inputs_acceleration")
 """Arguments of the functions of a scene in motion."""
@@ -36,19 +36,19 @@ class MotionFunctions:
 
         Zero along a motion. At rest it is the residual of statics to the last bit.
         """
-        return [ca.densify(MotionEquations(written.system).residual)]
+        return [ca.densify(SceneMotionEquations(written.system).residual)]
 
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, v, a, inputs, …) ↦ derivatives of the residual with x, v and a, size×size each, and the residual."""
-        equations = MotionEquations(written.system)
+        equations = SceneMotionEquations(written.system)
         matrices = equations.matrices
         return [matrices.stiffness, matrices.damping, matrices.mass, equations.residual]
 
     @scene_function(Output("mass"))
     def mass_matrix(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ mass matrix, size×size, symmetric but for the units of its rows, s²."""
-        return [MotionEquations(written.at_rest).matrices.mass]
+        return [SceneMotionEquations(written.at_rest).matrices.mass]
 
     @owned_functions(Owner.ROD, (Output("base_force", "N"), Output("base_moment", "N m")), arguments=MOTION)
     def base_wrench(self, written: Expressions) -> list[Matrix]:

@@ -12,7 +12,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.obstacles.registry import SURFACES
 
 LOOKED_AT = np.linspace(0.0, 1.0, 201)
@@ -38,7 +38,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
 
     Args:
         scene: the scene.
-        what: what is asked of it, such as "a motion".
+        what: the request in words, such as "a motion".
 
     Raises:
         SceneError: the scene has obstacles without a width.

@@ -61,7 +61,7 @@ class Count:
 def operations(function: ca.Function) -> int:
     """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted.
 
-    The kernels of the intervals stay functions of their own; each call counts with all its operations.
+    The kernels of the intervals stay separate functions; each call counts with all its operations.
     """
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     results = ca.cse(list(function.call(symbols)))

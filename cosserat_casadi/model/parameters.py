@@ -19,7 +19,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import any_symbolic
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.places import MovingEnds, moving_ends, places_on, unmovable
+from cosserat_casadi.model.element_ends import MovingEnds, moving_ends, places_on, unmovable
 from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.writing import scene_tables
 
@@ -61,7 +61,7 @@ class Parameter:
         return components, places
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value but for its range, which the scene judges."""
+        """Problems of a value but for its range, which the scene judges."""
         if value.size != self.size:
             yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
         elif not np.all(np.isfinite(value)):
@@ -82,7 +82,7 @@ class ParameterLayout(StackedLayout[Parameter]):
     several = "parameters"
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """The stacked vector, from the scene's values and those given here.
+        """The stacked vector: values by name, and the scene's values for other names.
 
         Raises:
             SceneError: a name is unknown, a value has another shape or is not finite, or places change their order.
@@ -127,7 +127,7 @@ class ParameterLayout(StackedLayout[Parameter]):
 
         Args:
             scene: the scene that names the parameters.
-            values: by name; those that are left out keep the scene's value.
+            values: by name; other parameters keep the scene's value.
 
         Raises:
             SceneError: a name is unknown, or a scene with these values is refused.
@@ -161,4 +161,4 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
 
 
 NO_PARAMETERS = ParameterLayout(())
-"""What a model whose numbers are all constants has."""
+"""Parameters of a model whose numbers are all constants."""

@@ -1,4 +1,4 @@
-"""Actuators of a scene as expressions of its unknowns and inputs: efforts, what they work on, cables of given length.
+"""Actuators of a scene as expressions of its unknowns and inputs: efforts, conjugates, cables of given length.
 
 See docs/theory.md, sections 6 and 8.
 """
@@ -19,7 +19,7 @@ from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor, scaled_effort, smoothing_at
 from cosserat_casadi.model.load_inputs import input_value, input_values
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
+from cosserat_casadi.rod.actuation import Actuation, Conjugate, ShapeQuantity
 from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.kinematics import Shape
 
@@ -32,7 +32,7 @@ class SceneActuators:
     """Actuators of a scene in given arguments.
 
     Attributes:
-        discrete: what is constant.
+        discrete: constant matrices of the scene.
         x: unknowns.
         inputs: stacked inputs.
         load_factor: λ from 0, the unloaded scene, to 1; None for the scene itself.
@@ -57,7 +57,7 @@ class SceneActuators:
         return effort, conjugate.value, gradient.T
 
     def conjugate(self, name: str) -> tuple[scenes.Actuator, Conjugate]:
-        """An actuator, and what it works on."""
+        """An actuator, and the quantity that its effort works on."""
         actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
         return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
 
@@ -67,7 +67,7 @@ class SceneActuators:
         return self._among_unknowns(actuator.rod, conjugate.pull)
 
     def on_rod(self, rod: str) -> tuple[Actuation, ...]:
-        """Actuators on a rod: the efforts that are given, at the load factor, then the unknown tensions."""
+        """Actuators on a rod: the efforts of the inputs, at the load factor, then the unknown tensions."""
         given = rod_actuation(self.discrete, rod, self.inputs)
         efforts = [scaled_effort(actuation, self.load_factor) for actuation in given]
         for cable in self.discrete.cables:
@@ -82,15 +82,15 @@ class SceneActuators:
         """Equations of the cables of given length by the names of their tendons."""
         return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
 
-    def _quantity(self, actuator: scenes.Actuator) -> Quantity:
-        """What an actuator works on, for the inputs."""
+    def _quantity(self, actuator: scenes.Actuator) -> ShapeQuantity:
+        """Quantity that the effort of an actuator works on, at the inputs."""
         values = input_values(self.discrete.layout, actuator, self.inputs)
         grid = self.discrete.rods[actuator.rod].grid
-        quantity: Quantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
+        quantity: ShapeQuantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
         return quantity
 
     def _effort(self, actuator: scenes.Actuator) -> Matrix:
-        """Effort of an actuator: an input, or unknown where the scene gives what it works on."""
+        """Effort of an actuator: an input, or unknown where the scene prescribes its conjugate."""
         member = EFFECTS[actuator.kind]
         if member.prescribes_conjugate(actuator):
             return self._unknown_tension(self._cable(actuator.name))

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.numbers import Numbers
 from cosserat_casadi.rod import section
 from cosserat_casadi.rod.section import SectionShape
 from cosserat_casadi.scene.families import Kind, Kinds, register
-from cosserat_casadi.scene.rods import SECTIONS, SectionRecord
+from cosserat_casadi.scene.rod_records import SECTIONS, SectionRecord
 
 RecordType = TypeVar("RecordType", bound=SectionRecord)
 

@@ -30,7 +30,7 @@ class StackedEntry(Protocol):
         """The scene's value, shape (components, k)."""
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value."""
+        """Problems of a value."""
 
 
 EntryType = TypeVar("EntryType", bound=StackedEntry)
@@ -52,7 +52,7 @@ class StackedLayout(Generic[EntryType]):
     several: ClassVar[str]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What pickle and copy take along: the values, without the symbol that is made of them."""
+        """The state that pickle and copy take along: the values, without the symbol that is built from them."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
@@ -86,7 +86,7 @@ class StackedLayout(Generic[EntryType]):
         return zip(self.entries, self.slices.values(), strict=True)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """The stacked vector, from the scene's values and those given here.
+        """The stacked vector: values by name, and default values for other names.
 
         Args:
             values: new values by name; a number, (3,) for a vector, (3, k) for Legendre coefficients.

@@ -1,7 +1,8 @@
 """Rods, floating frames, loads and actuators of a scene as expressions of its unknowns and inputs.
 
 Rods stand side by side, each in the axes of its base. A scene of one rod is no special case: what couples rods adds
-rows and columns (model/assembly.py), never instructions to the rods themselves. Docs/theory.md, sections 2 to 8.
+rows and columns (model/assembly_equations.py), never instructions to the rods themselves. See docs/theory.md,
+sections 2 to 8.
 """
 
 from __future__ import annotations
@@ -14,29 +15,29 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.section_constraint import Poses
+from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
-from cosserat_casadi.model.rods import written_base_pose
 from cosserat_casadi.model.scene_actuators import SceneActuators
+from cosserat_casadi.model.scene_constraints import PlacedConstraint
+from cosserat_casadi.model.scene_rods import written_base_pose
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
-from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
-from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
 
 ROUNDING = 1e-16
 """Entry of a rotation matrix below which it is rounding."""
@@ -81,8 +82,8 @@ class System:
     """A scene in given arguments.
 
     Attributes:
-        discrete: what is constant.
-        arguments: what they are written in.
+        discrete: constant matrices of the scene.
+        arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
     """
 
@@ -92,8 +93,13 @@ class System:
 
     @cached_property
     def rods(self) -> dict[str, InverseGeometricModel]:
-        """Balance of every rod, in its base frame."""
-        return {name: self._rod(name) for name in self.discrete.rods}
+        """Balance of every rod in its base frame, under its loads, constraints, actuators and cables."""
+        balances = {}
+        for name, shape_of_rod in self.shapes.items():
+            wrenches = [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
+            loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
+            balances[name] = InverseGeometricModel(Statics(shape_of_rod, loads), self.actuators.on_rod(name))
+        return balances
 
     @cached_property
     def tangents(self) -> dict[str, Tangent]:
@@ -249,11 +255,11 @@ class System:
             return vectors
         return self.body(body).rotation.T @ vectors
 
-    def poses(self, placed: PlacedConstraint) -> Poses:
+    def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
         section = self.section(placed.rod, placed.node)
         base = self.base(placed.rod)
-        return Poses(section, base, self._frame_of(placed))
+        return ConstraintPoses(section, base, self._frame_of(placed))
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
@@ -366,11 +372,11 @@ class System:
         return [scaled(load, self.arguments.load_factor) for load in loads]
 
     def loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
-        """What one load of the scene does to a rod, base frame."""
+        """Wrenches of one load of the scene on a rod, base frame."""
         return self._rod_loads(rod).of(load)
 
     def resting_loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
-        """What one load would do to a rod that rests in this shape, base frame."""
+        """Wrenches of one load on a rod that rests in this shape, base frame."""
         return replace(self._rod_loads(rod), motion=None).of(load)
 
     def _rod_loads(self, rod: str) -> RodLoads:
@@ -379,37 +385,30 @@ class System:
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
 
-    def _rod(self, name: str) -> InverseGeometricModel:
-        """Balance of a rod under its loads, the wrenches of its constraints, its actuators and its cables."""
-        constraints = self.discrete.constraints_on(name)
-        wrenches = [self._constraint_wrench(placed) for placed in constraints]
-        loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
-        return InverseGeometricModel(Statics(self.shapes[name], loads), self.actuators.on_rod(name))
-
-    def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:
+    def _constraint_wrench(self, placed: PlacedConstraint) -> WrenchAt:
         """Wrench of a constraint on its section, in the axes of the rod's base."""
         constraint = placed.constraint
         held = constraint.held
         multipliers = self.multipliers(placed)
-        if held.turn_with_place:
+        if held.turn_with_pose:
             poses = self._poses_but_section(placed)
             wrench = constraint.wrench_basis(poses) @ multipliers
-            return PointWrench(constraint.at, wrench[3:], wrench[:3], follower=False)
+            return WrenchAt(constraint.at, wrench[3:], wrench[:3], follower=False)
         # Constant directions: the constraint costs its rod no more than a load of fixed direction.
         displacements = held.positions.shape[1]
         force_unit = constraint.unit / constraint.rod.length
         force = force_unit * (_sparse(held.positions) @ multipliers[:displacements])
         if not held.rotations.size:
-            return PointWrench(constraint.at, force, None, follower=False)
+            return WrenchAt(constraint.at, force, None, follower=False)
         moment = constraint.unit * (_sparse(held.rotations) @ multipliers[displacements:])
-        return PointWrench(constraint.at, force, moment, follower=False)
+        return WrenchAt(constraint.at, force, moment, follower=False)
 
-    def _poses_but_section(self, placed: PlacedConstraint) -> Poses:
+    def _poses_but_section(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that the direction of a constraint's wrench depends on; the section's is not among them.
 
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
-        return Poses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
+        return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
 
     def _base_R_world(self, rod: str) -> Matrix:
         """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""

@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 class BlockKind(Enum):
-    """What a block of unknowns is."""
+    """Kind of a block of unknowns."""
 
     STRAIN = "strain"
     """Strain coordinates of a rod."""
@@ -30,7 +30,7 @@ class BlockKind(Enum):
 
 
 @dataclass(frozen=True)
-class Block:
+class UnknownBlock:
     """A run of unknowns of one kind and one owner.
 
     Attributes:
@@ -64,7 +64,7 @@ class Unknowns:
         blocks: in the order in which they stand in x.
     """
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[UnknownBlock, ...]
 
     @cached_property
     def size(self) -> int:
@@ -82,7 +82,7 @@ class Unknowns:
             start = stop
         return slices
 
-    def of_kind(self, *kinds: BlockKind) -> Iterator[tuple[Block, slice]]:
+    def of_kind(self, *kinds: BlockKind) -> Iterator[tuple[UnknownBlock, slice]]:
         """The blocks of some kinds with their slices of x."""
         for block, entries in zip(self.blocks, self.slices.values(), strict=True):
             if block.kind in kinds:

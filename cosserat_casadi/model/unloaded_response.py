@@ -7,9 +7,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.load_assembly import nonlinear_inputs
+from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 
 NOISE = 1e-14
@@ -69,7 +69,7 @@ def parametric_response(written: Expressions) -> Matrix:
     discrete = written.discrete
     load_factor = ca.MX.sym("load_factor")
     unloaded = ca.DM.zeros(discrete.size, 1)
-    equations = Equations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
+    equations = SceneEquations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
     if not discrete.size:
         return ca.MX(0, 1)
     rate = ca.jacobian(equations.residual, load_factor)
@@ -80,6 +80,6 @@ def parametric_response(written: Expressions) -> Matrix:
 
 
 def _without_noise(values: FloatArray) -> FloatArray:
-    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
+    """Values, zero where they are rounding errors, which differ with the number of threads of a BLAS."""
     largest = float(np.abs(values).max(initial=0.0))
     return np.where(np.abs(values) < NOISE * largest, 0.0, values)

@@ -1,4 +1,4 @@
-"""What of an equilibrium must be right to the tolerance: poses of sections and bodies, and lengths of cables.
+"""Watched poses of sections and bodies, and lengths of cables: the tolerance bounds their errors.
 
 The tip of a rod that a support holds is where it is held, however coarse the model: such a rod is watched at sections
 between its ends too, and where a scene asks for the whole shape every rod is. See docs/theory.md, section 10.
@@ -32,7 +32,7 @@ EVERY = 4
 
 @dataclass(frozen=True)
 class Watched:
-    """What is watched of an equilibrium, in symbols or in numbers.
+    """Watched poses and lengths of an equilibrium, in symbols or in numbers.
 
     Attributes:
         positions: of sections over the lengths of their rods, then of bodies over the lengths of theirs, 3×k.
@@ -86,7 +86,7 @@ def watched_cables(discrete: DiscreteScene) -> dict[str, float]:
 
 
 def watched(system: System) -> Watched:
-    """What is watched of a system."""
+    """Watched poses and lengths of a system."""
     discrete = system.discrete
     positions = []
     quaternions = []

@@ -23,7 +23,7 @@ from cosserat_casadi.motion.momentum import flies_alone
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.rod.motion import StrainRates
+from cosserat_casadi.rod.rod_motion import StrainRates
 
 ORDERS = 3
 """Positions, rates and accelerations."""

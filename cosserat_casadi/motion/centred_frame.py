@@ -26,9 +26,9 @@ from cosserat_casadi.model.floating_frames import FloatingFrame
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import RodMotion, StrainRates
 from cosserat_casadi.rod.motion_matrices import Jet
 from cosserat_casadi.rod.motion_tangent import MotionTangent
+from cosserat_casadi.rod.rod_motion import RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
@@ -39,7 +39,7 @@ SEEN_SIZE = 11
 
 @dataclass(frozen=True)
 class FrameWeights:
-    """What the nodes count in a centred frame.
+    """Weights of the nodes in a centred frame.
 
     Attributes:
         centre: of the tangents at the nodes in the centre of mass, shape (M,).
@@ -69,7 +69,7 @@ def frame_weights(rod: DiscreteRod) -> FrameWeights:
 
 @dataclass(frozen=True)
 class SeenFromBase:
-    """What the base of a rod sees of it, in its own axes: the centre of mass (m), Q̄ and Q_m, with their rates.
+    """Pose of a rod's centred frame in the axes of its base: the centre of mass (m), Q̄ and Q_m, with their rates.
 
     Attributes:
         rod: the rod.
@@ -178,7 +178,7 @@ class BaseKernels:
 
     @cached_property
     def base(self) -> ca.Function:
-        """(centred frame with what is seen, 18×1, its first and second rate) ↦ unknowns of the base and rates, 7×1."""
+        """(centred frame and its pose in the base, 18×1, their two rates) ↦ unknowns of the base and rates, 7×1."""
         state, rate, acceleration = self._symbols
         value, first, second = self._orders(self._base_of(state))
         return ca.Function("base", [state, rate, acceleration], ca.cse([value, first, second]))
@@ -193,7 +193,7 @@ class BaseKernels:
 
     @cached_property
     def centred(self) -> ca.Function:
-        """(unknowns of the base, what is seen) ↦ unknowns of the centred frame, 7×1: the inverse of :attr:`base`."""
+        """(unknowns of the base, centred frame in the base) ↦ unknowns of that frame, 7×1: inverse of :attr:`base`."""
         base = ca.SX.sym("base", 7)
         seen = ca.SX.sym("seen", SEEN_SIZE)
         quaternion = ca.DM(self.frame.start.quaternion) + base[3:]

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import Facing, Gap, Minimum, Rows
+from cosserat_casadi.motion.contact_gap import Facing, Minimum, Rows, SectionGap
 
 CENTRE = Rows(np.ones(1), np.zeros(1), np.zeros(1))
 """Weights of the one point that a ball has: nothing slides along it."""
@@ -31,12 +31,12 @@ class BodyFacing(Facing):
         """Length of the longest rod that holds it, m."""
         return float(self.model.discrete.body_frame(self.owner).length)
 
-    def at(self, nodes: FloatArray, X: float) -> Gap:
+    def at(self, nodes: FloatArray, X: float) -> SectionGap:
         """The gap, whatever the abscissa."""
         still = np.zeros(3)
         distance = distance_along(self.obstacle, nodes[0], still, still)
         gap = (distance.value - self.radius) / self.length
-        return Gap(gap, 0.0, 0.0, CENTRE, distance.normal, distance.curvature, still)
+        return SectionGap(gap, 0.0, 0.0, CENTRE, distance.normal, distance.curvature, still)
 
     def place(self, nodes: FloatArray, near: float) -> float:
         """The abscissa that it has."""

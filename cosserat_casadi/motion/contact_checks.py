@@ -1,4 +1,4 @@
-"""What contact a motion does not go with, and how deep rods are inside obstacles along one."""
+"""Scenes that exact contact in motion refuses, and the depth of rods inside smooth obstacles along a motion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.paths import watched_times
+from cosserat_casadi.motion.tip_paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3
@@ -21,7 +21,7 @@ THINNEST = 1e-3
 
 
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
-    """What a motion with exact contact does not go with."""
+    """Problems of a scene with exact contact in motion: settings and members that are refused beside it."""
     if simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
@@ -60,7 +60,7 @@ def _too_thin(model: Model) -> Iterator[Problem]:
 
 
 def too_deep(history: History, duration: float) -> str:
-    """A sentence where what is not resolved is contact: rods are deeper inside obstacles than their width."""
+    """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
     if not any(obstacle.is_smooth for obstacle in history.model.scene.obstacles):
         return ""
     times = watched_times(history, duration)

@@ -1,4 +1,4 @@
-"""What has to stay at zero or above while the contacts of a motion do not change: forces, places, bends and gaps."""
+"""Guards of the contacts of a motion: forces, places, bends and gaps that stay at zero or above between two events."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from enum import IntEnum
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.facing import FLATTEST, Facing
-from cosserat_casadi.motion.meeting_ends import MeetingEnds
+from cosserat_casadi.motion.coincident_ends import MeetingEnds
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.touching import Follower, Touch, Touches
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant
 
@@ -27,7 +27,7 @@ NO_PULL = 1e-6
 
 
 class GuardKind(IntEnum):
-    """What a guard is of: of a contact up to the bend, then of a rod or body and an obstacle.
+    """Quantity of a guard: of a contact up to the bend, then of a pair of a rod or body and an obstacle.
 
     Members are in the order in which the guards stand one after the other, and their values count the blocks.
     """
@@ -49,8 +49,8 @@ class GuardKind(IntEnum):
 
 
 @dataclass(frozen=True)
-class Arrangement:
-    """What touches during a stretch of a motion.
+class ContactPhase:
+    """The contacts of a stretch of a motion, between two events.
 
     Attributes:
         touches: the contacts.
@@ -58,7 +58,7 @@ class Arrangement:
         follower: of the contacts.
         floors: least gaps that what does not touch may have, an array for each pair: one for each section of a rod that
             lies, else one.
-        forces_from: time before which forces may pull: after a blow what is stiff has to come to rest, s.
+        forces_from: time before which forces may pull: after an impact stiff parts have to come to rest first, s.
         moment: beginning of the moment in which changes are counted, s.
         changes: changes in it.
     """
@@ -86,7 +86,7 @@ class ContactGuards:
     facings: Sequence[Facing]
     meeting_ends: MeetingEnds
 
-    def of(self, piece: Piece, arrangement: Arrangement) -> Guards:
+    def of(self, piece: Piece, arrangement: ContactPhase) -> Guards:
         """Forces, places within the rod, bends of gaps, and gaps of all else; they are asked for along the motion."""
         touches = arrangement.touches
         follower = arrangement.follower
@@ -124,7 +124,7 @@ class ContactGuards:
 
         return values
 
-    def _within(self, touch: Touch, x: FloatArray, inputs: FloatArray) -> float:
+    def _within(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> float:
         """How far a place is from the ends of the rod; of an end, how fast the gap rises towards all rods there."""
         if touch.slides:
             return min(touch.place, 1.0 - touch.place)
@@ -132,7 +132,7 @@ class ContactGuards:
             return 1.0
         return self.meeting_ends.rise(touch, x, inputs)
 
-    def lowest(self, number: int, nodes: FloatArray, touches: Sequence[Touch]) -> float:
+    def lowest(self, number: int, nodes: FloatArray, touches: Sequence[MovingContact]) -> float:
         """The least gap, over the length, of a rod that does not lie or of a body, but for what touches.
 
         Args:
@@ -147,7 +147,7 @@ class ContactGuards:
 
 
 def guarded(guard: int | None, count: int, facings: int) -> tuple[GuardKind | None, int]:
-    """What a guard is of, and the number of its contact, or of the rod and obstacle.
+    """Kind of a guard, and the index of its contact, or of its pair of a rod or body and an obstacle.
 
     Args:
         guard: its number; None for none.

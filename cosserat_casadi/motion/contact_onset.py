@@ -9,9 +9,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.facing import Facing
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches, with_touches
+from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.moving_inputs import InputState, Piece
-from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
 from cosserat_casadi.numerics.complementarity import least_pushes
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, response, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -43,13 +43,13 @@ LONGEST = 0.1
 
 @dataclass(frozen=True)
 class Struck:
-    """What an impact leaves.
+    """The state after an impact.
 
     Attributes:
         v: velocities after it, shape (n,), 1/s.
         impulses: of the sections that touch, in EI/ℓ² s, shape (m,).
         speeds: rates of their gaps before it, shape (m,), 1/s.
-        staying: those that do not leave.
+        staying: contacts that stay closed.
     """
 
     v: FloatArray
@@ -110,7 +110,8 @@ class Onset:
     def held_still(self, touches: Touches) -> Onset:
         """With velocities at which some sections neither approach nor leave.
 
-        Steps keep gaps at zero, and their rates as far as the steps are exact: what is left would pass for an impact.
+        Steps keep gaps at zero, and their rates as far as the steps are exact: the rates that remain would pass for an
+            impact.
         """
         if not touches:
             return self
@@ -120,7 +121,7 @@ class Onset:
         return self.at(self.before.v - answers @ impulses)
 
     def struck(self, touching: Touches) -> Struck | None:
-        """What an impact at sections without a gap leaves; None where nothing settles it."""
+        """The state after an impact at sections without a gap; None where no impulses settle it."""
         if not touching:
             return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
         speeds = self.rates(touching)
@@ -136,7 +137,7 @@ class Onset:
         return Struck(v, impulses, speeds, staying)
 
     def soon_back(self, leaving: Touches, staying: Touches) -> Touches:
-        """Those of the sections that leave which would be back without having risen above the least bounce."""
+        """Sections that leave, and would be back without having risen above the least bounce."""
         if not leaving:
             return ()
         opening, compliance, tolerance = self._openings((*leaving, *staying))
@@ -188,7 +189,7 @@ class Onset:
     def _gradients(self, touches: Touches) -> FloatArray:
         return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
 
-    def _follower(self, touches: Sequence[Touch]) -> Follower:
+    def _follower(self, touches: Sequence[MovingContact]) -> Follower:
         return Follower(self.facings, tuple(touches))
 
 

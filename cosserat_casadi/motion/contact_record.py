@@ -1,4 +1,4 @@
-"""What touches in a motion that was computed: places and forces at any time, and how deep rods are inside obstacles."""
+"""The contacts of a computed motion: places and forces at any time, and how deep rods are inside obstacles."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_forces import Follower, Touches
+from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.facing import Facing
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.touching import Follower, Touches
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Stretch:
 
     piece: Piece
     touches: Touches
-    steps: Sequence[Step]
+    steps: Sequence[TimeStep]
     laid: frozenset[int]
 
 
@@ -110,9 +110,9 @@ class ContactRecord:
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
-        """What bases and lengths that move do against the forces of contact at all stages of all steps, shape (k,), W.
+        """Power of moving bases and lengths against the forces of contact at all stages of all steps, shape (k,), W.
 
-        A contact does no work: its force on the unknowns does what it takes from what moves otherwise.
+        A contact does no work: its power on the unknowns is the negative of its power on bases and lengths that move.
         """
         powers = np.zeros(len(stages))
         by_step = len(stages) // max(1, len(self._begins))

@@ -13,16 +13,16 @@ from itertools import pairwise
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along, distances
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.facing import FAR, Facing, Gap, Minimum, Rows
-from cosserat_casadi.motion.laid_sections import laid_sections
-from cosserat_casadi.motion.meeting_ends import watched_ends
+from cosserat_casadi.motion.contact_gap import FAR, Facing, Minimum, Rows, SectionGap
+from cosserat_casadi.motion.lying_sections import laid_sections
 from cosserat_casadi.motion.moving_points import centre_of, nodes_of
 
 SECTIONS_IN_ELEMENT = 200
@@ -94,7 +94,7 @@ class RodFacing(Facing):
         radii = section_radius(self.model.discrete.rods[self.owner].properties, self.laid_at)
         return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
-    def at(self, nodes: FloatArray, X: float) -> Gap:
+    def at(self, nodes: FloatArray, X: float) -> SectionGap:
         """The gap at a section, a little beyond the ends of the rod too."""
         rows = self._rows(X)
         tangent = rows.first @ nodes
@@ -103,7 +103,7 @@ class RodFacing(Facing):
         gap = distance.value - self._radii[0] - X * taper
         slope = distance.slope - taper
         length = self.length
-        return Gap(
+        return SectionGap(
             gap / length,
             slope / length,
             distance.bend / length,
@@ -173,7 +173,7 @@ class RodFacing(Facing):
         return X
 
     def _level(self, nodes: FloatArray) -> FloatArray:
-        """Gaps at the sections looked at, without the rounding that makes hills of what is flat, shape (k,)."""
+        """Gaps at the watched sections, rounded so that a flat gap has no hills, shape (k,)."""
         return np.round(self.gaps(nodes), LEVEL_DIGITS)
 
     def _downhill(self, gaps: FloatArray, near: float) -> int:

@@ -213,7 +213,7 @@ def _without_conjugates(values: ComplexArray, shapes: ComplexArray, shift: float
 
 
 def _independent(shapes: ComplexArray) -> ComplexArray:
-    """Real orthonormal shapes that span those given, shape (k, p)."""
+    """Real orthonormal shapes that span the complex ones, shape (k, p)."""
     if not shapes.size:
         return shapes
     parts = np.hstack([shapes.real, shapes.imag])

@@ -1,4 +1,4 @@
-"""The balance of energy along a motion: what is there, what went in, what was dissipated, and what is left over.
+"""The balance of energy along a motion: stored energy, work put in, dissipation, and the imbalance between them.
 
 Powers are integrated with the quadrature of the steps themselves, so that the balance is as exact as the motion.
 """
@@ -15,7 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.history import History, Leg
 from cosserat_casadi.motion.trajectory import Energies
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 
 Place = tuple[Leg, Instant]
 """An instant of a motion, and the piece of the inputs that it belongs to."""
@@ -27,7 +27,7 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
     Args:
         history: the motion.
         times: those to tell, reached by the motion, ascending, shape (T,), s.
-        moving: names of the inputs that move: a dead force that changes does work, and has no energy of its own.
+        moving: names of the inputs that move: a dead force that changes does work, and has no potential energy.
     """
     model = history.model
     # Work counts from the start of the motion, which need not be among the times.
@@ -110,7 +110,7 @@ def _up_to(history: History, times: FloatArray, powers: FloatArray) -> tuple[Flo
     return results[0], results[1]
 
 
-def _stage_places(leg: Leg, step: Step) -> list[Place]:
+def _stage_places(leg: Leg, step: TimeStep) -> list[Place]:
     stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
     rows = zip(stages.times, stages.x, stages.v, stages.a, strict=True)
     return [(leg, Instant(float(time), x, v, a)) for time, x, v, a in rows]

@@ -5,7 +5,7 @@ impact without rebound: impulses along the normals take the speed of approach, a
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
 of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
-where the bend comes to zero it lies down, and is kept out at sections of its own. See docs/contact.md.
+where the bend comes to zero it lies down, and is kept out at further sections. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.coincident_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches, with_touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing, SectionGap
 from cosserat_casadi.motion.contact_guards import (
     CLOSE,
     SAME_PLACE,
-    Arrangement,
     ContactGuards,
+    ContactPhase,
     GuardKind,
     guarded,
 )
 from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.facing import FLATTEST, Facing, Gap
-from cosserat_casadi.motion.meeting_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.restart import ContactEvent, Restart
-from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -74,18 +74,18 @@ class ExactContacts:
 
     @cached_property
     def guards(self) -> ContactGuards:
-        """What has to stay at zero or above while contacts do not change."""
+        """The guards of all phases: quantities that stay at zero or above while contacts do not change."""
         return ContactGuards(self.model.size, self.facings, self.meeting_ends)
 
-    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Arrangement:
-        """What touches at a state."""
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
+        """The contacts at a state."""
         found, laid = self._touching(x, inputs, (), frozenset())
         # What is deeper inside is no contact: its constraint is told to be open.
         touches = tuple(touch if abs(touch.height) <= CLOSE else touch._replace(height=0.0) for touch in found)
-        return Arrangement(touches, laid, Follower(self.facings, touches))
+        return ContactPhase(touches, laid, Follower(self.facings, touches))
 
-    def arranged(self, plain: MotionEquations, piece: Piece, phases: Arrangement) -> tuple[MotionEquations, Guards]:
-        """The equations, and what has to stay at zero or above while they hold."""
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
+        """The equations of motion with these contacts, and the guards that stay at zero or above while they hold."""
         guards = self.guards.of(piece, phases)
         if not phases.touches:
             return plain, guards
@@ -96,10 +96,10 @@ class ExactContacts:
         plain: MotionEquations,
         piece: Piece,
         at: Instant,
-        phases: Arrangement,
+        phases: ContactPhase,
         guard: int | None,
         interval: float,
-    ) -> Restart[Arrangement]:
+    ) -> Restart[ContactPhase]:
         """How a motion goes on, or begins.
 
         Args:
@@ -123,8 +123,8 @@ class ExactContacts:
         counted = replace(restart.phases, moment=moment, changes=changes)
         return replace(restart, phases=counted)
 
-    def _known(self, phases: Arrangement, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
-        """What a guard that came to zero makes of contacts that there were.
+    def _known(self, phases: ContactPhase, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
+        """The contacts after a guard came to zero, from the contacts before.
 
         Args:
             phases: these contacts.
@@ -186,7 +186,7 @@ class ExactContacts:
             held[number] = held[number]._replace(place=follower.places[number])
         return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
 
-    def _lying(self, known: _Known, first: Touch, before: Instant, inputs: FloatArray) -> _Known:
+    def _lying(self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray) -> _Known:
         """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
         facing = self.facings[first.facing]
         nodes = facing.nodes(before.x, inputs)
@@ -206,7 +206,7 @@ class ExactContacts:
                 known = self._lying(known, touch, before, inputs)
         return known
 
-    def _struck(self, onset: Onset, known: _Known) -> Restart[Arrangement]:
+    def _struck(self, onset: Onset, known: _Known) -> Restart[ContactPhase]:
         """How a motion goes on after what touches anew has struck."""
         x, inputs = onset.before.x, onset.inputs.value
         old = (*known.held, *known.left)
@@ -231,7 +231,7 @@ class ExactContacts:
         pressing = after.pressing(self._on_sections((*staying, *soon_back), laid))
         if pressing is None:
             return self._stopped(onset, known, touching)
-        arrangement = Arrangement(
+        arrangement = ContactPhase(
             pressing,
             laid,
             Follower(self.facings, pressing),
@@ -259,14 +259,14 @@ class ExactContacts:
             energies.append(max(0.0, float(-0.5 * impulse * unit * speed)))
         return energies
 
-    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[Arrangement]:
+    def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[ContactPhase]:
         """The end of a motion, with everything as it was, because nothing is decided."""
         names = sorted({self.facings[touch.facing].obstacle.name for touch in touching})
         why = (
             f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
             f"{', '.join(names)} remain."
         )
-        return Restart(onset.start(()), Arrangement(), events=known.events, stalled=why)
+        return Restart(onset.start(()), ContactPhase(), events=known.events, stalled=why)
 
     def _on_sections(self, touches: Touches, laid: frozenset[int]) -> Touches:
         """Contacts of rods that lie at their sections: a place between two of them is given up where one touches."""
@@ -297,11 +297,11 @@ class ExactContacts:
         return tuple(floors)
 
     def _touching(
-        self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch], laid: frozenset[int]
+        self, x: FloatArray, inputs: FloatArray, known: Sequence[MovingContact], laid: frozenset[int]
     ) -> tuple[Touches, frozenset[int]]:
         """Known contacts, and all others that touch at a state; and which rods lie then."""
-        found: list[Touch] = []
-        lying: list[Touch] = []
+        found: list[MovingContact] = []
+        lying: list[MovingContact] = []
         for number, facing in enumerate(self.facings):
             nodes = facing.nodes(x, inputs)
             own = [touch.place for touch in known if touch.facing == number]
@@ -309,12 +309,12 @@ class ExactContacts:
                 minima = facing.minima(nodes, TOUCHING)
                 new = [one for one in minima if all(abs(one.place - place) > SAME_PLACE for place in own)]
                 if facing.of_body or not any(_is_flat(facing.at(nodes, one.place)) for one in new):
-                    found += [Touch(number, one.place, one.inside, min(one.gap, 0.0)) for one in new]
+                    found += [MovingContact(number, one.place, one.inside, min(one.gap, 0.0)) for one in new]
                     continue
                 laid = laid | {number}
             gaps = facing.laid_gaps(nodes)
             lying += [
-                Touch(number, place, False, gap)
+                MovingContact(number, place, False, gap)
                 for place, gap in zip(facing.laid_at.tolist(), gaps.tolist(), strict=True)
                 if gap <= CLOSE and place not in own
             ]
@@ -322,7 +322,9 @@ class ExactContacts:
         still = [one._replace(slides=False) if one.facing in laid else one for one in touches]
         return (*still, *lying), laid
 
-    def _event(self, kind: str, time: float, touch: Touch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
+    def _event(
+        self, kind: str, time: float, touch: MovingContact, energy: float = 0.0, impulse: float = 0.0
+    ) -> ContactEvent:
         facing = self.facings[touch.facing]
         name = facing.obstacle.name
         return ContactEvent(kind, time, facing.owner, name, touch.place, energy, impulse, facing.of_body)
@@ -333,7 +335,7 @@ class _Known:
     """Contacts that there were before an event.
 
     Attributes:
-        held: those that go on, where they are at the event.
+        held: contacts that go on, at their places at the event.
         laid: numbers of the pairs of a rod and an obstacle in which the rod lies from now on.
         left: the one that lifts off, if one does.
         events: of them.
@@ -345,11 +347,11 @@ class _Known:
     events: tuple[ContactEvent, ...] = ()
 
 
-def _one_of_each(touches: Sequence[Touch]) -> list[Touch]:
+def _one_of_each(touches: Sequence[MovingContact]) -> list[MovingContact]:
     """One of the contacts of each rod with each obstacle."""
     return list({touch.facing: touch for touch in touches}.values())
 
 
-def _is_flat(gap: Gap) -> bool:
+def _is_flat(gap: SectionGap) -> bool:
     """Whether a rod lies along the obstacle about a section, within it or at its end, whose gap is the least."""
     return gap.bend <= FLATTEST and abs(gap.slope) <= SMOOTH

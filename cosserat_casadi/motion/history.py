@@ -13,21 +13,21 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
-from cosserat_casadi.motion.closing import Closing
-from cosserat_casadi.motion.contact_guards import Arrangement
+from cosserat_casadi.motion.constraint_projection import Closing
+from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
+from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -78,7 +78,7 @@ class Leg:
     Attributes:
         piece: the inputs.
         integration: the steps; beside the unknowns of the model they have the forces of contacts.
-        restart: what has changed where it begins, and what holds in it.
+        restart: the change at the beginning of the leg, and the phases in it.
     """
 
     piece: Piece
@@ -104,7 +104,7 @@ class History:
         model: the model.
         legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
             contact changes.
-        coordinates: those that the steps are in; None for the unknowns of the model.
+        coordinates: coordinates of the steps; None for the unknowns of the model.
     """
 
     model: Model
@@ -132,13 +132,13 @@ class History:
         return self.legs[-1].integration.next_size
 
     @cached_property
-    def steps(self) -> list[tuple[Leg, Step]]:
+    def steps(self) -> list[tuple[Leg, TimeStep]]:
         """All steps in their order, with the pieces that they belong to."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
     @cached_property
     def statistics(self) -> StepStatistics:
-        """What the steps took."""
+        """Statistics of the steps: numbers, iterations and sizes."""
         sizes = [step.size for _, step in self.steps]
         counts = [leg.integration.statistics for leg in self.legs]
         return StepStatistics(
@@ -209,13 +209,13 @@ class History:
 
     @cached_property
     def contacts(self) -> ContactRecord | None:
-        """What touches, and how hard; None in a scene without exact contact."""
+        """The contacts and their forces; None in a scene without exact contact."""
         if not self.model.scene.touches_exactly:
             return None
         stretches = []
         for leg in self.legs:
             phases = leg.restart.phases
-            assert isinstance(phases, Arrangement), "where rods touch exactly no cable goes slack"
+            assert isinstance(phases, ContactPhase), "where rods touch exactly no cable goes slack"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches)
 
@@ -237,7 +237,7 @@ def integrated(
     settings: StepSettings,
     after_step: AfterStep | None = None,
     p: FloatArray | None = None,
-    phases: Arrangement | None = None,
+    phases: ContactPhase | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -297,7 +297,7 @@ def _switched(
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
-                touches = isinstance(phases, Arrangement) and len(phases.touches) > 0
+                touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 _check_start(restart.start, pieces[-1].end, touches=touches)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant

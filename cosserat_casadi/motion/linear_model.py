@@ -3,9 +3,9 @@
 The states are modal coordinates η of the undamped motion and their rates: with Φᵀ M Φ = I no mass matrix is inverted,
 so that coordinates without mass do no harm. Those follow the others at once, or relax where damping meets them alone.
 
-Inputs that move what is held, a base or the length of a cable, move the rods with them: δx = Z z + X_c δu with any X_c
-that the constraints allow. The inertia of that motion asks for the rate and the acceleration of such an input, which
-become inputs of their own.
+Inputs that move a base or the length of a cable move the rods with them: δx = Z z + X_c δu with any X_c that the
+constraints allow. The inertia of that motion asks for the rate and the acceleration of such an input, which become
+further inputs.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
 from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
-from cosserat_casadi.motion.modes import check_mass, small_motions
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
+from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
 
 UNHELD = 1e-7
 """Share of what an input moves a constraint by that may be left open, as rounding."""
@@ -43,7 +43,7 @@ class DescriptorModel:
         C: shape (outputs, n).
         D: shape (outputs, inputs).
         states: names of the entries of x.
-        inputs: names of the entries of u; those that end in .rate and .acceleration are derivatives of others.
+        inputs: names of the entries of u; a name that ends in .rate or .acceleration is a derivative of another input.
         outputs: names of the entries of y.
     """
 
@@ -67,8 +67,8 @@ class LinearModel:
         C: shape (outputs, n), units of the outputs.
         D: shape (outputs, inputs).
         states: names of the entries of x: modal coordinates, their rates, then what relaxes.
-        inputs: names of the entries of u, deviations from the equilibrium in SI units; those that end in .rate and
-            .acceleration are derivatives of others.
+        inputs: names of the entries of u, deviations from the equilibrium in SI units; a name that ends in .rate or
+            .acceleration is a derivative of another input.
         outputs: names of the entries of y, deviations from the equilibrium.
         modes: number of modal coordinates, those of lowest frequency first.
         descriptor: the same in the unknowns of the scene.
@@ -199,7 +199,7 @@ class _Equations:
 
     @cached_property
     def forces(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What inputs, rates and accelerations do on the free coordinates z, shape (k, inputs) each."""
+        """Forces of inputs, their rates and their accelerations on the free coordinates z, shape (k, inputs) each."""
         motions = self.motions
         moved = np.zeros((self.model.size, self.model.inputs.size))
         moved[motions.moving] = self.carried / motions.roots[:, None]

@@ -1,4 +1,4 @@
-"""What a linearised scene is watched by: positions of tips, bodies and sections, and what actuators answer with."""
+"""Outputs of a linearised scene: positions of tips, bodies and sections, and the conjugates of actuators."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ def normalised(
         model: the scene.
         x: unknowns that the motions are about.
         inputs: stacked inputs.
-        values: eigenvalues, shape (p,), those that are equal beside each other.
+        values: eigenvalues, shape (p,); equal ones stand beside each other.
         motions: δx, one a column, shape (size, p).
 
     Returns:
@@ -118,7 +118,7 @@ def normalised(
 
 
 def end_of_cluster(values: NumberArray, count: int | None) -> int:
-    """Number of eigenvalues, at least the count, that does not part those that are equal; all for None."""
+    """Number of eigenvalues, at least the count, such that equal eigenvalues stay together; all of them for None."""
     if count is None or count >= len(values):
         return len(values)
     for cluster in _clusters(values):

@@ -1,9 +1,10 @@
-"""The momentum of what flies free, put right after each step: exact to rounding, not to the order of the steps.
+"""The momentum of free rods and bodies, put right after each step: exact to rounding, not to the order of the steps.
 
-The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no
-method of collocation keeps it. What a step misses is that of a small rigid motion of all rods and bodies together:
-added to the velocities, it leaves the strains, the joints and their rates as they are. What momentum has to become is
-what it was, plus the impulse of the loads by the quadrature of the step, which has the order of the step.
+The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no method
+of collocation keeps it. The error of a step is the momentum of a small rigid motion of all rods and bodies together:
+added to the velocities, that motion leaves the strains, the joints and their rates as they are. The momentum after the
+step is the momentum before it plus the impulse of the loads by the quadrature of the step, which has the order of the
+step.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 from cosserat_casadi.scene import Scene
 
 MOMENTA = 6
@@ -60,7 +61,7 @@ def _pieces(scene: Scene) -> int:
 
 
 class MomentumKeeper:
-    """What puts the velocities of free rods right after a step.
+    """Corrects the velocities of free rods after a step so that momentum changes by the impulse of the loads alone.
 
     Args:
         model: of what flies free, see :func:`flies_free`.
@@ -83,7 +84,7 @@ class MomentumKeeper:
         self._momentum = RepeatedCall(momentum)
         self._momenta = momentum.map(MOMENTA)
 
-    def settled(self, step: Step, piece: Piece) -> Instant:
+    def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
         wanted = self._momentum_of(self._to_model(step.start), piece) + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
@@ -99,7 +100,7 @@ class MomentumKeeper:
             end = replace(end, v=end.v + motions @ (inverse @ missing))
         return end
 
-    def _impulse(self, step: Step, piece: Piece) -> FloatArray:
+    def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:
         """Impulse of the loads in a step, shape (6,), N s and N m s; nothing else acts from outside."""
         if not self._loaded:
             return np.zeros(6)

@@ -17,7 +17,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.splines import table_coefficients
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
-from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.motion_records import InputMotion
 
 SAME_TIME = 1e-12
 """Distance of two times, relative to the duration, at which they are one: pieces are longer."""
@@ -123,7 +123,7 @@ class MovingInputs:
         return [self._piece(start, end, slack) for start, end in zip(cuts, ends, strict=True)]
 
     def breaks(self, duration: float) -> list[Break]:
-        """What is not smooth from 0 to the duration (s), in the order of time: the inputs rest before 0."""
+        """Breaks of the inputs from 0 to the duration (s), in the order of time: the inputs rest before 0."""
         found = self._breaks_at_start()
         for motion, path in zip(self._motions, self._paths, strict=True):
             found += [Break(motion.input, time, order) for time, order in path.breaks if 0.0 < time < duration]
@@ -166,7 +166,7 @@ def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None
 
 
 class _Path(ABC):
-    """What one motion adds to its input, over time."""
+    """The share of one motion in its input, over time."""
 
     @property
     @abstractmethod

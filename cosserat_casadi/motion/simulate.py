@@ -1,7 +1,7 @@
 """Simulate: the motion of a model in time, with steps chosen for a tolerance, or given.
 
 The error of the steps is not foreseen from one of them: the motion is computed twice, once more exactly, and the
-distance of the paths of the tips tells what is left. See docs/theory.md, section 11.
+distance of the paths of the tips estimates the error. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.vanished_paths import first_vanished
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.motion.contact_checks import told_inside, too_deep
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.momentum import flies_free
+from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_ending import message_of, outcome_of
+from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.paths import Paths, path_distance, paths, watched_times
-from cosserat_casadi.motion.start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.sudden_loads import warnings
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
 from cosserat_casadi.motion.trajectory import (
     Energies,
     Motion,
@@ -41,7 +41,7 @@ from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.scene.simulation import Simulation
 
 Tell = Callable[[MotionProgress], None]
-"""What is told of every step."""
+"""A function that is called with the progress after every step."""
 
 STAGES = 3
 """Stages of the methods: order 5 of Radau IIA, 6 of Gauss."""
@@ -116,7 +116,7 @@ class Simulator:
 
     Attributes:
         model: the model, built for a motion.
-        simulation: what is asked for.
+        simulation: the settings of the user.
         start: how the motion begins.
         stage: what the user is told that is being done.
         tell: is told of every step.
@@ -160,7 +160,7 @@ class Simulator:
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
     def paths(self, history: History) -> Paths:
-        """What two motions are compared by."""
+        """Paths of tips and bodies, by which two motions are compared."""
         return paths(history, watched_times(history, self.simulation.duration))
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:

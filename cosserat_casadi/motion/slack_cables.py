@@ -20,9 +20,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import CableOfLength
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.motion.event_restart import Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.restart import Restart
 from cosserat_casadi.numerics.consistent_start import consistent_start, impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -86,11 +86,11 @@ class SlackCables:
         return replace(plain, residual=residual, jacobians=jacobians)
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Tautness) -> tuple[MotionEquations, Guards | None]:
-        """The equations, and what has to stay at zero or above while they hold."""
+        """The equations of motion with these cables taut, and the guards that stay at zero or above while they hold."""
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
     def guards(self, piece: Piece, phases: Tautness) -> Guards | None:
-        """What has to stay at zero or above: the sag of a slack cable, the tension of a taut one; None without any."""
+        """Sags of slack cables and tensions of taut ones, which stay at zero or above; None without such cables."""
         if not self.cables:
             return None
 
@@ -183,7 +183,7 @@ class SlackCables:
 
     @cached_property
     def _sag_rows(self) -> Matrix:
-        """What the wanted length of each cable, stretched by its tension, exceeds its own by, over the rod's length."""
+        """Excess of each cable's wanted length, stretched by its tension, over its length, over the rod's length."""
         x, inputs = self._symbols
         lengths = System(self.model.discrete, Arguments(x, inputs)).actuators.cable_lengths
         return ca.densify(ca.vertcat(*[lengths[cable.tendon.name].sag for cable in self.cables]))

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 DEPENDENT = 1e-9
 """Share of the largest singular value of G below which a constraint asks nothing, or repeats others.
 
-A straight rod that cannot stretch is not held along its axis to first order: what is left of that row is rounding.
+A straight rod that cannot stretch is not held along its axis to first order: that row holds rounding errors alone.
 """
 
 TAUT = 1e9
@@ -104,7 +104,7 @@ class SmallMotions:
     def constraints(self) -> FloatArray:
         """Gradients G of the constraints with the scaled coordinates, one a row, shape (m, n).
 
-        What moves nothing is held too: it has equations of its own, which are none of mechanics.
+        Coordinates that move nothing are held too, by equations that are not mechanical ones.
         """
         held = self.stiffness[np.ix_(self.holding, self.moving)]
         gradients = np.vstack([held, self.unseen[:, self.moving]])
@@ -121,7 +121,7 @@ class SmallMotions:
         return np.asarray(rows[rank:].T)
 
     def projected(self, rows: FloatArray) -> FloatArray:
-        """What rows of the moving coordinates, shape (n, j), do on the free coordinates z, shape (k, j)."""
+        """Rows of the moving coordinates, shape (n, j), projected on the free coordinates z, shape (k, j)."""
         return np.asarray(self.basis.T @ (self.roots[:, None] * rows))
 
     def displacement(self, free: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:

@@ -10,11 +10,11 @@ from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray
 
 
 def stability_sentences(values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution) -> str:
-    """What becomes of small motions, as sentences.
+    """Sentences on how small motions about an equilibrium grow, swing or decay.
 
     Args:
         values: all eigenvalues of the model.
-        believed: which of those that swing are taken for motions of the rods.
+        believed: whether an eigenvalue that swings is taken for a motion of the rods, not of the discretisation.
         solution: the equilibrium.
     """
     growing = values.real > REAL * np.abs(values)

@@ -16,12 +16,12 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Contact
-from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, variations
+from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, variations
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_guards import SAME_PLACE, Arrangement
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
+from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.facing import FLATTEST, Facing
-from cosserat_casadi.motion.touching import Follower, Touch, Touches
 from cosserat_casadi.numerics.complementarity import least_pushes
 
 MOST_TURNS = 50
@@ -51,7 +51,7 @@ NO_GAP = 1e-13
 
 def resting(
     contacts: ExactContacts, x: FloatArray, inputs: FloatArray, guess: Sequence[Contact]
-) -> tuple[FloatArray, Arrangement] | None:
+) -> tuple[FloatArray, ContactPhase] | None:
     """Unknowns of an equilibrium in contact, and what touches there; None where none is found.
 
     Args:
@@ -93,13 +93,13 @@ def resting(
             # No forces keep such a section out.
             if gaps.min(initial=0.0) < -ROUNDED:
                 return None
-            return x, Arrangement(pressing, laid, Follower(facings, pressing))
+            return x, ContactPhase(pressing, laid, Follower(facings, pressing))
         laid = laid | flat
         before = largest
     return None
 
 
-def _stiffened(stiffness: FloatArray, allowed: Variations) -> FloatArray:
+def _stiffened(stiffness: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
     """The stiffness with as much added to all that varies as keeps every admissible variation from releasing energy."""
     lowest = float(admissible_eigenvalues(stiffness, allowed).min(initial=np.inf))
     stiffened = stiffness.copy()
@@ -144,15 +144,15 @@ def _balanced(
 
 def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid: frozenset[int]) -> Touches:
     """Sections that may press: those of rods that lie, and the nearest ones of the others."""
-    lying: list[Touch] = []
-    nearest: list[Touch] = []
+    lying: list[MovingContact] = []
+    nearest: list[MovingContact] = []
     for number, facing in enumerate(contacts.facings):
         nodes = facing.nodes(x, inputs)
         if number in laid:
             places = facing.laid_at[facing.laid_gaps(nodes) <= NEARBY]
-            lying += [Touch(number, place, False) for place in places.tolist()]
+            lying += [MovingContact(number, place, False) for place in places.tolist()]
         else:
-            nearest += [Touch(number, one.place, one.inside) for one in facing.minima(nodes, NEARBY)]
+            nearest += [MovingContact(number, one.place, one.inside) for one in facing.minima(nodes, NEARBY)]
     return (*contacts.meeting_ends.distinct((), tuple(nearest), SAME_PLACE), *lying)
 
 

@@ -1,12 +1,12 @@
-"""What is said of loads that come suddenly: they limit how exact a motion is on any number of modes."""
+"""Warnings of loads that come suddenly: they limit how exact a motion is on any number of modes."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.motion_start import Start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.start import Start
 
 OUT_OF_BALANCE = 1e-6
 """Residual of statics, without unit, at which a start is no equilibrium."""
@@ -15,7 +15,7 @@ AT_ONCE = (
     "The motion starts out of balance: loads act at once from t = 0 on. Waves of all lengths run along the rods, which "
     "modes resolve slowly."
 )
-"""What is said of such a start."""
+"""Warning of loads that act at once at the start."""
 
 
 def warnings(model: Model, start: Start, moving: MovingInputs, duration: float) -> list[str]:

@@ -1,4 +1,4 @@
-"""What a simulation gives: the motion of a scene, with the poses, energies and figures of merit that follow from it."""
+"""The result of a simulation: the motion of a scene, with its poses, energies and figures of merit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_record import MotionContact
-from cosserat_casadi.motion.poses import (
+from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.pose_series import (
     ActuatorStates,
     Poses,
     actuator_states,
@@ -19,7 +20,6 @@ from cosserat_casadi.motion.poses import (
     section_poses,
     tip_poses,
 )
-from cosserat_casadi.motion.restart import ContactEvent
 
 
 class MotionOutcome(Enum):
@@ -69,7 +69,7 @@ class MotionProgress:
     """How far a simulation is.
 
     Attributes:
-        stage: what is being done, such as "simulating".
+        stage: the work under way, such as "simulating".
         time: reached, s.
         duration: to be reached, s.
         step: size of the present time step, s.
@@ -114,7 +114,7 @@ class Energies:
         dissipated: by the damping of rods and of smooth contact since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
         impacts: lost since the start where slack cables snapped taut, or rods met obstacles without a width.
-        imbalance: what is left over of the balance of the other six, relative to the largest energy; without unit.
+        imbalance: error of the balance of the other six, relative to the largest energy; without unit.
     """
 
     kinetic: FloatArray
@@ -128,7 +128,7 @@ class Energies:
 
 @dataclass(frozen=True)
 class StepStatistics:
-    """What the time steps of a motion took.
+    """Numbers and sizes of the time steps of a motion.
 
     Attributes:
         steps: that were accepted.

@@ -101,7 +101,7 @@ class ArcPoint:
 
 
 @dataclass(frozen=True)
-class Plane:
+class Hyperplane:
     """A hyperplane normal·y = level that cuts the curve at the point looked for.
 
     Attributes:
@@ -114,7 +114,7 @@ class Plane:
 
 
 @dataclass(frozen=True)
-class Correction:
+class CorrectedPoint:
     """A point of the curve that Newton's method has led to.
 
     Attributes:
@@ -141,11 +141,11 @@ class Advance:
 
 @dataclass(frozen=True)
 class Curve:
-    """A path with what is watched along it.
+    """A path with the monitor that is evaluated along it.
 
     Attributes:
         path: equations that depend on a load factor.
-        monitor: what is watched.
+        monitor: functions whose zeros are the events of the path.
         settings: limits.
         rows: what each equation is multiplied by where linear systems are solved, shape (n,); None where all are of one
             size. Residuals are measured without.
@@ -186,7 +186,7 @@ class Curve:
         spectrum = self.monitor.values(y, jacobian, bordered)
         return ArcPoint(y, tangent, length, spectrum)
 
-    def correct(self, start: FloatArray, plane: Plane) -> Correction | None:
+    def correct(self, start: FloatArray, plane: Hyperplane) -> CorrectedPoint | None:
         """Find where the curve meets a plane near a start.
 
         Steps of minimum norm: along a direction in which the equations are neutral nothing moves.
@@ -212,7 +212,7 @@ class Curve:
             # Below the tolerance a step that no longer halves the residual is at rounding.
             helps_no_more = within_tolerance and norm > STILL_HELPS * norm_before
             if norm <= limits.aim or helps_no_more:
-                return Correction(y, steps)
+                return CorrectedPoint(y, steps)
             bordered = np.vstack([self.derivative(y), plane.normal])
             if self.rows is not None:
                 off_curve = self.rows * off_curve
@@ -223,7 +223,7 @@ class Curve:
             norm_before = norm
         if norm > limits.tolerance:
             return None
-        return Correction(y, limits.reject_above)
+        return CorrectedPoint(y, limits.reject_above)
 
     def bounded(self, current: ArcPoint, step: float) -> float:
         """A step, cut to what the settings allow at a point."""
@@ -253,10 +253,10 @@ class Curve:
         return Advance(point, corrected.steps)
 
 
-def plane_through(y: FloatArray, normal: FloatArray) -> Plane:
+def plane_through(y: FloatArray, normal: FloatArray) -> Hyperplane:
     """The hyperplane through a point across a vector, both of shape (n + 1,)."""
     level = normal @ y
-    return Plane(normal, float(level))
+    return Hyperplane(normal, float(level))
 
 
 def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float = SINGULAR) -> FloatArray | None:

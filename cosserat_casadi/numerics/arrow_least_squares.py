@@ -1,11 +1,11 @@
-"""Nonlinear least squares with unknowns that all blocks of data share, and unknowns of each block's own.
+"""Nonlinear least squares with unknowns that all blocks of data share, and unknowns of single blocks ("own" here).
 
-A Levenberg–Marquardt method with bounds. The Jacobian is a block arrow: rows of block b see the shared unknowns and
-its own. Own unknowns are eliminated block by block with orthogonal transformations, which is the Schur complement of
-the normal equations without their squared condition; what is left is dense in the shared unknowns. J. J. Moré, *The
-Levenberg–Marquardt algorithm*, Lecture Notes in Mathematics 630, 1978 (scaling by the columns); H. B. Nielsen,
-*Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzow, N. Yamashita, M. Fukushima, J. Comput. Appl.
-Math. 172, 2004 (projection on bounds).
+A Levenberg–Marquardt method with bounds. The Jacobian is a block arrow: rows of block b see the shared unknowns and the
+block's. Unknowns of the blocks are eliminated block by block with orthogonal transformations, which is the Schur
+complement of the normal equations without their squared condition; the remaining rows are dense in the shared unknowns.
+J. J. Moré, *The Levenberg–Marquardt algorithm*, Lecture Notes in Mathematics 630, 1978 (scaling by the columns); H. B.
+Nielsen, *Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzow, N. Yamashita, M. Fukushima, J.
+Comput. Appl. Math. 172, 2004 (projection on bounds).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FIRST_DAMPING = 1e-3
 """Damping of the first step relative to the squares of the columns."""
 
 MOST_RATIO = 1.5
-"""Ratio by which one step may change what is positive: a linear model would let a modulus vanish."""
+"""Ratio by which one step may change a positive unknown: a linear model would let a modulus vanish."""
 
 BACK_OFF = 10.0
 """Growth of the damping where a step leads to no state at all."""
@@ -47,8 +47,8 @@ ROUNDING = 1e-9
 """Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
 
 
-class State(Protocol):
-    """What a problem knows at some unknowns.
+class FitState(Protocol):
+    """Residuals of a problem at some unknowns, with all that its Jacobian needs of them.
 
     Attributes:
         residual: differences in standard deviations, all blocks one after the other, shape (m,).
@@ -59,10 +59,10 @@ class State(Protocol):
         """Differences in standard deviations, shape (m,)."""
 
 
-StateType = TypeVar("StateType", bound=State)
+StateType = TypeVar("StateType", bound=FitState)
 
 
-class Problem(Protocol[StateType]):
+class BlockResiduals(Protocol[StateType]):
     """Residuals of blocks.
 
     Attributes:
@@ -74,7 +74,7 @@ class Problem(Protocol[StateType]):
         """Where the rows of each block begin, and at the end their number, shape (blocks + 1,)."""
 
     def at(self, shared: FloatArray, own: FloatArray, near: StateType) -> StateType | None:
-        """The state at shared unknowns, shape (n,), and own ones, shape (blocks, k); None where there is none."""
+        """The state at shared unknowns, (n,), and unknowns of the blocks, (blocks, k); None where evaluation fails."""
 
     def jacobians(self, state: StateType) -> tuple[FloatArray, FloatArray]:
         """Derivatives of the residual with the shared unknowns, (m, n), and with those of the row's block, (m, k)."""
@@ -82,7 +82,7 @@ class Problem(Protocol[StateType]):
 
 @dataclass(frozen=True)
 class Limits:
-    """What holds some unknowns besides the data.
+    """Bounds and priors of some unknowns.
 
     Attributes:
         lower: least values, shape (n,).
@@ -104,7 +104,7 @@ class Limits:
         return np.clip(values, self.lower, self.upper)
 
     def within_step(self, values: FloatArray) -> Limits:
-        """What holds the unknowns after one step from these values, shape (n,) or (blocks, n)."""
+        """Bounds and priors, narrowed to one step from these values, shape (n,) or (blocks, n)."""
         lower = np.where(self.ratios, values / MOST_RATIO, -np.inf)
         upper = np.where(self.ratios, values * MOST_RATIO, np.inf)
         return replace(self, lower=np.maximum(lower, self.lower), upper=np.minimum(upper, self.upper))
@@ -112,6 +112,11 @@ class Limits:
     def residual(self, values: FloatArray) -> FloatArray:
         """Differences from the expected values in standard deviations, shape as the values."""
         return (values - self.mean) * self.weight
+
+    def at_end(self, values: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which unknowns are at an end of their range, shape as the values."""
+        at_end: npt.NDArray[np.bool_] = (values <= self.lower) | (values >= self.upper)
+        return at_end
 
     def held(self, values: FloatArray, gradient: FloatArray) -> npt.NDArray[np.bool_]:
         """Which unknowns are at a bound that the descent would cross, shape as the values."""
@@ -150,7 +155,7 @@ class Fit(Generic[StateType]):
 
     Attributes:
         shared: shared unknowns, shape (n,).
-        own: those of each block, shape (blocks, k).
+        own: unknowns of each block, shape (blocks, k).
         state: what the problem knows there.
         cost: half the sum of what residuals and priors cost.
         iterations: steps tried.
@@ -166,7 +171,7 @@ class Fit(Generic[StateType]):
 
 
 @dataclass
-class Arrow:
+class ArrowStep:
     """A weighted least-squares problem, linear in the changes of the unknowns.
 
     Attributes:
@@ -175,7 +180,7 @@ class Arrow:
         by_own: shape (m, k).
         offsets: shape (blocks + 1,).
         shared_prior: weights of the priors of the shared unknowns and their residuals, each of shape (n,).
-        own_prior: likewise of the own ones: weights of shape (k,), residuals of shape (blocks, k).
+        own_prior: likewise of the unknowns of the blocks: weights of shape (k,), residuals of shape (blocks, k).
         shared_held: shared unknowns that must not change, shape (n,).
         own_held: own unknowns that must not change, shape (blocks, k).
     """
@@ -196,7 +201,7 @@ class Arrow:
 
     @cached_property
     def _triangles(self) -> list[FloatArray]:
-        """For each block the triangle of [own, shared, residual], which has all that its rows say."""
+        """For each block the triangle of [its unknowns, shared unknowns, residual], which replaces its rows."""
         n, k = self.sizes
         by_shared = np.where(self.shared_held, 0.0, self.by_shared)
         if not k:
@@ -214,10 +219,10 @@ class Arrow:
         return triangles
 
     def eliminated(self, own_damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
-        """The rows that are left of [shared, residual], and for each block those that own unknowns follow from.
+        """The remaining rows of [shared, residual], and for each block the rows from which its unknowns follow.
 
         Args:
-            own_damping: least rows of the own unknowns, shape (k,); zero for none.
+            own_damping: least rows of the unknowns of the blocks, shape (k,); zero for none.
         """
         n, k = self.sizes
         if not k:
@@ -235,7 +240,7 @@ class Arrow:
         return np.vstack(left), eliminations
 
     def step(self, shared_damping: FloatArray, own_damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The change of the shared unknowns, (n,), and of the own ones, (blocks, k), that lessens the damped sum most.
+        """The change of shared unknowns, (n,), and of the blocks' unknowns, (blocks, k), with the least damped sum.
 
         Args:
             shared_damping: rows that are added to the shared unknowns, shape (n,), positive.
@@ -261,10 +266,10 @@ class Arrow:
 
         Args:
             shared: changes of the shared unknowns, shape (n,).
-            own: changes of the own ones, shape (blocks, k).
+            own: changes of the unknowns of the blocks, shape (blocks, k).
 
         Returns:
-            with the shared unknowns, shape (n,), and with the own ones, shape (blocks, k).
+            with the shared unknowns, shape (n,), and with the unknowns of the blocks, shape (blocks, k).
         """
         residual = self.residual + self._change(shared, own)
         shared_weights, shared_residual = self.shared_prior
@@ -281,12 +286,12 @@ class Arrow:
         own: FloatArray,
         shared_held: npt.NDArray[np.bool_],
         own_held: npt.NDArray[np.bool_],
-    ) -> Arrow:
-        """The problem where some unknowns have changed by what is given, and are held there.
+    ) -> ArrowStep:
+        """The problem after some unknowns have changed by these amounts, and are held there.
 
         Args:
-            shared: changes of the shared unknowns, shape (n,); zero for those that are free.
-            own: changes of the own ones, shape (blocks, k); likewise.
+            shared: changes of the shared unknowns, shape (n,); zero for free unknowns.
+            own: changes of the unknowns of the blocks, shape (blocks, k); likewise.
             shared_held: shared unknowns that are held, shape (n,).
             own_held: own unknowns that are held, shape (blocks, k).
         """
@@ -315,7 +320,7 @@ class Arrow:
 
 
 def _without(held: Held, which: int, place: tuple[np.signedinteger, ...]) -> Held:
-    """What is held, less one unknown."""
+    """Held unknowns, less one."""
     fewer = (held[0].copy(), held[1].copy())
     fewer[which][place] = False
     return fewer
@@ -336,10 +341,10 @@ def _triangle(rows: FloatArray) -> FloatArray:
 
 
 Held = tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]
-"""Which of the shared unknowns are held, shape (n,), and which of the own ones, shape (blocks, k)."""
+"""Whether shared unknowns are held, shape (n,), and whether unknowns of the blocks are."""
 
 Pair = tuple[FloatArray, FloatArray]
-"""Something of the shared unknowns, shape (n,), and of the own ones, shape (blocks, k)."""
+"""A number for each shared unknown, shape (n,), and for each unknown of the blocks, shape (blocks, k)."""
 
 
 @dataclass
@@ -358,7 +363,7 @@ class BoundedStep:
         damping: rows that are added to the unknowns.
     """
 
-    arrow: Arrow
+    arrow: ArrowStep
     values: Pair
     boxes: tuple[Limits, Limits]
     damping: Pair
@@ -397,7 +402,7 @@ class BoundedStep:
         )
 
     def _pulled_back(self, present: Pair, held: Held) -> tuple[int, tuple[np.signedinteger, ...]] | None:
-        """Place of the held unknown that the sum pulls back from its end most; None where there is none."""
+        """Place of the held unknown that the sum pulls back from its end most; None where the sum pulls none back."""
         changes = self._changes(present)
         gradients = self.arrow.gradient(*changes)
         strongest = 0.0
@@ -441,11 +446,11 @@ class BoundedStep:
 
 @dataclass
 class _Search(Generic[StateType]):
-    """What changes from one step to the next.
+    """State of the search, which changes from one step to the next.
 
     Attributes:
         shared: shape (n,).
-        own: shape (blocks, k).
+        own: unknowns of the blocks, shape (blocks, k).
         state: what the problem knows there.
         cost: half the sum of all that residuals and priors cost.
         damping: relative to the squares of the columns.
@@ -471,12 +476,12 @@ class ArrowFit(Generic[StateType]):
     Attributes:
         problem: its residuals.
         shared: limits of the shared unknowns, each entry of shape (n,).
-        own: limits of the own ones, each of shape (k,), the same for all blocks.
+        own: limits of the unknowns of the blocks, each of shape (k,), the same for all blocks.
         loss: what residuals cost.
         settings: limits of the search.
     """
 
-    problem: Problem[StateType]
+    problem: BlockResiduals[StateType]
     shared: Limits
     own: Limits
     loss: Loss = field(default_factory=Loss)
@@ -493,7 +498,7 @@ class ArrowFit(Generic[StateType]):
 
         Args:
             shared: shared unknowns, shape (n,).
-            own: own ones, shape (blocks, k).
+            own: unknowns of the blocks, shape (blocks, k).
             state: what the problem knows there.
             progress: told the number of steps and the present cost.
         """
@@ -516,7 +521,7 @@ class ArrowFit(Generic[StateType]):
                 break
         return Fit(search.shared, search.own, search.state, search.cost, tried, outcome)
 
-    def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> Arrow:
+    def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> ArrowStep:
         """The problem in the changes of the unknowns, its rows weighted by the loss."""
         by_shared, by_own = self.problem.jacobians(state)
         roots = np.sqrt(self.loss.weights(state.residual))
@@ -525,7 +530,7 @@ class ArrowFit(Generic[StateType]):
         by_own = roots[:, None] * by_own
         shared_prior = (self.shared.weight, self.shared.residual(shared))
         own_prior = (self.own.weight, self.own.residual(own))
-        free = Arrow(
+        free = ArrowStep(
             residual,
             by_shared,
             by_own,
@@ -544,7 +549,7 @@ class ArrowFit(Generic[StateType]):
         priors = np.concatenate([self.shared.residual(shared), self.own.residual(own).ravel()])
         return self.loss.cost(state.residual) + float(priors @ priors) / 2
 
-    def _rescale(self, search: _Search[StateType], arrow: Arrow) -> None:
+    def _rescale(self, search: _Search[StateType], arrow: ArrowStep) -> None:
         """Let the scales of the unknowns grow with the columns; what no datum sees has the scale 1."""
         shared = np.sqrt(np.sum(arrow.by_shared**2, axis=0) + arrow.shared_prior[0] ** 2)
         search.shared_scale = np.maximum(search.shared_scale, shared)
@@ -553,7 +558,7 @@ class ArrowFit(Generic[StateType]):
             own = np.sqrt(np.sum(arrow.by_own**2, axis=0) / blocks + arrow.own_prior[0] ** 2)
             search.own_scale = np.maximum(search.own_scale, own)
 
-    def _try_step(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool | None:
+    def _try_step(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool | None:
         """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
         root = np.sqrt(search.damping)
         shared_damping = root * np.where(search.shared_scale > 0, search.shared_scale, 1.0)
@@ -578,9 +583,9 @@ class ArrowFit(Generic[StateType]):
         return self._more_damping(search, arrow)
 
     def _stepped(
-        self, search: _Search[StateType], arrow: Arrow, shared_damping: FloatArray, own_damping: FloatArray
+        self, search: _Search[StateType], arrow: ArrowStep, shared_damping: FloatArray, own_damping: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Shared unknowns, (n,), and own ones, (blocks, k), after the step that lessens the damped sum most."""
+        """Shared unknowns, (n,), and the blocks' unknowns, (blocks, k), after the step with the least damped sum."""
         step = BoundedStep(
             arrow,
             (search.shared, search.own),
@@ -593,7 +598,7 @@ class ArrowFit(Generic[StateType]):
         """Predicted decrease below which there is nothing left to gain."""
         return max(self.settings.decrease, self.settings.relative * search.cost)
 
-    def _more_damping(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool:
+    def _more_damping(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool:
         """Let the next step be shorter; an outcome where it would be too short to change anything."""
         search.damping *= search.growth
         search.growth *= 2
@@ -601,7 +606,7 @@ class ArrowFit(Generic[StateType]):
             return self._ended(search, arrow)
         return False
 
-    def _ended(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome:
+    def _ended(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome:
         """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
         shared_scale = np.where(search.shared_scale > 0, search.shared_scale, 1.0)
         own_scale = np.where(search.own_scale > 0, search.own_scale, 1.0)

@@ -160,7 +160,7 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
 
 
 def _shortest_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """The step of least norm among those that solve the equations best."""
+    """The least-squares step of least norm."""
     solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)
     return np.asarray(solution, dtype=np.float64)
 

@@ -9,9 +9,9 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 
 DEPENDENT = 1e-9
-"""What active constraints leave of the compliance of another, over its own, below which it depends on them.
+"""Share of a constraint's compliance that active constraints must leave; below it the constraint depends on them.
 
-What the forces leave of a rate, over what they make of it, counts as rounding below the same share.
+A rate that the forces close to less than the same share of their contribution counts as rounding.
 """
 
 FALLS = 1e-4
@@ -29,9 +29,9 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 
     A constraint that closes is made active, the fastest first, and leaves again where it would pull: the method of
     least squares with non-negative unknowns, which does not run in circles (C. L. Lawson, R. J. Hanson, *Solving Least
-    Squares Problems*, SIAM 1995, chapter 23). One that depends on those that are active and closes all the same takes
-    the place of one of them: its force grows, at no change of what opens, until the first of theirs is zero. Where it
-    closes to rounding only, or where none of theirs falls so that no forces stop it, it stays without one.
+    Squares Problems*, SIAM 1995, chapter 23). One that depends on the active ones and closes all the same takes the
+    place of one of them: its force grows, at no change of the opening rates, until the first active force is zero.
+    Where it closes to rounding only, or where no active force falls, so that no forces stop it, it stays inactive.
 
     Args:
         compliance: W, symmetric and positive semidefinite, shape (m, m).
@@ -83,7 +83,7 @@ def _settled(compliance: FloatArray, rates: FloatArray, tolerance: float) -> Flo
 
 
 def _balance(scaled: FloatArray, rates: FloatArray, forces: FloatArray, active: list[int]) -> None:
-    """Forces at which active constraints do not open, in place; those that would pull on the way there leave."""
+    """Forces at which active constraints do not open, in place; constraints that would pull on the way leave."""
     while active:
         balanced = np.linalg.solve(scaled[np.ix_(active, active)], -rates[active])
         if balanced.min() > 0.0:

@@ -4,7 +4,7 @@ Rows of F that depend on neither v, a nor an algebraic entry are constraints g(t
 the motion they are linear in a: G a + (what the motion with a = 0 makes of d²g/dt²) = 0. With the other rows, linear
 in a and in the algebraic entries, they are one linear system (E. Hairer, G. Wanner, *Solving Ordinary Differential
 Equations II*, 2nd ed., Springer 1996, section VII.1). Where a mass matrix is singular in elastic directions their
-balance says nothing of a: along them some small a is taken, and what is left of their balance is told.
+balance says nothing of a: along them some small a is taken, and the residual of their balance is returned.
 """
 
 from __future__ import annotations
@@ -122,9 +122,9 @@ def response(equations: MotionEquations, instant: Instant, directions: FloatArra
 def shortly_after(
     equations: MotionEquations, instant: Instant, horizon: float, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean accelerations over a short time, and those that unit forces make: a linear step of Euler's implicit method.
+    """Mean accelerations over a short time, and those of unit forces: a linear step of Euler's implicit method.
 
-    Damping and stiffness of what is stiff answer within that time: accelerations at its beginning say nothing of it.
+    Damping and stiffness of stiff parts answer within that time: accelerations at its beginning do not show it.
 
     Args:
         equations: the equations of motion.
@@ -151,7 +151,7 @@ def shortly_after(
 
 @dataclass(frozen=True)
 class Impact:
-    """What a blow that closes constraints does in no time.
+    """Velocities after an impact that closes constraints at once, and its impulses.
 
     Attributes:
         v: velocities after it, shape (n,), 1/s.

@@ -268,7 +268,7 @@ def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
 
 
 def _renewed(path: Path, current: _Point, limits: ContinuationSettings) -> _Point:
-    """The same point corrected exactly, with a Jacobian of its own."""
+    """The same point corrected exactly, with a new Jacobian."""
     exact = newton(path.at(current.t), current.x, limits.newton)
     return _point(path, replace(exact, last_jacobian=None), current.t)
 

@@ -102,7 +102,7 @@ def solve_coupled_stages(stages: CoupledStages, guess: FloatArray, bounds: Newto
     Args:
         stages: their equations.
         guess: first iterate of the unknowns, shape (s, n).
-        bounds: weights and the error that may be left; the number of corrections is this module's own.
+        bounds: weights and the error that may be left; the number of corrections is a constant of this module.
     """
     allowed = max(bounds.error, ROUNDING * bounds.length(stages.start.x))
     unknowns = guess

@@ -174,7 +174,7 @@ def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _Quadra
     """The quadratic model at a point; None where a number is not finite.
 
     Args:
-        energy: what is lowered.
+        energy: the energy to lower.
         x: the point, shape (n,).
         tolerance: bound on the relative norm of a slope that counts as none.
     """

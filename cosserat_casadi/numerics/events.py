@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import SINGULAR, ArcPoint, Curve, Monitor, Plane
+from cosserat_casadi.numerics.arclength import SINGULAR, ArcPoint, Curve, Hyperplane, Monitor
 
 LOCATED = 1e-14
 """Arclength to which an event is located."""
@@ -71,7 +71,7 @@ class Arc:
         # A parabola through both ends predicts; the plane across the tangent keeps s what it is.
         curving = self.end.y - origin - self.step * tangent
         predicted = origin + s * tangent + (s / self.step) ** 2 * curving
-        plane = Plane(tangent, float(tangent @ origin) + s)
+        plane = Hyperplane(tangent, float(tangent @ origin) + s)
         corrected = self.curve.correct(predicted, plane)
         if corrected is None:
             return None

@@ -1,9 +1,9 @@
-"""A step whose size is given: where its equations are not solved at once, it grows to its size.
+"""A step of prescribed size: where its equations are not solved at once, the step grows to its size.
 
 With one Jacobian for all stages, Newton's method fails where a step turns a rod far; with one at each stage it goes on.
-Where that fails too, a shorter step from the same start is solved first. No shorter step may stand for the given one,
-but as the size grows, the accelerations and multipliers at the stages change with it continuously: what was found for
-one size foretells those for the next, until the given one is reached.
+Where that fails too, a shorter step from the same start is solved first. No shorter step may stand for the
+prescribed one, but as the size grows, the accelerations and multipliers at the stages change with it continuously: the
+solution for one size predicts the solution for the next, until the prescribed size is reached.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 
 Guards = Callable[[Instant], FloatArray]
 """State ↦ values that have to stay at zero or above, without unit, shape (m,)."""
@@ -54,7 +54,7 @@ class Crossing:
     guard: int
 
 
-def crossing(step: Step, guards: Guards) -> Crossing | None:
+def crossing(step: TimeStep, guards: Guards) -> Crossing | None:
     """The first time in a step at which a guard falls through zero, by the dense output; None where none does.
 
     One that falls through zero and rises again between two looks is found where it does so in one dip.
@@ -84,7 +84,7 @@ def crossing(step: Step, guards: Guards) -> Crossing | None:
 
 
 def _dip(
-    step: Step, guards: Guards, guard: int, between: tuple[float, float], steepest: float
+    step: TimeStep, guards: Guards, guard: int, between: tuple[float, float], steepest: float
 ) -> tuple[float, float] | None:
     """A time between two others at which a guard is below zero, with its value; None where its least is not.
 
@@ -122,7 +122,9 @@ def _dip(
     return None
 
 
-def _zero(step: Step, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]) -> Crossing:
+def _zero(
+    step: TimeStep, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]
+) -> Crossing:
     """Where one guard vanishes between two times of a step, given with its values there."""
 
     def value(time: float) -> float:

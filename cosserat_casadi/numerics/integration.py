@@ -1,4 +1,4 @@
-"""What is asked of an integration in time, and what it gives."""
+"""Settings of an integration in time, and its result."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.step import TimeStep
 
 
 class StepOutcome(Enum):
@@ -54,8 +54,8 @@ class StepSettings:
 
 
 @dataclass(frozen=True)
-class StepStatistics:
-    """What an integration cost.
+class IntegrationCost:
+    """Numbers of steps, iterations and factorisations of an integration.
 
     Attributes:
         steps: steps taken.
@@ -81,15 +81,15 @@ class Integration:
         steps: the steps taken, one after the other.
         outcome: how it ended.
         next_size: step that would come next, or that failed, s.
-        statistics: what it cost.
+        statistics: numbers of its steps, iterations and factorisations.
         guard: number of the guard that came to zero; None where none did.
     """
 
     start: Instant
-    steps: tuple[Step, ...]
+    steps: tuple[TimeStep, ...]
     outcome: StepOutcome
     next_size: float
-    statistics: StepStatistics
+    statistics: IntegrationCost
     guard: int | None = None
 
     @property
@@ -110,11 +110,11 @@ class Integration:
 
 def stalled_at(start: Instant) -> Integration:
     """A piece without a step: there are no equations to go on with."""
-    return Integration(start, (), StepOutcome.STALLED, float("nan"), StepStatistics(0, 0, 0, 0, 0))
+    return Integration(start, (), StepOutcome.STALLED, float("nan"), IntegrationCost(0, 0, 0, 0, 0))
 
 
 AfterStep = Callable[[float, float], None]
 """Called after each step with the time reached and the size of the step, s; KeyboardInterrupt ends the motion."""
 
-Settle = Callable[[Step], Instant]
+Settle = Callable[[TimeStep], Instant]
 """The end of a step, put right by what the method misses of an invariant: at most as much as the step is inexact by."""

@@ -112,7 +112,7 @@ class _Trial:
 
 @dataclass
 class _Iterate:
-    """What changes from one Newton step to the next.
+    """State of Newton's method, which changes from one step to the next.
 
     Attributes:
         x: unknowns, shape (n,).

@@ -8,8 +8,8 @@ from enum import Enum
 class Outcome(Enum):
     """Every way a solve can end. Only CONVERGED carries a result to build on.
 
-    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before those of
-    contact and of concentric tubes, for which C has libraries of their own.
+    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before the outcomes of
+        contact and of concentric tubes, for which C has separate libraries.
     """
 
     CONVERGED = "Equilibrium found: the residual is below its tolerance."

@@ -27,5 +27,5 @@ class Report(Protocol):
         """Take note of the stage.
 
         Args:
-            stage: what is being done, a phrase for the user.
+            stage: the work under way, a phrase for the user.
         """

@@ -1,4 +1,4 @@
-"""What a residual costs in a fit: its square, or less where it is large, so that outliers weigh less.
+"""Cost of a residual in a fit: its square, or less where it is large, so that outliers weigh less.
 
 The cost of a residual r in standard deviations is ½ ρ(r²); its derivative is r times the weight ρ′(r²). P. J. Huber,
 E. M. Ronchetti, *Robust Statistics*, 2nd ed., Wiley 2009, chapter 7.

@@ -24,7 +24,7 @@ class SecantUpdates:
         matrix: A of the collocation method, shape (s, s): changes of h² a to those of h v.
         weights: what each entry of a change of h v is multiplied by, 0 for algebraic ones, shape (n,).
         taken: corrections taken so far, each of shape (s, n).
-        duals: of each correction s the ŝ with ŝ·s = 1, orthogonal to what is across s, each of shape (s, n).
+        duals: of each correction s the ŝ with ŝ·s = 1, orthogonal to all vectors across s, each of shape (s, n).
     """
 
     matrix: FloatArray

@@ -36,7 +36,7 @@ class Stages:
 
 
 @dataclass(frozen=True)
-class Step:
+class TimeStep:
     """One step of a motion.
 
     Attributes:
@@ -87,7 +87,7 @@ def stages_of(
         differential: which entries have accelerations, shape (n,).
         start: where the step begins.
         size: h, s.
-        unknowns: as in :class:`Step`, shape (s, n).
+        unknowns: as in :class:`TimeStep`, shape (s, n).
     """
     a = np.where(differential, unknowns, 0.0)
     v = np.where(differential, start.v + size * (method.matrix @ a), 0.0)
@@ -112,7 +112,7 @@ def end_of(
         differential: which entries have accelerations, shape (n,).
         start: where the step begins.
         size: h, s.
-        unknowns: as in :class:`Step`, shape (s, n).
+        unknowns: as in :class:`TimeStep`, shape (s, n).
         time: of the end, s.
     """
     accelerations = np.where(differential, unknowns, 0.0)
@@ -140,7 +140,7 @@ def motion_at(
         differential: which entries have accelerations, shape (n,).
         start: where the step begins.
         size: h, s.
-        unknowns: as in :class:`Step`, shape (s, n).
+        unknowns: as in :class:`TimeStep`, shape (s, n).
         share: θ.
         time: that belongs to it, s.
     """
@@ -154,13 +154,13 @@ def motion_at(
     return Instant(time, x, v, a)
 
 
-def extrapolated(step: Step, size: float) -> FloatArray:
+def extrapolated(step: TimeStep, size: float) -> FloatArray:
     """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
     shares = 1.0 + step.method.nodes * (size / step.size)
     return step.method.values_at_stages(shares) @ step.unknowns
 
 
-def restricted(step: Step, time: float) -> Step:
+def restricted(step: TimeStep, time: float) -> TimeStep:
     """The part of a step up to a time in it: the same polynomial, with its values at the stages of a shorter step."""
     share = (time - step.start.time) / step.size
     unknowns = step.method.values_at_stages(share * step.method.nodes) @ step.unknowns

@@ -31,7 +31,7 @@ SHRINKAGE = 0.125
 """Least that is left of a step after an error too large."""
 
 FIRST_SHRINKAGE = 0.1
-"""What is left of a first step whose error is too large."""
+"""Factor of a first step whose error is too large."""
 
 WORTH_GROWING = 1.2
 """Growth below which a step keeps its size, and with it its factorised matrices."""
@@ -91,7 +91,7 @@ def _size(deviation: Deviation, step: float, bounds: NewtonBounds) -> float:
 
 @dataclass
 class StepControl:
-    """What decides the size of the next step.
+    """Control of the size of the next step, from the errors of the last ones.
 
     Attributes:
         stages: number of stages s, the order of the estimate.
@@ -154,13 +154,13 @@ class StepControl:
         self.last_error = max(error, REMEMBERED_ERROR)
 
     def _factor(self, error: float, iterations: int) -> float:
-        """What a step may be multiplied by for the next to meet the tolerance; many iterations call for caution."""
+        """Factor of a step for the next to meet the tolerance; many iterations call for caution."""
         safety = SAFETY * (2 * MOST_ITERATIONS + 1) / (2 * MOST_ITERATIONS + iterations)
         factor = safety * max(error, SMALLEST_ERROR) ** (-1.0 / (self.stages + 1))
         return float(np.clip(factor, SHRINKAGE, GROWTH))
 
     def _predicted_factor(self, size: float, error: float) -> float:
-        """What the trend of the last two errors allows a step to be multiplied by (Gustafsson)."""
+        """Factor of a step that the trend of the last two errors allows (Gustafsson)."""
         current = max(error, SMALLEST_ERROR)
         trend = (self.last_error / current**2) ** (1.0 / (self.stages + 1))
         factor = SAFETY * size / self.last_size * trend

@@ -1,4 +1,4 @@
-"""An integration in time on its way: the last instant reached, the Jacobian in use, and what has been spent."""
+"""An integration in time on its way: the last instant reached, the Jacobian in use, and the work spent."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
 from cosserat_casadi.numerics.guards import Guards, crossing
-from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
+from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -39,12 +39,12 @@ FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
 ITERATIONS_OF_GIVEN_STEP = 30
-"""Most Newton iterations, with one Jacobian, of a step whose size is given: no shorter one may stand for it."""
+"""Most Newton iterations, with one Jacobian, of a step of prescribed size: no shorter step may stand for it."""
 
 
 @dataclass
 class StepRun:
-    """What changes from one step to the next.
+    """State of an integration, which changes from one step to the next.
 
     Attributes:
         equations: the equations.
@@ -63,7 +63,7 @@ class StepRun:
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
         guards: values that have to stay at zero or above; None where there are none.
-        settled: end of a step to go on from, in place of its own; None for its own.
+        settled: instant to go on from, in place of the end of the last step; None for the end of that step.
         guard: number of the guard that came to zero; None where none did.
     """
 
@@ -75,7 +75,7 @@ class StepRun:
     guards: Guards | None = None
     settled: Settle | None = None
     guard: int | None = None
-    steps: list[Step] = field(default_factory=list)
+    steps: list[TimeStep] = field(default_factory=list)
     size: float = 0.0
     linearisation: Linearisation | None = None
     fresh: bool = False
@@ -101,7 +101,7 @@ class StepRun:
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""
-        statistics = StepStatistics(
+        statistics = IntegrationCost(
             steps=len(self.steps),
             rejected=self.rejected,
             iterations=self.iterations,
@@ -111,7 +111,7 @@ class StepRun:
         return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard)
 
     def renew_jacobian(self) -> None:
-        """Have the next step evaluate a Jacobian of its own."""
+        """Have the next step evaluate a new Jacobian."""
         self.linearisation = None
         self.matrices = None
 
@@ -191,7 +191,7 @@ class StepRun:
         differential = self.equations.differential
         now = self.now
         arrived = end_of(self.method, differential, now, self.size, solution.unknowns, end)
-        step = Step(
+        step = TimeStep(
             method=self.method,
             differential=differential,
             start=now,
@@ -228,12 +228,12 @@ class StepRun:
         self.size = wanted
         return True
 
-    def _open(self, step: Step) -> bool:
+    def _open(self, step: TimeStep) -> bool:
         """Whether the end of a step leaves constraints open."""
         rows = self.equations.residual_at(step.end)[~self.equations.differential]
         return not float(np.abs(rows).max(initial=0.0)) <= CLOSED
 
-    def _step_to(self, cut: Step, guard: int) -> None:
+    def _step_to(self, cut: TimeStep, guard: int) -> None:
         """Take a step that ends where a guard vanishes.
 
         Args:

@@ -26,7 +26,7 @@ SINGULAR_STEPS = 4
 """Steps in a row, each shorter than the last, whose matrices are singular before the equations count as singular."""
 
 SINGULAR_SHRINKAGE = 0.1
-"""What is left of a step whose matrices are singular."""
+"""Factor of a step whose matrices are singular."""
 
 TRIES = 1000
 """Steps, taken or refused, after which a motion has to be on its way."""
@@ -35,7 +35,7 @@ SLOWEST = 3e-6
 """Share of the piece that each of them has to bring on average: slower, the end is hundreds of thousands away."""
 
 FAILED_SHRINKAGE = 0.5
-"""What is left of a step whose equations were not solved."""
+"""Factor of a step whose equations were not solved."""
 
 
 def integrate(

@@ -11,7 +11,7 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Plane
+from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Hyperplane
 from cosserat_casadi.numerics.branches import switch
 from cosserat_casadi.numerics.events import Arc, Event, events_between
 from cosserat_casadi.numerics.progress import Progress
@@ -30,7 +30,7 @@ AWAY = 4
 
 
 Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
-"""What may end a step early."""
+"""A test that may end a step early."""
 
 
 class PathOutcome(Enum):
@@ -62,7 +62,7 @@ class PathOutcome(Enum):
 
 @dataclass
 class Trace:
-    """What has been computed of a curve.
+    """The computed part of a curve.
 
     Attributes:
         points: accepted points in the order of travel.
@@ -113,11 +113,11 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, gu
 
 
 def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard | None = None) -> float:
-    """Try one step and add what it passes to a trace.
+    """Try one step and add its points and events to a trace.
 
     Args:
         curve: the curve.
-        traced: what has been computed of it.
+        traced: the computed part of the curve.
         step: arclength to try.
         leave_at: as ``branch`` of :func:`trace`.
         guard: (step, its end) ↦ the point at which to stop within it, by default its end; None where the step is too
@@ -180,7 +180,7 @@ def _end(arc: Arc) -> ArcPoint:
     # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
     across_loads = np.append(np.zeros_like(near.x), 1.0)
     guess = np.append(near.x, 1.0)
-    corrected = arc.curve.correct(guess, Plane(across_loads, 1.0))
+    corrected = arc.curve.correct(guess, Hyperplane(across_loads, 1.0))
     if corrected is None:
         return near
     x = corrected.y[:-1]
@@ -193,7 +193,7 @@ def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:
     """Index of the bifurcation to leave at among the events of a step.
 
     Args:
-        traced: what has been computed of the curve.
+        traced: the computed part of the curve.
         passed: events of the step.
         number: of the bifurcation along the curve, counted from 1; 0 for none.
 

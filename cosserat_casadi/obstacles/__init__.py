@@ -1,1 +1,1 @@
-"""What rods may not enter, each a signed distance in one file."""
+"""Obstacles that rods may not enter, each a signed distance in one file."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.obstacle import Obstacle, across, rounded_norm
-from cosserat_casadi.scene.obstacles import Capsule
+from cosserat_casadi.scene.obstacle_records import Capsule
 
 
 @final

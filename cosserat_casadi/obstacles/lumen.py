@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.obstacle import Obstacle, across, rounded_norm
-from cosserat_casadi.scene.obstacles import Lumen
+from cosserat_casadi.scene.obstacle_records import Lumen
 
 STARTS = 6
 """Places between two points of the line from which the nearest one is sought."""

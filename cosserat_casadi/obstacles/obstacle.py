@@ -1,4 +1,4 @@
-"""What an obstacle is: a kind of table of the scene, as the distance of a point of space from it.
+"""Base class of obstacles: an obstacle is a kind of table of the scene, as the distance of a point of space from it.
 
 A member is one file and one line of the registry. It gives :meth:`Obstacle.distance`, a small function of a point.
 Normals and curvatures are its derivatives, which CasADi forms.
@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.scene.families import Kind, Kinds
-from cosserat_casadi.scene.obstacles import OBSTACLES, ObstacleRecord
+from cosserat_casadi.scene.obstacle_records import OBSTACLES, ObstacleRecord
 
 RecordType = TypeVar("RecordType", bound=ObstacleRecord)
 
@@ -46,7 +46,7 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
         """
 
     def faults(self, obstacle: RecordType, radius: float) -> Iterator[Problem]:
-        """What is wrong with an obstacle for rods whose sections have this radius, m; nothing by default."""
+        """Problems of an obstacle for rods whose sections have this radius, m; none by default."""
         yield from ()
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""A model with one function more: all that is drawn of a scene, so that the compiled library draws what it solves.
+"""A model with one function more: all drawn parts of a scene, so that the compiled library draws its solution.
 
 An ordinary folder does not have this function: it costs the scenes that are exported for a controller nothing.
 """
@@ -18,10 +18,10 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Sort
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, scene_function
-from cosserat_casadi.model.load_arrows import DrawnPoses, LoadArrows
 from cosserat_casadi.model.system import Arguments, System
 
 SECTIONS = np.linspace(0.0, 1.0, 49)
@@ -37,7 +37,7 @@ class Drawn:
             quaternion, 7×1), or "arrows" (start and vector of each, 6×k); metres, and the unit of the arrows' sort.
         name: of the rod, the actuator, the body or the load.
         numbers: the columns.
-        sort: of arrows, what they stand for.
+        sort: kind of vector that arrows stand for.
     """
 
     kind: str
@@ -47,7 +47,7 @@ class Drawn:
 
     @property
     def key(self) -> tuple[str, str, Sort | None]:
-        """What tells it from the others."""
+        """Key of the part among all drawn parts."""
         return self.kind, self.name, self.sort
 
 
@@ -80,7 +80,7 @@ def drawn_layout(model: Model) -> list[dict[str, Any]]:
 
 
 def drawn_numbers(wanted: Model, solution: Solution) -> FloatArray:
-    """What is drawn of an equilibrium, shape (k,), in the layout of a model whose loads are some of the solution's."""
+    """The drawn parts of an equilibrium, (k,), in the layout of a model whose loads are some of the solution's."""
     arguments = Arguments(ca.DM(solution.x), ca.DM(solution.inputs))
     found = {part.key: part.numbers for part in drawn_parts(System(solution.model.discrete, arguments))}
     parts = [ca.vec(ca.densify(found[part.key])) for part in _symbolic_parts(wanted)]
@@ -144,7 +144,7 @@ class _Picture:
         return routing
 
     def arrows(self) -> Iterator[Drawn]:
-        """Arrows of all loads; what is zero for good has none."""
+        """Arrows of all loads; a load that is always zero has none."""
         arguments = self.system.arguments
         loads = LoadArrows(self.system.discrete, arguments.inputs, self._rod_poses, self._body_pose)
         for drawn in loads.drawn():

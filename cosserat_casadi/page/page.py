@@ -11,6 +11,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.codegen.texts import fill
 from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
@@ -18,23 +19,24 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.page.drawn_model import DrawnModel
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
 
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
 
-SCRIPTS = ("spectrum.js", "shapes.js", "painter.js", "scenery.js", "panel.js", "hand.js")
+SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.js", "panel.js", "tip_dragging.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 
-def export_page(solution: Solution, file: Path) -> Path:
+def export_page(solution: Solution, file: Path, asked: Given | None = None) -> Path:
     """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
 
     Args:
         solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
-        file: what is written.
+        file: path of the page.
+        asked: ranges of the sliders; by default those that modes are chosen for.
 
     Raises:
         ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
@@ -43,7 +45,7 @@ def export_page(solution: Solution, file: Path) -> Path:
     refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    facts = {**page_facts(solution), **asked_accuracy(solution)}
+    facts = {**page_facts(solution, asked=asked), **asked_accuracy(solution)}
     content = page_text(facts, [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
@@ -53,7 +55,7 @@ def export_page(solution: Solution, file: Path) -> Path:
 
 
 def asked_accuracy(solution: Solution) -> dict[str, Any]:
-    """What errors are judged by: the tolerance, None where none has a meaning, and what helps above it."""
+    """The tolerance by which errors are judged, None where none has a meaning, and the remedy above it."""
     accuracy = solution.model.scene.accuracy
     return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
 

@@ -45,10 +45,10 @@ PROBE = """#include <math.h>
 #include <string.h>
 __attribute__((export_name("probe"))) double probe(double x, char *text) { return sin(x) * (double)strlen(text); }
 """
-"""What every page needs of the compiler: mathematics and strings."""
+"""A program that needs of the compiler what every page needs: mathematics and strings."""
 
 NAME = "robot"
-"""What symbols of the library inside a page begin with; nobody outside sees it."""
+"""Prefix of the symbols of the library inside a page; nobody outside sees it."""
 
 
 def find_wasm_compiler() -> str:
@@ -70,7 +70,7 @@ def find_wasm_compiler() -> str:
 
 @cache
 def _fault_of(compiler: str) -> str:
-    """What a compiler says of a small program; empty where it makes WebAssembly of it."""
+    """Message of a compiler on a small program; empty where it compiles that to WebAssembly."""
     try:
         _compiled(compiler, {"probe.c": PROBE}, ["probe.c"])
     except ExportError as error:
@@ -82,7 +82,7 @@ def wasm_of(model: DrawnModel, compiler: str) -> bytes:
     """The library of a model as a WebAssembly module that imports nothing.
 
     Args:
-        model: what is exported, with its picture.
+        model: the model with its picture.
         compiler: path of a clang for WebAssembly.
 
     Raises:

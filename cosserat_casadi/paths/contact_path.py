@@ -1,6 +1,6 @@
 """Equilibrium paths of scenes with obstacles: one arrangement of contacts is followed until it ends, then the next.
 
-See docs/contact.md, "Paths", and transitions.py for how one leads to another.
+See docs/contact.md, "Paths", and contact_transitions.py for how one leads to another.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
-from cosserat_casadi.equilibrium.contact.settle import Settling
-from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.state import TIP, Touch, load_sections, state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.verdict import judged
-from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import judged
+from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, load_sections, state_in, without_contacts
+from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -25,10 +25,10 @@ from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
-from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.contact_curve import Arrangement
+from cosserat_casadi.paths.contact_transitions import ArrangementEntry, changes, entered
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.paths.margins import Key, margins, violated
-from cosserat_casadi.paths.transitions import Entry, changes, entered
 
 MOST_CHANGES = 100
 """Most changes of the arrangement along a path."""
@@ -64,17 +64,17 @@ class ContactPath(EquilibriumPath):
             contacts.append(_path_contact(touch, forces, inside))
         return tuple(contacts)
 
-    def tip(self, rod: str | None = None) -> Pose:
+    def tip(self, rod: str | None = None) -> SolvedPoses:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
         name = self.model.rod_name(rod)
         poses = [self._pose(index, TIP, name) for index in range(len(self.factor))]
-        return Pose(
+        return SolvedPoses(
             position=np.array([pose.position[0] for pose in poses]).reshape(-1, 3),
             rotation=np.array([pose.rotation[0] for pose in poses]).reshape(-1, 3, 3),
             quaternion=np.array([pose.quaternion[0] for pose in poses]).reshape(-1, 4),
         )
 
-    def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
+    def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip at an event, shapes (1, …)."""
         name = self.model.rod_name(rod)
         return self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([TIP]), name)
@@ -98,7 +98,7 @@ class ContactPath(EquilibriumPath):
         found = arrangement.found(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
-    def _pose(self, index: int, X: float, rod: str) -> Pose:
+    def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:
         arrangement: Arrangement = self.arrangements[self.arrangement[index]]
         return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
 
@@ -169,7 +169,7 @@ class Guard:
 
 @dataclass
 class Travel:
-    """What has been followed so far.
+    """The part of the path that has been followed so far.
 
     Attributes:
         settings: limits.
@@ -229,7 +229,7 @@ class Travel:
         return int(np.sign(self.branch)) * (abs(self.branch) - before)
 
     def _keep(self, traced: Trace) -> None:
-        """Add what was traced of the last arrangement."""
+        """Add the traced part of the last arrangement."""
         number = len(self.arrangements) - 1
         arrangement = self.arrangements[-1]
         begun = len(self.points)
@@ -246,7 +246,7 @@ class Travel:
             self.branch = 0
         self.outcome = traced.outcome
 
-    def _change(self, guard: Guard) -> Entry | None:
+    def _change(self, guard: Guard) -> ArrangementEntry | None:
         """Enter the next arrangement; None where none is valid."""
         assert guard.crossed is not None
         key, X = guard.crossed
@@ -261,7 +261,7 @@ class Travel:
             return entry
         return None
 
-    def _keep_change(self, entry: Entry, last: ArcPoint) -> None:
+    def _keep_change(self, entry: ArrangementEntry, last: ArcPoint) -> None:
         """Add the event of a change: its equilibrium is the last point before it, or the first one beyond."""
         number = len(self.arrangements) - 1
         point = last
@@ -310,7 +310,7 @@ def follow_contact_path(
         model: of the scene.
         name: the input that grows.
         base: stacked inputs at load factor 0.
-        change: what is added to them at 1.
+        change: their increments at load factor 1.
         branch: as in :func:`cosserat_casadi.follow_path`.
         settings: limits.
         progress: receives the largest factor reached.
@@ -354,7 +354,7 @@ def follow_contact_path(
 
 
 def _record(empty: ContactPath, travel: Travel) -> ContactPath:
-    """What was followed as arrays."""
+    """The followed path as arrays."""
     outcome = travel.outcome or PathOutcome.MAX_STEPS
     numbers = np.array([number for number, _ in travel.points], dtype=np.int64)
     factors = np.array([point.load_factor for _, point in travel.points])

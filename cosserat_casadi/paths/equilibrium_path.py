@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
+from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
@@ -142,12 +142,12 @@ class EquilibriumPath:
         """The contacts at a point of the path; none in a scene without obstacles."""
         return ()
 
-    def tip(self, rod: str | None = None) -> Pose:
+    def tip(self, rod: str | None = None) -> SolvedPoses:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
         name = self.model.rod_name(rod)
         return self._tips(name, self.factor, self.x)
 
-    def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
+    def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip at an event, shapes (1, …)."""
         name = self.model.rod_name(rod)
         return self._tips(name, [event.factor], [event.x])
@@ -203,7 +203,7 @@ class EquilibriumPath:
             stable=bool(stable[index]),
         )
 
-    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> Pose:
+    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> SolvedPoses:
         """Poses of a rod's tip at k equilibria.
 
         Args:
@@ -222,7 +222,7 @@ class EquilibriumPath:
             positions.append(position.full()[:, 0])
             quaternions.append(quaternion.full()[:, 0])
             rotations.append(rotation.full())
-        return Pose(
+        return SolvedPoses(
             position=np.array(positions).reshape(-1, 3),
             rotation=np.array(rotations).reshape(-1, 3, 3),
             quaternion=np.array(quaternions).reshape(-1, 4),

@@ -39,7 +39,7 @@ class _Followed:
         model: the model.
         name: the input.
         base: stacked inputs with this one at zero.
-        change: what is added to them at the load factor 1.
+        change: their increments at the load factor 1.
     """
 
     model: Model
@@ -106,7 +106,7 @@ class _Followed:
         """A trace as arrays.
 
         Args:
-            traced: what has been computed of the curve.
+            traced: the computed part of the curve.
             message: a sentence for the user; by default that of the outcome.
         """
         outcome = traced.outcome or PathOutcome.MAX_STEPS

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along, distances
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
 

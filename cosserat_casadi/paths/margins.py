@@ -1,4 +1,4 @@
-"""What keeps an arrangement of contacts valid: numbers that are positive while it is, each with what it belongs to.
+"""Margins of an arrangement of contacts: numbers that are positive while it is valid, each with its contact or pair.
 
 Signorini's conditions between two changes of the arrangement: no section is inside an obstacle, no contact pulls, and
 what touches at a point stays a point between base and tip.
@@ -12,10 +12,10 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.settle import AT_TIP, pressure_along
-from cosserat_casadi.equilibrium.contact.state import TIP
+from cosserat_casadi.equilibrium.contact.contact_search import AT_TIP, pressure_along
+from cosserat_casadi.equilibrium.contact.contact_state import TIP
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.gaps_along import GapsAlong
 
 OPEN = 0.005
@@ -41,7 +41,7 @@ ROUNDING = 1e-9
 
 
 class Watch(Enum):
-    """What a margin is of."""
+    """Quantity of a margin."""
 
     GAP = "least distance of a rod from an obstacle, beside its contacts"
     BODY_GAP = "distance of a body from an obstacle that it does not touch"
@@ -59,7 +59,7 @@ class Key:
     """Name of a margin.
 
     Attributes:
-        watch: what it is of.
+        watch: quantity of the margin.
         number: of the contact in the arrangement; −1 for a gap.
         end: number of the section of a line whose force it is, base to tip.
         pair: rod, or body, and obstacle.

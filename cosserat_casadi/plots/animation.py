@@ -16,19 +16,19 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
-from cosserat_casadi.equilibrium.solution import Pose, rotations
+from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
+from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.poses import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
-from cosserat_casadi.plots.obstacles import surface_lines
+from cosserat_casadi.plots.obstacle_drawing import surface_lines
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 FORMATS = (".gif", ".mp4")
@@ -134,8 +134,8 @@ def save_animation(
 
 
 @dataclass(frozen=True)
-class Frames:
-    """What an animation shows, frame by frame.
+class AnimationFrames:
+    """Frames of an animation.
 
     Attributes:
         model: the model.
@@ -156,7 +156,7 @@ class Frames:
     section_axes: bool = False
 
 
-def save_frames(frames: Frames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
+def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`save_animation`."""
     check_animation_path(file)
     path = Path(file)
@@ -172,14 +172,14 @@ def save_frames(frames: Frames, file: str | Path, *, progress: Callable[[float],
         write_atomically(path, drawn.read_bytes())
 
 
-def motion_frames(motion: Motion, times: FloatArray, speed: float) -> Frames:
-    """Frames of a motion at times, shape (frames,), s, shown at a speed relative to its own."""
+def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationFrames:
+    """Frames of a motion at times, shape (frames,), s, shown at a speed relative to real time."""
     states = [motion.at(float(time)) for time in times]
     shown_seconds = (times[-1] - times[0]) / speed
     colour = PLAIN_TEXT
     if not motion.converged:
         colour = FAILURE
-    return Frames(
+    return AnimationFrames(
         model=motion.model,
         x=np.array([state.x for state in states]),
         inputs=np.array([state.inputs for state in states]),
@@ -205,7 +205,7 @@ def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
 
 
 def _finish(writer: Any) -> None:
-    """Write what is drawn.
+    """Write the drawn frames.
 
     Raises:
         AnimationFailedError: ffmpeg gives up.
@@ -272,7 +272,7 @@ class _Film:
         figure: matplotlib.figure.Figure, of the first time.
     """
 
-    def __init__(self, frames: Frames) -> None:
+    def __init__(self, frames: AnimationFrames) -> None:
         shapes = moving_shapes(frames.model, np.arange(len(frames.x), dtype=float), frames.x, frames.inputs)
         plane, view_axes = shapes.view
         if frames.section_axes:
@@ -326,7 +326,7 @@ class _Film:
                 lines.append(_Moving(canvas.markers(bases[0], **CLAMP), bases))
         return lines
 
-    def _draw_obstacles(self, frames: Frames, shapes: MovingShapes) -> list[_Moving]:
+    def _draw_obstacles(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:
         """Draw the obstacles that move with bodies; returns them."""
         lines = []
         for obstacle in frames.model.scene.obstacles:
@@ -334,7 +334,7 @@ class _Film:
                 continue
             poses = body_poses(frames.model, obstacle.body, frames.x, frames.inputs)
             world_R_body = rotations(poses.quaternion)
-            first = Pose(poses.position[:1], world_R_body[:1], poses.quaternion[:1])
+            first = SolvedPoses(poses.position[:1], world_R_body[:1], poses.quaternion[:1])
             label: str | None = obstacle.name
             for outline in surface_lines(self._canvas, obstacle, shapes.points, first):
                 in_body = in_axes_of(first, outline)
@@ -345,7 +345,7 @@ class _Film:
                 label = None
         return lines
 
-    def _draw_section_axes(self, frames: Frames, shapes: MovingShapes) -> list[_Moving]:
+    def _draw_section_axes(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:
         """Draw the x axes of a few sections of each rod; returns them."""
         lines = []
         for index, name in enumerate(shapes.rods):

@@ -96,7 +96,7 @@ class Canvas:
         return self.line(points, linestyle="none", **style)
 
     def legend_entry(self, label: str | None, **style: Any) -> None:
-        """Name something in the legend that no line of its own stands for."""
+        """Name a thing in the legend that is drawn without a line."""
         no_points = np.zeros((0, 3))
         self.line(no_points, label=label, **style)
 

@@ -22,7 +22,7 @@ COLUMNS = 3
 """Panels in a row."""
 
 SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CATEGORIES[1], "label": "second best"}
-"""What might explain a row as well."""
+"""Style of the second best minimum of a row."""
 
 
 def save_estimate_plot(found: Estimate, file: str | Path) -> None:

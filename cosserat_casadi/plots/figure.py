@@ -1,4 +1,4 @@
-"""What all figures share: the class, the titles, and writing a file.
+"""Common part of all figures: the class, the titles, and writing a file.
 
 matplotlib is an extra and is imported inside functions only.
 """

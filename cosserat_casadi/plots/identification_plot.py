@@ -16,16 +16,16 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 
 MOST_PANELS = 4
-"""Measured quantities that have a panel of their own."""
+"""Most measured quantities that have a panel each."""
 
 MOST_ELLIPSES = 6
-"""Pairs of unknowns that have an ellipse: those with the strongest correlation."""
+"""Most pairs of unknowns that have an ellipse: the pairs with the strongest correlation."""
 
 WIDTH = 0.8
 """Width of the rows of one motion among the residuals, where a case is 1 wide."""
 
 CHI_SQUARE_95 = 5.991464547107979
-"""What the square of a normal distribution in the plane, in standard deviations, stays below in 95 % of all draws."""
+"""Bound of the squared distance from the mean, of a normal distribution in the plane, for 95 % of all draws."""
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
@@ -137,7 +137,7 @@ def _draw_residuals(axes: Any, found: Identification) -> None:
 
 
 def _pairs(found: Identification) -> list[tuple[int, int]]:
-    """Pairs of unknowns that are determined, those with the strongest correlation first."""
+    """Pairs of unknowns that are determined, the pair with the strongest correlation first."""
     known = np.flatnonzero(np.nan_to_num(found.sigma) > 0.0).tolist()
     correlation = np.abs(found.statistics.correlation)
     pairs = sorted(combinations(known, 2), key=lambda pair: -correlation[pair])

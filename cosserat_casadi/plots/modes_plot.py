@@ -15,8 +15,8 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
-from cosserat_casadi.motion.modes import Mode, Modes
-from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
+from cosserat_casadi.motion.vibration_modes import Mode, Modes
+from cosserat_casadi.plots.animation import FRAME_RATE, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import WORLD, Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
@@ -134,7 +134,7 @@ def save_mode_animation(
     phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
     # From the equilibrium on, so that the first picture is known.
     swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * mode.vector)
-    frames = Frames(
+    frames = AnimationFrames(
         model=modes.model,
         x=modes.solution.x + swing,
         inputs=np.tile(modes.solution.inputs, (PERIOD_FRAMES, 1)),
@@ -180,7 +180,7 @@ class _ModeLines:
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:
-    """What is drawn of each mode."""
+    """Lines that are drawn of each mode."""
     names = list(modes.model.discrete.rods)
     poses = {name: modes.solution.pose(SECTIONS, name) for name in names}
     shapes = {name: modes.shape(SECTIONS, name) for name in names}

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.solution import Pose, rotations
+from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
@@ -22,7 +22,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
-from cosserat_casadi.plots.obstacles import draw_surfaces
+from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 SHAPES = 12
@@ -159,7 +159,7 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
         for name in {str(one.body) for one in moving}:
             poses = motion.body(name)
             at_row = poses.quaternion[[row]]
-            bodies[name] = Pose(poses.position[[row]], rotations(at_row), at_row)
+            bodies[name] = SolvedPoses(poses.position[[row]], rotations(at_row), at_row)
         draw_surfaces(canvas, moving, shapes.points, bodies, strength=share, named=row == rows[-1])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.poses import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import body_corners
@@ -26,7 +26,7 @@ class MovingShapes:
         times: shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
         outlines: closed outlines of bodies, by body, shape (T, k, 3), m.
-        followed: points whose paths are drawn, by what they are of, shape (T, 3), m.
+        followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
     """
 
     times: FloatArray

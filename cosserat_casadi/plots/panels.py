@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.colours import AXES, rod_style
-from cosserat_casadi.plots.shapes import SAMPLES
+from cosserat_casadi.plots.solved_shapes import SAMPLES
 
 STROKES = ("-", "--", "-.")
 """Strokes of the components x, y, z where colours tell the rods apart."""
@@ -26,8 +26,8 @@ LEVEL = 1e-3
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """What a panel shows.
+class PanelQuantity:
+    """Quantity that a panel shows.
 
     Attributes:
         name: strain, moment or force.
@@ -41,13 +41,13 @@ class Quantity:
 
 
 QUANTITIES = (
-    Quantity("strain", ("K_x", "K_y", "K_z", "Γ_x", "Γ_y", "Γ_z − 1"), "curvature, 1/m"),
-    Quantity("moment", ("M_x", "M_y", "M_z"), "moment, N m"),
-    Quantity("force", ("N_x", "N_y", "N_z"), "force, N"),
+    PanelQuantity("strain", ("K_x", "K_y", "K_z", "Γ_x", "Γ_y", "Γ_z − 1"), "curvature, 1/m"),
+    PanelQuantity("moment", ("M_x", "M_y", "M_z"), "moment, N m"),
+    PanelQuantity("force", ("N_x", "N_y", "N_z"), "force, N"),
 )
 
 
-def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
+def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
     """Draw the components of a quantity that are not zero, of all rods."""
     rods = solution.model.discrete.rods
     values = {name: _values(solution, name, quantity.name) for name in rods}

@@ -104,7 +104,7 @@ class _Section:
 
     @property
     def words(self) -> str:
-        """What axes and legend call it."""
+        """Name of the section for axes and legend."""
         if self.X == 1.0:
             return "the tip"
         return f"the section at X = {self.X:.3g}"
@@ -147,7 +147,7 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
 
 
 def _moving_components(displacement: FloatArray) -> list[int]:
-    """Components that are drawn: those that move, or x where none does."""
+    """Components that are drawn: the ones that move, or x where none does."""
     largest = np.abs(displacement).max(axis=0, initial=0.0)
     moving = np.flatnonzero(largest > SMALLEST_DISPLACEMENT)
     return moving.tolist() or [0]

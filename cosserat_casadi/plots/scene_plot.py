@@ -11,16 +11,16 @@ from typing import Any
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Arrow
+from cosserat_casadi.plots.arrow_drawing import scene_arrows
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.plots.load_arrows import scene_arrows
-from cosserat_casadi.plots.obstacles import draw_obstacles
+from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
-from cosserat_casadi.plots.shapes import RodShapes, rod_shapes
+from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 
 def save_plot(solution: Solution, path: str | Path) -> None:

@@ -11,7 +11,7 @@ from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.arrows import lies_in_plane
 from cosserat_casadi.plots.canvas import FLAT, WORLD, Plane
-from cosserat_casadi.plots.shapes import RodShapes
+from cosserat_casadi.plots.solved_shapes import RodShapes
 
 View = tuple[Plane | None, FloatArray]
 """Two axes to the right and upwards, None for space; and the axes they are of, a row each, shape (3, 3)."""
@@ -20,7 +20,7 @@ PLANES: tuple[tuple[int, Plane], ...] = ((1, (0, 2)), (2, (0, 1)), (0, (1, 2)))
 """Normal and axes of the coordinate planes, in the order in which they are tried."""
 
 UPRIGHT = 1e-6
-"""Length of the vertical in a plane, relative to its own, from which it points upwards in the picture."""
+"""Length of the vertical within a plane, relative to a unit, from which it points upwards in the picture."""
 
 
 def scene_view(shapes: RodShapes, arrows: Sequence[Arrow]) -> View:
@@ -39,7 +39,7 @@ def view_of(points: FloatArray, thickness: float, arrows: Sequence[Arrow] = ()) 
 
     Returns:
         the two axes of the plane, or None where points and arrows fill space; and the axes that they are counted in:
-        those of the world, or for a plane that stands askew its own, with its normal second.
+        the world's, or for a plane that stands askew its own axes, with its normal second.
     """
     for normal, plane in PLANES:
         if _holds(normal, WORLD, points, arrows, thickness):

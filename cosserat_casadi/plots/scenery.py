@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
-from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
+from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import Scene
 
 SLACK = 1e-6
@@ -37,7 +37,7 @@ FIXED: dict[str, Any] = {"marker": "s", "markersize": 7, "color": "0.35"}
 HINGE: dict[str, Any] = {"marker": "o", "markersize": 7, "color": "0.35"}
 BALL: dict[str, Any] = {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"}
 SLIDE: dict[str, Any] = {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"}
-"""How joints are marked, by what they hold; rods that start on rods are fixed there."""
+"""Marks of joints, by the directions that they hold; rods that start on rods are fixed there."""
 
 TARGET_STYLE: dict[str, Any] = {
     "marker": "+",

@@ -37,7 +37,7 @@ def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:
     """Figure of Sobol indices.
 
     Args:
-        indices: of the results; those that do not vary are left out.
+        indices: of the results; a result that does not vary is left out.
         title: of the scene.
 
     Returns:

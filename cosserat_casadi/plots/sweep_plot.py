@@ -36,7 +36,7 @@ DOT_LIMITS = (1.5, 16.0)
 MAP = "viridis"
 
 OUTCOME = "outcome"
-"""What a figure is coloured by where no column is."""
+"""Colouring of a figure that no column colours."""
 
 
 def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -> None:
@@ -177,7 +177,7 @@ def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | N
 
 
 def _draw_inputs(panel: Any, sweep: Sweep, right: str, up: str) -> None:
-    """How rows ended, over two swept columns; every outcome has a colour and a marker of its own."""
+    """Outcomes of the rows over two swept columns; every outcome has one colour and one marker."""
     for index, label in enumerate(LABELS):
         rows = _thinned(sweep.outcomes == index)
         if not rows.size:

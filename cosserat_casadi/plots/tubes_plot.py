@@ -19,16 +19,16 @@ from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.tubes.arrows import load_arrows
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.path import TubeEvent, TubePath
-from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.tube_arrows import load_arrows
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
+from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
-"""Stroke of what is stable, of what is not, and of what bears loads without energy."""
+"""Strokes of stable and unstable equilibria, and of equilibria under loads without energy."""
 
 VERDICTS: dict[bool | None, str] = {True: "stable", False: "unstable", None: "loads without energy"}
-"""What is called so."""
+"""Words for these."""
 
 DRAWN = 12
 """Points that are drawn from one station to the next."""
@@ -99,7 +99,7 @@ def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
 
 
 def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
-    """What a legend calls an equilibrium."""
+    """Name of an equilibrium in a legend."""
     verdict = VERDICTS[solution.stable]
     if several:
         return f"{number + 1}: {verdict}, {solution.energy:.4g} J"

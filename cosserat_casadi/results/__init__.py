@@ -1,1 +1,1 @@
-"""What was found, as JSON and CSV: one file each for solutions, paths and inverse problems."""
+"""Results as JSON and CSV files: one module each for solutions, paths, motions, inverse problems and so on."""

@@ -1,4 +1,4 @@
-"""What files tell of contacts."""
+"""Contacts in result files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was felt in every row, as JSON or CSV."""
+"""Estimates of every row, as JSON or CSV."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
 
 
 def _shared(found: Estimate) -> list[dict[str, Any]]:
-    """What all rows share; none where nothing of that is unknown."""
+    """Numbers that all rows share; empty where none of them is unknown."""
     shared = found.shared
     if shared is None:
         return []
@@ -63,7 +63,7 @@ def _shared(found: Estimate) -> list[dict[str, Any]]:
 
 
 def _second_best(found: Estimate, case: int) -> dict[str, Any]:
-    """What else explains a row, where several searches were made for it."""
+    """The second best minimum of a row, where several searches were made for it."""
     if found.second is None:
         return {}
     second = found.second

@@ -1,4 +1,4 @@
-"""The file of an identification: what was found, how well it is known, and what it leaves of the data."""
+"""The file of an identification: its numbers, how well they are known, and the misfit that remains."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
-from cosserat_casadi.identification.unknowns import UnknownEntry, parts
+from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 from cosserat_casadi.scene.values import names_in
 
@@ -84,7 +84,7 @@ def _shared(found: Identification) -> dict[str, Any]:
 
 
 def _tied(entry: UnknownEntry) -> dict[str, list[str]]:
-    """The names whose numbers follow those that were found; nothing where none do."""
+    """Names of numbers that follow an identified number; empty where there are none."""
     names = names_in(entry.record.parameter or ())
     return {"tied": list(names[1:])} if len(names) > 1 else {}
 

@@ -21,7 +21,7 @@ UNSTABLE = "unstable"
 
 
 _WORDS = {True: "true", False: "false", None: None}
-"""Cells of what is true, false or without a meaning."""
+"""Cells for true, false and values without a meaning."""
 
 
 def row_outcome(inverse: Inverse, unstable: bool) -> str:

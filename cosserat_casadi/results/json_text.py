@@ -15,7 +15,7 @@ SCHEMA = 1
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON can hold it: arrays as lists, numbers as Python's own, what is not finite as None."""
+    """A value as JSON can hold it: arrays as lists, plain Python numbers, None for a number that is not finite."""
     if isinstance(value, dict):
         return {key: plain(entry) for key, entry in value.items()}
     if isinstance(value, np.ndarray):

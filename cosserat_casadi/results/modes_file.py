@@ -8,7 +8,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
-from cosserat_casadi.motion.modes import Mode, Modes
+from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
 from cosserat_casadi.results.solution_file import listed_abscissae, result
 

@@ -19,8 +19,8 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
-from cosserat_casadi.motion.poses import Poses
-from cosserat_casadi.motion.restart import ContactEvent
+from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
@@ -114,7 +114,7 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
 
 
 def _contact_entry(motion: Motion) -> dict[str, Any]:
-    """What obstacles do: how deep rods are in those with a width; what touches the others, and impacts."""
+    """Contact with obstacles: depth of rods inside obstacles with a width; contacts with the others, and impacts."""
     if not motion.model.scene.touches_exactly:
         return contact_entry(motion.model, motion.x, motion.inputs)
     numbered = [(row, contact) for row, contacts in enumerate(motion.contacts) for contact in contacts]
@@ -135,7 +135,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
 
 
 def _head(motion: Motion) -> dict[str, Any]:
-    """What there is one of in a motion, however many times it holds."""
+    """Entries of a motion that do not depend on time."""
     return {
         "schema": SCHEMA,
         "title": motion.model.scene.title,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
@@ -16,15 +16,15 @@ from cosserat_casadi.results.contact_entry import point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 if TYPE_CHECKING:
-    from cosserat_casadi.tubes.equilibria import TubeEquilibria
-    from cosserat_casadi.tubes.solution import TubeSolution
+    from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
 
 
 Solved: TypeAlias = "Solution | TubeSolution | TubeEquilibria"
-"""What a result file may be of: rods, concentric tubes, or all equilibria of these."""
+"""Solutions that a result file may hold: of rods, of concentric tubes, or all equilibria of these."""
 
 
 def result(solution: Solved) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.places import CLOSEST, element_ends
+from cosserat_casadi.model.element_ends import CLOSEST, element_ends
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES
@@ -35,7 +35,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
 
     Args:
         path: what ``cosserat solve`` has written.
-        scene: the scene; what is not an input of it must be as it was when it was solved.
+        scene: the scene; its numbers, inputs aside, must be the same as when the equilibrium was solved.
 
     Raises:
         SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.

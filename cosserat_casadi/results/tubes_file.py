@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from cosserat_casadi.results.json_text import SCHEMA, plain
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.path import TubeEvent, TubePath
-from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
+from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
 def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:
@@ -72,7 +72,7 @@ def _word(stable: bool | None) -> str:
 
 
 def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
-    """What a file says of one equilibrium."""
+    """Entry of one equilibrium."""
     robot = solution.robot
     shape = solution.shape
     entries = {}
@@ -102,7 +102,7 @@ def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
 
 
 def _point(solution: TubeSolution) -> dict[str, Any]:
-    """What a file says of a point of a path."""
+    """Entry of a point of a path."""
     return {
         "stable": solution.stable,
         "energy": solution.energy,
@@ -112,7 +112,7 @@ def _point(solution: TubeSolution) -> dict[str, Any]:
 
 
 def _event(event: TubeEvent) -> dict[str, Any]:
-    """What a file says of an event of a path."""
+    """Entry of an event of a path."""
     snaps_to = None
     if event.snaps_to is not None:
         snaps_to = _point(event.snaps_to)

@@ -15,14 +15,14 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, product, row_times, rows_of
-from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 
 
 class Conjugate(Protocol):
-    """What an effort works on, for a rod of known strain."""
+    """A length or volume that an effort works on, for a rod of known strain."""
 
     @property
     def value(self) -> Matrix:
@@ -34,14 +34,14 @@ class Conjugate(Protocol):
 
     @property
     def pull(self) -> Matrix:
-        """Generalised force of a unit of effort, n×1: ∂L/∂q but for what is lost on the way."""
+        """Generalised force of a unit of effort, n×1: the gradient ∂L/∂q, less the losses by friction along the rod."""
 
     def curvature(self, a: int, b: int) -> Matrix | None:
         """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
 
     @property
     def further_stiffness(self) -> Matrix | None:
-        """What is not in the curvature of ∂ pull/∂q, n×n; None where that is all."""
+        """Part of ∂ pull/∂q that the curvature does not hold, n×n; None where the curvature is all of it."""
 
     @property
     def conservative(self) -> bool:
@@ -52,7 +52,7 @@ class Conjugate(Protocol):
 
 
 class Lossless:
-    """What is the same for all quantities whose effort reaches every section: the pull is the gradient."""
+    """Quantities whose effort reaches every section undiminished: the pull is the gradient of the quantity."""
 
     @property
     def pull(self: Conjugate) -> Matrix:
@@ -61,7 +61,7 @@ class Lossless:
 
     @property
     def further_stiffness(self) -> Matrix | None:
-        """What is not in the curvature: nothing."""
+        """None: the curvature is all of ∂ pull/∂q."""
         return None
 
     @property
@@ -74,8 +74,8 @@ class Lossless:
         return rate_of(self.value)
 
 
-class Quantity(Protocol):
-    """What an effort works on, before the strain of the rod is known."""
+class ShapeQuantity(Protocol):
+    """A length or volume that an effort works on, as a function of the rod's shape."""
 
     def on(self, shape: Shape) -> Conjugate:
         """The quantity on a rod of this shape."""
@@ -86,11 +86,11 @@ class Actuation:
     """An effort on a rod.
 
     Attributes:
-        quantity: what it works on.
+        quantity: the length or volume that the effort works on.
         effort: 1×1; the energy is effort times quantity, so a pressure is negative and a tension positive.
     """
 
-    quantity: Quantity
+    quantity: ShapeQuantity
     effort: Matrix
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What efforts of actuators add to the Jacobian of a rod by working on lengths that curve with the strains."""
+"""Stiffness of a rod from efforts of actuators whose lengths or volumes are nonlinear in the strains."""
 
 from __future__ import annotations
 

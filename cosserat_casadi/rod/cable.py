@@ -15,8 +15,8 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_zero, rows_of
-from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
@@ -215,7 +215,7 @@ class RoutedCable(Lossless):
 
     @property
     def _node_lengths(self) -> FloatArray:
-        """What each node of the routing stands for in sums of what is per reference length, ℓ w, shape (k,), m."""
+        """Reference length of each node of the routing, the weight of densities per such length, ℓ w, (k,), m."""
         return self.shape.rod.reference_lengths[self.routing.nodes]
 
     @property

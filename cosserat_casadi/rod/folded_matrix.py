@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.blocks import mirror_factors
+from cosserat_casadi.maths.block_operators import mirror_factors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 Indices = npt.NDArray[np.int64]

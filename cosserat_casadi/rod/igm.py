@@ -11,7 +11,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import stack
+from cosserat_casadi.maths.block_operators import stack
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation, Conjugate
@@ -48,7 +48,17 @@ class InverseGeometricModel:
         """Q_ad / (EI/ℓ), n×1: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
         if self.rod.discretisation.transport == "permuted":
             return self._weighted_force()
-        return self._transposed_force()
+        # Minus the derivative of the loads' virtual work, by the transpose of the forward sweep.
+        covector = self.statics.force_covector
+        moment = self.statics.interval_moment
+        force: Matrix = ca.DM.zeros(self.rod.size, 1)
+        if moment is not None and self.rod.properties.turning_axes:
+            # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
+            pull = interval_kernels(self.rod).pull.map(moment.shape[1])
+            pulled = pull(*self.shape.interval_arguments, moment)
+            per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
+            force = force + per_coordinate.T @ stack(pulled)
+        return force + self._linear_force(covector)
 
     @cached_property
     def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
@@ -115,18 +125,6 @@ class InverseGeometricModel:
         if self.shape.ratio is None:
             return value
         return value / self.shape.ratio
-
-    def _transposed_force(self) -> Matrix:
-        """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""
-        moment = self.statics.interval_moment
-        force: Matrix = ca.DM.zeros(self.rod.size, 1)
-        if moment is not None and self.rod.properties.turning_axes:
-            # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
-            pull = interval_kernels(self.rod).pull.map(moment.shape[1])
-            pulled = pull(*self.shape.interval_arguments, moment)
-            per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
-            force = force + per_coordinate.T @ stack(pulled)
-        return force + self._linear_force(self.statics.force_covector)
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""

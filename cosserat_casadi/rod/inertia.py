@@ -18,8 +18,8 @@ import numpy as np
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, column, is_symbolic, known, repeated, row_times
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.motion import RodMotion
 from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import LineWrench
 
@@ -39,7 +39,7 @@ def second_moments(rotary_inertia: Numbers) -> Numbers:
 
 @dataclass(frozen=True)
 class SectionMasses:
-    """What moves at each node, for one reference length of rod.
+    """Masses and second moments of the nodes, for one reference length of rod.
 
     Attributes:
         mass: ρA at the nodes, shape (M,), kg/m.

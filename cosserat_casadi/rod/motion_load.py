@@ -1,8 +1,8 @@
-"""Loads that depend on the motion of their sections: what they add to the derivatives K, C and M of a rod in motion.
+"""Loads that depend on the motion of their sections: their share of the derivatives K, C and M of a rod in motion.
 
-A force f and a moment c that depend on ṙ, ω, r̈ and ω̇ of their section do the work −Σ [δr; δθ]ᵀ [f; c] in the residual.
-Their derivative with the pose of the section at fixed rates is in tangent.py; what is left are the variations of the
-rates. With δr = Y δq and δθ = Θ δq, and the rates of the fields Y and Θ as in motion_tangent.py,
+A force f and a moment c that depend on ṙ, ω, r̈ and ω̇ of their section do the work −Σ [δr; δθ]ᵀ [f; c] in the
+residual. Their derivative with the pose of the section at fixed rates is in tangent.py; the variations of the rates are
+here. With δr = Y δq and δθ = Θ δq, and the rates of the fields Y and Θ as in motion_tangent.py,
 
     δṙ = Ẏ δq + Y δq̇                δω = (Θ̇ − ω^ Θ) δq + Θ δq̇
     δr̈ = Ÿ δq + 2 Ẏ δq̇ + Y δq̈       δω̇ = (Θ̈ − ω̇^ Θ − ω^ Θ̇) δq + (2 Θ̇ − ω^ Θ) δq̇ + Θ δq̈,
@@ -19,7 +19,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.motion_tangent import MotionTangent
@@ -30,7 +30,7 @@ Variation = tuple[Matrix | None, Matrix | None, Matrix | None]
 
 
 def motion_matrices(tangent: MotionTangent, loads: Sequence[LoadedSections]) -> MotionMatrices:
-    """What inertia and loads that depend on rates add to ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z.
+    """Share of inertia and of loads that depend on rates in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z.
 
     They are in units of ``tangent.unit``.
     """

@@ -7,8 +7,8 @@ Along a motion ÿ = Y q̈ + Ẏ q̇, and so
 
 the last because differentiating in time and with q commute. The sweeps of Y carry their first and second rates along:
 with A of an interval, δθ has the rates Σ Ȧ and Σ Ä. The inertia force −μ ÿ does the work Σ Yᵀ μ ÿ on δq, whose
-derivative at fixed ÿ is that of a dead load, and in tangent.py; here stands what is left. For directors it is collected
-in three 3×3 matrices a node: with δd = δθ × d
+derivative at fixed ÿ is that of a dead load and is computed in tangent.py; this module adds the other derivatives. For
+directors they are collected in three 3×3 matrices a node: with δd = δθ × d
 
     −δm = Σ μ δ(d × d̈) = P₂ δθ̈ + P₁ δθ̇ + P₀ δθ,
 
@@ -27,12 +27,12 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator, sum_of_products
+from cosserat_casadi.maths.block_operators import block_diagonal, cumulative_sum, hat_operator, sum_of_products
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_symbolic, known, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
-from cosserat_casadi.rod.motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.rod_motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.tangent import Tangent
 
 ORDERS = 3
@@ -43,10 +43,9 @@ ORDERS = 3
 class MotionTangent:
     """Variations of a rod's fields and of their rates.
 
-    Columns: the n strain coordinates; with a floating base then three turns and three shifts of the base. Those that
-    turn sections, curvatures, torsion and turns of the base, stand apart from the others here, linear strains and
-    shifts, of which δθ has none. Sections that nothing turns, the base of a rod that does not float, have no rows
-    in δθ.
+    Columns: the n strain coordinates; with a floating base then three turns and three shifts of the base. Coordinates
+        that turn sections (curvatures, torsion, turns of the base) stand apart from linear strains and shifts, which
+        have no δθ. Sections that nothing turns, the base of a rod that does not float, have no rows in δθ.
 
     Attributes:
         tangent: variations of the rod's fields at rest.
@@ -67,7 +66,7 @@ class MotionTangent:
 
     @cached_property
     def matrices(self) -> MotionMatrices:
-        """What inertia adds to ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z beside frozen wrenches, in units of ``unit``.
+        """Share of inertia in ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z beside frozen wrenches, in units of ``unit``.
 
         The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
         base and the force on it.

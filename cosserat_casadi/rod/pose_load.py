@@ -1,8 +1,8 @@
 """Wrenches on a rod that depend on the pose of their sections: force, moment and their derivatives at a known shape.
 
-At a known shape such a wrench is a dead one, and the sweeps of statics.py and tangent.py take it as that. What it adds
-to the Jacobian is how it changes with its section: with δr and δθ of the section, f and c vary by the 6×6 derivative of
-the kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
+At a known shape such a wrench is a dead one, and the sweeps of statics.py and tangent.py take it as that. Its change
+with its section is a term of the Jacobian: with δr and δθ of the section, f and c vary by the 6×6 derivative of the
+kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [δf; δc], docs/theory.md section 7.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal, unstack
+from cosserat_casadi.maths.block_operators import block_diagonal, unstack
 from cosserat_casadi.maths.numbers import Numbers, as_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
 class LoadedSections:
     """A pose-dependent wrench on the sections of a rod of known shape.
 
-    Fields of k sections are stacked component by component, as in maths/blocks.py.
+    Fields of k sections are stacked component by component, as in maths/block_operators.py.
 
     Attributes:
         load: the wrench.
@@ -149,7 +149,7 @@ class LoadedSections:
         """A dead wrench on the loaded sections from its values there, 3×k each."""
         at = self.load.at
         if at is not None:
-            return PointWrench(at, force, moment, follower=False)
+            return WrenchAt(at, force, moment, follower=False)
         return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
 
     def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:

@@ -1,9 +1,10 @@
-"""What a rod is made of, as numbers or expressions of parameters: the one record that the mechanics reads."""
+"""The unloaded rod as numbers or expressions of parameters: the one record that the mechanics reads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -58,7 +59,7 @@ class RodProperties:
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
-        nominal: the rod with the numbers that scale the equations; None where these are its own.
+        nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
     """
 
     name: str
@@ -99,7 +100,7 @@ class RodProperties:
                 columns.append(np.asarray(legendre.legval(2 * known(X) - 1, np.asarray(coefficients))))
         return side_by_side(columns)
 
-    @property
+    @cached_property
     def mean_hooke(self) -> Array:
         """Mean of the Hooke tensor's diagonal along the rod that scales the equations, shape (6,)."""
         if self.nominal is not None:
@@ -108,7 +109,7 @@ class RodProperties:
         X = (points + 1) / 2
         return np.asarray((weights / 2) @ known(self.hooke(X)))
 
-    @property
+    @cached_property
     def bending_stiffness(self) -> float:
         """EI that makes the model dimensionless, N m²: mean of the smallest bending or torsion stiffness.
 
@@ -121,7 +122,7 @@ class RodProperties:
         linear = [mean[i] * self.length**2 for i in self.admitted]
         return float(min(linear))
 
-    @property
+    @cached_property
     def turning_axes(self) -> tuple[int, ...]:
         """Local axes about which the rod can turn along its length, unloaded or not."""
         axes = {i for i in self.admitted if i < 3}

@@ -1,4 +1,4 @@
-"""What a rod does to its base, and how that changes, for a rod whose base moves.
+"""Wrench of a rod on its base and the derivatives of that wrench, for a rod whose base moves.
 
 A rod is written in the axes of its base. Motions of the base therefore do not appear in its equations, but for loads
 that know the world: when the base turns by δφ, a load of fixed direction turns by −δφ in the axes of the base. Loads
@@ -14,7 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -22,7 +22,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import Wrench, WrenchAt
 
 Variation = tuple[Matrix, Matrix, Matrix]
 """Derivatives of residual (n×3), base force and base moment (3×3 each) with a motion of the base along three axes."""
@@ -129,7 +129,7 @@ class Reaction:
     def _turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n."""
         shape = self.tangent.shape
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             node = shape.rod.grid.node_at(wrench.at)
             in_base = shape.rotation_at(node) @ vector
             # δ(R v) = δθ × R v = −(R v)^ δθ.
@@ -142,7 +142,7 @@ class Reaction:
 
     def _resultant(self, variation: Matrix, wrench: Wrench) -> Matrix:
         """Sum over the sections of variations of a vector, 3×n."""
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             return variation
         lengths = as_matrix(self.tangent.rod.node_lengths).T
         sums = ca.kron(ca.DM.eye(3), lengths)
@@ -151,7 +151,7 @@ class Reaction:
     def _lever(self, wrench: Wrench) -> Matrix:
         """Moment about the base of a force on the wrench's section, 3×3, or of forces per length at the nodes, 3×3M."""
         shape = self.tangent.shape
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             node = shape.rod.grid.node_at(wrench.at)
             return hat(shape.position_at(node))
         lengths = as_matrix(shape.rod.node_lengths).T

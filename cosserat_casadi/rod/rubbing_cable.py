@@ -25,8 +25,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.blocks import cumulative_sum
-from cosserat_casadi.maths.shapes import check_shape
+from cosserat_casadi.maths.block_operators import cumulative_sum
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
 from cosserat_casadi.rod.kinematics import Shape
@@ -114,7 +114,7 @@ class RubbingCable(RoutedCable):
         return ca.vertcat(*parts)
 
     def curvature(self, a: int, b: int) -> Row:
-        """What the lever's change adds to ∂ pull/∂q, as of a cable that does not rub times its share, 1×M, m."""
+        """Curvature of the cable that does not rub times the share of tension at each node, 1×M, m."""
         row = super().curvature(a, b)
         if row is None:
             return None
@@ -125,7 +125,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def further_stiffness(self) -> Matrix:
-        """What the change of the shares adds to ∂ pull/∂q, n×n, m: not symmetric."""
+        """Change of the shares of tension in ∂ pull/∂q, n×n, m: not symmetric."""
         rows: list[Matrix] = []
         for c, lever in self.lever.items():
             phi = ca.DM(self._phi(c))
@@ -183,7 +183,7 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def _kinks(self) -> tuple[Matrix, Matrix, Matrix] | None:
-        """What Gauss sums of |u| miss in each interval where u passes zero, and derivatives with u at both ends.
+        """Errors of the Gauss sums of |u| in intervals where u passes zero, and their derivatives with u at the ends.
 
         For u on the straight line between its values at the ends: relative to the width of the interval, 1×I, and m×I
         each for the m components that u has; None where the cable does not turn.
@@ -226,7 +226,7 @@ class RubbingCable(RoutedCable):
         return ca.horzcat(*columns)
 
     def _turning_rates(self, c: int) -> tuple[Rows, Rows]:
-        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: what is differentiated, and what is not."""
+        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: the term to differentiate, and the others."""
         direction_rate = self._direction_rate(c)
         turned = _crossed(self._curvature, direction_rate)
         if c >= 3:

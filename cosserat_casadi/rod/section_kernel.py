@@ -17,7 +17,7 @@ from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 
 RATES = ("velocity", "angular_velocity", "acceleration", "angular_acceleration")
-"""What a kernel may know of the motion of its section: those of its centre in m/s and m/s², the angular in rad."""
+"""Rates of its section that a kernel may depend on: of the centre in m/s and m/s², angular ones in rad/s and rad/s²."""
 
 ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "parameters", "data"]
 
@@ -76,7 +76,7 @@ class SectionKernel:
 
     @cached_property
     def energy(self) -> ca.Function | None:
-        """Energy, J on one section, J/m along a rod; None where there is none."""
+        """Energy, J on one section, J/m along a rod; None where the wrench has no energy."""
         if self.world_energy is None:
             return None
         symbols = self._symbols()

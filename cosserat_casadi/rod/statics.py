@@ -31,7 +31,7 @@ from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.pose_load import LoadedSections
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Statics:
 
     @cached_property
     def wrenches(self) -> list[Wrench]:
-        """All wrenches; those that depend on poses as dead ones, with the values that they have at this shape."""
+        """All wrenches; a wrench that depends on poses as a dead one, with its value at this shape."""
         frozen = [load.frozen for load in self.pose_loads]
         return self.fixed_wrenches + frozen
 
@@ -183,7 +183,7 @@ class Statics:
     def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
         rod = self.shape.rod
         grid = rod.grid
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             # δr of the node is this row of S times the variations of the tangents.
             row = grid.integration_matrix[grid.node_at(wrench.at)]
             return self._resultant(wrench, force) @ ca.DM(row).T
@@ -200,7 +200,7 @@ class Statics:
         return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
 
     def _profile_covector(self, profile: Numbers) -> Matrix:
-        """What a unit of a profile adds to n̂, 1×M, m: linear in the profile, and in the rates of moved elements."""
+        """Force n̂ of a unit of a profile, 1×M, m: linear in the profile, and in the rates of moved elements."""
         rod = self.shape.rod
         grid = rod.grid
         rates = grid.rates
@@ -216,7 +216,7 @@ class Statics:
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
         grid = self.shape.rod.grid
-        if isinstance(wrench, PointWrench):
+        if isinstance(wrench, WrenchAt):
             node = grid.node_at(wrench.at)
             # The couple stands at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
@@ -242,7 +242,7 @@ class Statics:
             vector = part(wrench)
             if vector is None:
                 continue
-            if isinstance(wrench, PointWrench):
+            if isinstance(wrench, WrenchAt):
                 # The node at the tip side of a break does not carry what acts on the break.
                 loaded = grid.node_at(wrench.at)
                 before = (np.arange(grid.size) <= loaded).astype(float)

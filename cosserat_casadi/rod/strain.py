@@ -6,9 +6,9 @@ A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/
 (ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
 its inverse. An element whose ends are elsewhere than in the grid is drawn out in the same way, by its own rate.
 
-The coordinates q are without unit. Φ carries a strain scale of its own for every component, √(EI/(ℓ² H)), so that
-the stiffness matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8
-is as well conditioned as one with 1e2.
+The coordinates q are without unit. Φ carries one strain scale for each component, √(EI/(ℓ² H)), so that the stiffness
+matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8 is as well
+conditioned as one with 1e2.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
-from cosserat_casadi.rod.properties import Field, RodProperties
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_matrix import section_matrix
 
 Array = npt.NDArray[np.float64]
@@ -60,7 +60,7 @@ Ratio: TypeAlias = Matrix | None
 
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
-    """What is per length of the rod, per reference length: nothing is added where the length is fixed."""
+    """A density per length of the rod as one per reference length; the same where the length of the rod is fixed."""
     if ratio is None:
         return value
     return value * ratio
@@ -73,7 +73,7 @@ class DiscreteRod:
     Attributes:
         properties: what the rod is made of.
         discretisation: polynomials and grid.
-        ends: abscissae of the element ends, numbers or expressions; None where they are those of the discretisation.
+        ends: abscissae of the element ends, numbers or expressions; None for the ends of the discretisation.
     """
 
     properties: RodProperties
@@ -205,7 +205,7 @@ class DiscreteRod:
 
     @cached_property
     def reference_lengths(self) -> Array:
-        """What each node stands for in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
+        """Length of each node in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
         return np.asarray(self.length * self.grid.weights)
 
     @cached_property
@@ -297,8 +297,12 @@ class DiscreteRod:
     @cached_property
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
+        X, element, *_ = self._taylor_samples
+        samples = np.zeros((len(X), self.size))
+        for c in self.angular:
+            samples[:, self.columns[c]] = self.shape_functions(c, X, element)
         orders = []
-        for order, per_interval in enumerate(self._taylor(self._sampled_modes)):
+        for order, per_interval in enumerate(self._taylor(samples)):
             matrices = {}
             for c in self.angular:
                 # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
@@ -321,7 +325,9 @@ class DiscreteRod:
             return np.concatenate([taylor[:, axes].T for taylor in self.intrinsic_taylor])
         # The turn is linear in the Legendre coefficients.
         highest = max(map(len, curvatures))
-        turns = self._taylor(lambda X, element: self._on_rod(lambda at: legendre_table(highest, at), X, element))
+        X, element, *_ = self._taylor_samples
+        polynomials = legendre_table(highest, self.grid.on_rod(X, element))
+        turns = self._taylor(self._per_coordinate(polynomials, element))
         rows = []
         for order, turn in enumerate(turns):
             for axis in axes:
@@ -335,11 +341,12 @@ class DiscreteRod:
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
         """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
-        return self._taylor(lambda X, element: self._on_rod(self.properties.intrinsic_curvature, X, element))
+        X, element, *_ = self._taylor_samples
+        curvature = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
+        return self._taylor(self._per_coordinate(curvature, element))
 
-    def _on_rod(self, field: Field, X: Array, element: Indices) -> Array:
-        """A field per length of the rod, per length of the grid's coordinate at places of it; all are known."""
-        values = field(self.grid.on_rod(X, element))
+    def _per_coordinate(self, values: Numbers, element: Indices) -> Array:
+        """Values per length of the rod, at places in elements, as values per length of the grid's coordinate."""
         return known(each_times(values, self.grid.rates_in(element)))
 
     def _moved_intrinsic_turn(self) -> Matrix:
@@ -381,7 +388,8 @@ class DiscreteRod:
             return polynomials.reshape(len(X), -1)
 
         to_samples = np.kron(np.eye(self.grid.elements), to_coefficients)
-        return [without_rounding(turn @ to_samples) for turn in self._taylor(local_polynomials)]
+        X, element, *_ = self._taylor_samples
+        return [without_rounding(turn @ to_samples) for turn in self._taylor(local_polynomials(X, element))]
 
     @cached_property
     def taylor_count(self) -> int:
@@ -390,16 +398,9 @@ class DiscreteRod:
             return 1
         return magnus.coefficient_count(self.magnus_order)
 
-    def _sampled_modes(self, X: Array, element: Indices) -> Array:
-        samples = np.zeros((len(X), self.size))
-        for c in self.angular:
-            samples[:, self.columns[c]] = self.shape_functions(c, X, element)
-        return samples
-
-    def _taylor(self, field: Callable[[Array, Indices], Array]) -> list[Array]:
-        """Taylor coefficients over every interval of ℓ h times a field sampled at Gauss points."""
-        X, element, lengths, to_taylor = self._taylor_samples
-        samples = field(X, element)
+    def _taylor(self, samples: Array) -> list[Array]:
+        """Taylor coefficients over every interval of ℓ h times a field, from its samples at the Gauss points."""
+        _, _, lengths, to_taylor = self._taylor_samples
         samples = samples.reshape(len(lengths), -1, samples.shape[1])
         scaled = samples * lengths[:, None, None]
         return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]

@@ -114,7 +114,7 @@ class StrainDensityOnRod(Lossless):
 
     @property
     def _reference_lengths(self) -> FloatArray:
-        """What each node of the span stands for in sums of what is per reference length, ℓ w, shape (k,), m."""
+        """Reference length of each node of the span, the weight of densities per such length, ℓ w, (k,), m."""
         return self.shape.rod.reference_lengths[self.quantity.nodes]
 
     @property

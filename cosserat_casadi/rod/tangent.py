@@ -16,9 +16,9 @@ varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: its t
 as δθᵀ ĉ δθ. For wrenches at points such a difference is cheaper than the other triangle; where wrenches are spread, or
 columns are formed one by one, all entries are formed.
 
-**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. What they change by passes down
-the rod as they themselves do, and is added to the variation of the moments before the intervals work on it: a column of
-the Jacobian is formed from the tip to the base, and no two columns meet in a product.
+**Wrenches that follow.** They turn with their sections, δf = δθ × f and δc = δθ × c. These changes pass down the rod as
+the wrenches do, and are added to the variation of the moments before the intervals work on it: a column of the Jacobian
+is formed from the tip to the base, and no two columns meet in a product.
 
 **What else varies.** Loads that depend on poses vary by the derivative of their kernel, efforts by the curvature of the
 quantity that they work on. Only what a scene's loads need is formed.
@@ -32,7 +32,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import (
+from cosserat_casadi.maths.block_operators import (
     block_diagonal,
     cumulative_sum,
     hat_operator,
@@ -50,12 +50,12 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.turned_wrenches import TurnedWrenches
-from cosserat_casadi.rod.wrenches import PointWrench
+from cosserat_casadi.rod.wrenches import WrenchAt
 
 
 @dataclass(frozen=True)
 class Columns:
-    """What the Jacobian has a column of for each angular coordinate, and what follows from the turns of that one alone.
+    """Columns of the Jacobian for the angular coordinates, with the variations that follow from the turns of one alone.
 
     Attributes:
         section_rotation: :attr:`Tangent.section_rotation`.
@@ -77,8 +77,8 @@ class Tangent:
     Attributes:
         igm: the rod's balance.
         in_loops: whether it is written for loops: there sums and differences of mirrored rows cost more than they save.
-        turns: turns of the intervals by coordinate, (size·intervals)×k, that take the place of those of the angular
-            coordinates: :attr:`columns` are those of these turns.
+        turns: turns of the intervals by coordinate, (size·intervals)×k, in place of the turns by the angular
+            coordinates; :attr:`columns` then has one column for each of these turns.
         given: columns of all angular coordinates that are known already.
     """
 
@@ -122,12 +122,13 @@ class Tangent:
         """Columns of the turns, or of all angular coordinates, where moments pass."""
         if self.given is not None:
             return self.given
+        section_rotation = self.section_rotation
         linear = {component: self._linear_rows(component) for component in self.rod.linear}
         following = {}
         force = self._turned.force
         if force is not None:
             following = {component: self._following_rows(component, force) for component in self.rod.linear}
-        return Columns(self.section_rotation, self._angular_product, linear, following)
+        return Columns(section_rotation, self._angular_product, linear, following)
 
     def under(self, load: LoadedSections) -> Tangent:
         """The same variations of the same shape where one load that depends on poses acts alone."""
@@ -140,7 +141,7 @@ class Tangent:
 
     @cached_property
     def _turns(self) -> Matrix:
-        """Derivative of the stacked turns with respect to what there are columns of."""
+        """Derivative of the stacked turns with respect to the coordinates of the columns."""
         if self.turns is not None:
             return self.turns
         return self.turn_matrix.unfolded
@@ -297,7 +298,7 @@ class Tangent:
         return ca.horzcat(angular, linear)
 
     def _wrenches(self) -> Matrix:
-        """What wrenches add, taken as dead or following ones, n×n; linear strains do not meet each other."""
+        """Stiffness of the wrenches, taken as dead or following ones, n×n; zero between two linear strains."""
         if not self.moments_pass:
             return ca.DM(self.rod.size, self.rod.size)
         # Sections do not turn with linear strains, and neither do the forces that follow them.
@@ -328,7 +329,7 @@ class Tangent:
 
     @property
     def _have_potential(self) -> bool:
-        """Whether all wrenches have a potential once those that depend on poses are taken as dead ones."""
+        """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
         for wrench in self.igm.statics.wrenches:
             if wrench.follower and wrench.force is not None:
                 return False
@@ -341,7 +342,7 @@ class Tangent:
         """Whether points alone carry wrenches without a potential."""
         for wrench in self.igm.statics.wrenches:
             follows = wrench.follower and wrench.force is not None
-            if (follows or wrench.moment is not None) and not isinstance(wrench, PointWrench):
+            if (follows or wrench.moment is not None) and not isinstance(wrench, WrenchAt):
                 return False
         return True
 
@@ -355,7 +356,7 @@ class Tangent:
                 commutator = self.rotation.T @ (hat_operator(couple) @ self.rotation)
                 difference = difference + (commutator if follower else -commutator)
         for wrench in statics.wrenches:
-            if isinstance(wrench, PointWrench) and wrench.follower and wrench.force is not None:
+            if isinstance(wrench, WrenchAt) and wrench.follower and wrench.force is not None:
                 node = self.rod.grid.node_at(wrench.at)
                 moved = self.position(node)[:, : self.angular_size]
                 turned = self.rotation_of(node)[:, : self.angular_size]
@@ -425,7 +426,7 @@ class Tangent:
         return self._work_on(component, cross(self.shape.directors[component - 3], covector), self.rotation)
 
     def _following_rows(self, component: int, force: Matrix) -> Matrix:
-        """What forces that follow, which vary by δn̂, add to these rows: −ℓ Φᵀ d·δn̂."""
+        """Rows of following forces, which vary by δn̂: −ℓ Φᵀ d·δn̂."""
         return self._work_on(component, self.shape.directors[component - 3], force)
 
     def _work_on(self, component: int, vectors: Matrix, variation: Matrix) -> Matrix:
@@ -436,7 +437,7 @@ class Tangent:
         return per_coordinate.T @ work
 
     def _pose_stiffness(self) -> Matrix | None:
-        """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
+        """Stiffness of loads that depend on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = []
         for load in self.igm.statics.pose_loads:
             motion = self.motion(load)

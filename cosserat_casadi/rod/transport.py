@@ -14,7 +14,7 @@ from functools import cache, cached_property, lru_cache
 import casadi as ca
 
 from cosserat_casadi.maths import magnus
-from cosserat_casadi.maths.blocks import unstack
+from cosserat_casadi.maths.block_operators import unstack
 from cosserat_casadi.maths.numbers import as_matrix, column, each_times
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
@@ -52,15 +52,32 @@ class IntervalKernels:
         return len(self.axes) * self.count
 
     @cached_property
+    def turn(self) -> ca.SX:
+        """The symbol of ``turn``, which all kernels share."""
+        return ca.SX.sym("turn", self.size)
+
+    @cached_property
+    def rotation_vector(self) -> ca.SX:
+        """Rotation vector Ω of :attr:`turn`, 3×1."""
+        if not self.axes:
+            return ca.SX(3, 1)
+        alphas = []
+        for part in ca.vertsplit(self.turn, len(self.axes)):
+            alpha = ca.SX(3, 1)
+            for axis, entry in zip(self.axes, ca.vertsplit(part), strict=True):
+                alpha[axis] = entry
+            alphas.append(alpha)
+        return magnus.rotation_increment(alphas)
+
+    @cached_property
     def increment(self) -> ca.Function:
         """The map turn ↦ (quaternion, omega, factors): increment, its Ω, and the factors of its derivatives, 2×1."""
-        turn = ca.SX.sym("turn", self.size)
-        omega = self.rotation_vector(turn)
+        omega = self.rotation_vector
         made = magnus.increment(omega)
         factors = ca.vertcat(made.half_sine, made.cubic)
         outputs = ca.cse([made.quaternion, ca.sparsify(omega), factors])
         names = ["quaternion", "omega", "factors"]
-        return ca.Function("increment", [turn], outputs, ["turn"], names, KEPT)
+        return ca.Function("increment", [self.turn], outputs, ["turn"], names, KEPT)
 
     @cached_property
     def rotation_pattern(self) -> ca.Sparsity:
@@ -78,8 +95,8 @@ class IntervalKernels:
         ``omega`` and ``factors`` are those of :attr:`increment`, ``rotation`` is the matrix R of the section at which
         the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
         """
-        a = self.symbols()
-        omega = self.rotation_vector(a.turn)
+        a = self.symbols
+        omega = self.rotation_vector
         moment = a.rotation.T @ a.moment
         pulled = a.increment.pulled(moment)
         # Reverse mode: (∂Ω/∂turn)ᵀ pulled.
@@ -94,8 +111,8 @@ class IntervalKernels:
         the moment fixed, by Aᵀ V A + H: V of :meth:`magnus.Increment.stiffness` in the base frame, 3×3, and H, the
         second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
-        a = self.symbols()
-        omega = self.rotation_vector(a.turn)
+        a = self.symbols
+        omega = self.rotation_vector
         rates = ca.jacobian(omega, a.turn)
         turning = (a.rotation @ a.increment.tangent) @ rates
         # V is that of the increment seen from the base: Ω turned by R.
@@ -110,28 +127,17 @@ class IntervalKernels:
         outputs = [ca.sparsify(output) for output in ca.cse([turning, stiffness, second])]
         return ca.Function("variation", a.listed, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
 
+    @cached_property
     def symbols(self) -> IntervalSymbols:
-        """New symbols of the arguments."""
+        """Symbols of the arguments of :attr:`pull` and :attr:`variation`."""
         omega_pattern = self.increment.sparsity_out(1)
         return IntervalSymbols(
-            turn=ca.SX.sym("turn", self.size),
+            turn=self.turn,
             omega=ca.SX.sym("omega", omega_pattern),
             factors=ca.SX.sym("factors", 2),
             rotation=ca.SX.sym("rotation", self.rotation_pattern),
             moment=ca.SX.sym("moment", 3),
         )
-
-    def rotation_vector(self, turn: ca.SX) -> ca.SX:
-        """Rotation vector Ω of a turn, 3×1."""
-        if not self.axes:
-            return ca.SX(3, 1)
-        alphas = []
-        for part in ca.vertsplit(turn, len(self.axes)):
-            alpha = ca.SX(3, 1)
-            for axis, entry in zip(self.axes, ca.vertsplit(part), strict=True):
-                alpha[axis] = entry
-            alphas.append(alpha)
-        return magnus.rotation_increment(alphas)
 
 
 @dataclass(frozen=True)
@@ -171,7 +177,7 @@ def interval_kernels(rod: DiscreteRod) -> IntervalKernels:
 
 @cache
 def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
-    """One set of functions for all models: what they share is generated once."""
+    """The functions that all models share, so that they are generated once."""
     return IntervalKernels(axes, count)
 
 

@@ -1,6 +1,6 @@
 """How wrenches vary that follow their sections, as these turn: docs/theory.md section 7.
 
-Fields of M nodes are stacked component by component, as in maths/blocks.py, with one column for each variation.
+Fields of M nodes are stacked component by component as in maths/block_operators.py, one column for each variation.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator
 from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class TurnedWrenches:
 
     @property
     def moments(self) -> list[Matrix]:
-        """What the moments t × n̂ + ĉ on the nodes change by, base frame, 3M×k each, N m."""
+        """Derivatives of the moments t × n̂ + ĉ at the nodes with the turns, base frame, 3M×k each, N m."""
         moments = []
         if self.force is not None:
             moments.append(hat_operator(self.statics.shape.tangent) @ self.force)
@@ -58,7 +58,7 @@ class TurnedWrenches:
             return self._force_per_length(wrench, force)
         return self._force_at_point(wrench, force)
 
-    def _force_at_point(self, wrench: PointWrench, force: Matrix) -> Matrix:
+    def _force_at_point(self, wrench: WrenchAt, force: Matrix) -> Matrix:
         shape = self.statics.shape
         grid = shape.rod.grid
         node = grid.node_at(wrench.at)

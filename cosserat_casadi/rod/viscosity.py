@@ -12,7 +12,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.motion import StrainRates
+from cosserat_casadi.rod.rod_motion import StrainRates
 
 
 @dataclass(frozen=True)

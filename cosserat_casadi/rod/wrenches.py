@@ -1,4 +1,4 @@
-"""What acts on a rod: the records in which every effect speaks to the mechanics.
+"""Wrenches on a rod: the records in which every effect speaks to the mechanics.
 
 Coordinates are those of the rod's base frame for a dead wrench and those of the loaded section for a follower.
 A part that does not exist is None and costs nothing.
@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, Scalar
-from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.motion import RodMotion
+from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
 
 @dataclass(frozen=True)
-class PointWrench:
+class WrenchAt:
     """Force and moment on one section.
 
     Attributes:
@@ -56,7 +56,7 @@ class LineWrench:
         _check_vectors(self.force, self.moment, None if self.profiles is None else self.profiles.shape[0])
 
 
-Wrench = PointWrench | LineWrench
+Wrench = WrenchAt | LineWrench
 """A wrench whose direction does not depend on where its section is."""
 
 
@@ -72,7 +72,7 @@ class PoseWrench:
             body that bears the wrench, 3×1, m.
         base_rotation: rotation from the base into these axes, 3×3.
         parameters: what the kernel depends on at run time, p×1.
-        data: what it depends on at its sections, shape (d, k).
+        data: numbers of the load at its sections, such as values of profiles, shape (d, k).
         scale: factor on force, moment and energy.
         motion: of the rod; None at rest, and for a kernel that does not depend on rates.
         growth: power of the load factor by which it grows on the way from the unloaded scene.

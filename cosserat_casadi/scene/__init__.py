@@ -5,8 +5,8 @@ A new kind is a record that derives from the one of its family, and a class of t
 """
 
 from cosserat_casadi.scene.accuracy import Accuracy, RodDiscretisation
-from cosserat_casadi.scene.actuators import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
-from cosserat_casadi.scene.constraints import (
+from cosserat_casadi.scene.actuator_records import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
+from cosserat_casadi.scene.constraint_records import (
     JOINTS,
     SUPPORTS,
     Body,
@@ -21,14 +21,14 @@ from cosserat_casadi.scene.constraints import (
     Support,
     SupportRecord,
 )
-from cosserat_casadi.scene.exact_contact import with_exact_contact
+from cosserat_casadi.scene.exact_contact_scene import with_exact_contact
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.flow import Flow
-from cosserat_casadi.scene.foundation import Foundation
-from cosserat_casadi.scene.input_ranges import Pairs
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.flow_record import Flow
+from cosserat_casadi.scene.foundation_record import Foundation
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.input_range_records import Pairs
 from cosserat_casadi.scene.load_kinds import Load
-from cosserat_casadi.scene.loads import (
+from cosserat_casadi.scene.load_records import (
     LOADS,
     BodyWrench,
     DistributedWrench,
@@ -37,14 +37,14 @@ from cosserat_casadi.scene.loads import (
     PointWrench,
     TipWrench,
 )
-from cosserat_casadi.scene.magnet import Dipole, Magnet
+from cosserat_casadi.scene.magnet_record import Dipole, Magnet
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS, InputColumn, MeasurementRecord
 from cosserat_casadi.scene.measurements import Measurement
-from cosserat_casadi.scene.motions import InputMotion
-from cosserat_casadi.scene.obstacles import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
-from cosserat_casadi.scene.parameters import NamedNumbers
+from cosserat_casadi.scene.motion_records import InputMotion
+from cosserat_casadi.scene.obstacle_records import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
+from cosserat_casadi.scene.parameter_records import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.scene.rods import (
+from cosserat_casadi.scene.rod_records import (
     Annulus,
     Base,
     Circle,
@@ -58,9 +58,9 @@ from cosserat_casadi.scene.rods import (
 )
 from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.simulation import Simulation
-from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
-from cosserat_casadi.scene.tubes import Tube, TubeSection, TubeStiffness
-from cosserat_casadi.scene.unknowns import Identification, Prior, Unknown
+from cosserat_casadi.scene.target_records import Bound, CurveTarget, PoseTarget, PositionTarget, Target
+from cosserat_casadi.scene.tube_records import Tube, TubeSection, TubeStiffness
+from cosserat_casadi.scene.unknown_records import IdentificationSettings, Prior, Unknown
 
 __all__ = [
     "ACTUATORS",
@@ -92,7 +92,7 @@ __all__ = [
     "FreeInput",
     "Gravity",
     "Helix",
-    "Identification",
+    "IdentificationSettings",
     "InputColumn",
     "InputField",
     "InputMotion",

@@ -1,4 +1,4 @@
-"""How exact a result is to be, or with what it is computed."""
+"""Accuracy of a result, or modes, nodes and rotation to compute it with."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ModesChoice = Annotated[
 
 
 def _ascending(value: str) -> str:
-    """Refuse what is not the name of a column and two numbers in their order."""
+    """Refuse a text that is not the name of a column and two numbers in their order."""
     column, _, ends = value.rpartition("=")
     low, _, high = ends.partition(":")
     lower, upper = finite_number(low), finite_number(high)
@@ -44,7 +44,7 @@ Rotation = Literal["magnus4", "magnus6", "magnus8", "permuted"]
 
 
 class RodDiscretisation(Record):
-    """What a rod is computed with where that differs from the others."""
+    """Modes, nodes and rotation of one rod, where they differ from the others'."""
 
     example: ClassVar[str] = """\
 [accuracy]
@@ -63,7 +63,7 @@ of_rods = [{ rod = "finger", modes = [6, 6, 2], nodes = 14, rotation = "magnus6"
 
 
 class Accuracy(Record):
-    """How exact the result is to be, or with what it is computed."""
+    """Accuracy of the result, or modes, nodes and rotation to compute it with."""
 
     example: ClassVar[str] = """\
 [accuracy]
@@ -97,7 +97,7 @@ shape = true
     )
 
     def of_rod(self, name: str) -> Accuracy | RodDiscretisation:
-        """What fixes modes, nodes and rotation of a rod: its own entry, else what holds for all."""
+        """The record that fixes modes, nodes and rotation of a rod: its entry in ``of_rods``, else that of all."""
         own = [entry for entry in self.of_rods if entry.rod == name]
         return own[0] if own else self
 
@@ -110,8 +110,23 @@ shape = true
             yield Fault(("of_rods",), "stands without modes, nodes and rotation of the others", "give all three")
 
     @property
+    def chosen_ranges(self) -> dict[str, tuple[float, float]]:
+        """Lower and upper end of what modes and nodes were chosen for, by column; empty where nothing says so."""
+        ranges = {}
+        for text in self.chosen_for or ():
+            column, _, ends = text.rpartition("=")
+            low, _, high = ends.partition(":")
+            ranges[column] = (float(low), float(high))
+        return ranges
+
+    @property
+    def fixed_by_hand(self) -> bool:
+        """Whether the scene fixes what it is computed with, and no choice for ranges did."""
+        return self.fixed and self.chosen_for is None
+
+    @property
     def fixed(self) -> bool:
-        """Whether the scene itself chooses what it is computed with, or part of that."""
+        """Whether the scene itself chooses modes, nodes or rotation."""
         if self.modes is not None or self.nodes is not None:
             return True
         return self.rotation is not None

@@ -1,4 +1,4 @@
-"""What is wrong with a scene, as data, and how its tables are looked at before they are records."""
+"""Faults of a scene, as data, and the look at its tables before they are records."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Fault(NamedTuple):
 
     Attributes:
         path: keys and indices from the record that is checked.
-        problem: what is wrong.
+        problem: the fault in words.
         remedy: what to do about it; empty when the problem says it already.
     """
 
@@ -77,7 +77,7 @@ class SceneTables:
         return self._given.get(key)
 
     def _tables(self, key: str) -> list[tuple[int, Table]]:
-        """The tables of a list with their indices, without what is not a table."""
+        """The tables of a list with their indices; entries that are no tables are left out."""
         entries = self._given.get(key)
         if not isinstance(entries, list):
             return []
@@ -159,7 +159,7 @@ def listing(names: Iterable[str], what: str) -> str:
 
 
 def frame_faults(given: Table) -> Iterator[Fault]:
-    """What is wrong with a table that names a section of a rod, or a body."""
+    """Faults of a table that names a section of a rod, or a body."""
     if "rod" in given and "body" in given:
         yield Fault(("body",), "stands beside rod", "give one of the two")
     elif "rod" not in given and "body" not in given:

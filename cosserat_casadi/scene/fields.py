@@ -1,4 +1,4 @@
-"""What the field of a record says of its numbers: their unit, and whether they vary along a rod."""
+"""Annotations of the fields of records: the unit of the numbers, and whether they vary along a rod."""
 
 from __future__ import annotations
 

@@ -1,15 +1,16 @@
-"""The rules of inputs: what a scene lists exists and can be free, what it bounds is free."""
+"""The rules of inputs: names that a scene lists exist and can be free, names that it bounds are free."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rod_records import Rod
+from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
@@ -39,7 +40,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 
 
 def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
-    """A bound is of what is not free, is the second of an input, or has another number of entries."""
+    """Faults of bounds: of inputs that are not free, second ones of an input, of another number of entries."""
     counts = entry_counts(scene)
     first: dict[str, int] = {}
     for i, bound in scene.tables("bounds"):
@@ -68,11 +69,12 @@ def _numbers(count: int) -> str:
 
 
 def owners_of(scene: SceneTables) -> Owners:
-    """What may have inputs, by name, with its record where the kind is known."""
+    """Owners of inputs by name, with their records where the kind is known."""
     owners = _causes(scene)
-    for name, (_, table) in scene.named("rods").items():
-        # Inputs of a load or an actuator hide those of a rod of the same name.
-        owners.setdefault(name, (Rod, table))
+    # Inputs of a load or an actuator hide those of a rod or a tube of the same name.
+    for key, record in (("rods", Rod), ("tubes", Tube)):
+        for name, (_, table) in scene.named(key).items():
+            owners.setdefault(name, (record, table))
     return owners
 
 
@@ -142,7 +144,7 @@ def entry_counts(scene: SceneTables) -> dict[str, int | None]:
 
 
 def free_names(scene: SceneTables) -> list[str]:
-    """Names of what the tables leave free at run time: what they list, or else every magnitude."""
+    """Names of inputs that are free at run time: the listed names, or else every magnitude."""
     entries = scene.get("inputs")
     if isinstance(entries, list):
         return [name for name in entries if isinstance(name, str)]
@@ -150,7 +152,7 @@ def free_names(scene: SceneTables) -> list[str]:
 
 
 def requested_fields(scene: SceneTables) -> dict[str, str]:
-    """Inputs that an identification has besides those: what columns set and what is unknown, each with who asks."""
+    """Further inputs of an identification: set by columns, or unknown, each with the table that asks for it."""
     owners = owners_of(scene)
     requests: dict[str, str] = {}
     asked: list[tuple[Any, str]] = []
@@ -173,8 +175,9 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the magnitudes that actuators and loads give: what is free where the scene lists no inputs."""
-    return [
+    """Names of the inputs that are free where the scene lists none: of tubes, actuators and loads."""
+    of_tubes = [f"{name}.{field}" for name in scene.named("tubes") for field in Tube.inputs]
+    return of_tubes + [
         f"{name}.{field}"
         for name, (record, table) in _causes(scene).items()
         if record is not None

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from cosserat_casadi.scene.flow import Flow
-from cosserat_casadi.scene.foundation import Foundation
-from cosserat_casadi.scene.loads import LOADS, BodyWrench, DistributedWrench, Gravity, PointWrench, TipWrench
-from cosserat_casadi.scene.magnet import Magnet
+from cosserat_casadi.scene.flow_record import Flow
+from cosserat_casadi.scene.foundation_record import Foundation
+from cosserat_casadi.scene.load_records import LOADS, BodyWrench, DistributedWrench, Gravity, PointWrench, TipWrench
+from cosserat_casadi.scene.magnet_record import Magnet
 
 # The type checker knows the kinds that ship; a scene may hold any that is registered.
 Load = Annotated[

@@ -1,7 +1,7 @@
-"""What the tables of measurements have in common: a file, its columns, and what each row was measured under.
+"""Common part of the tables of measurements: a file, its columns, and the conditions of each row.
 
 They do not act on the rods: a scene with measurements is solved like one without. A measured quantity is one record in
-scene/measurements.py, and one class in identification/quantities.py that says how far the model is from it.
+scene/measurements.py, and one class in identification/measured_quantities.py that says how far the model is from it.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ MeasuredMode = Annotated[Annotated[str, TEXT] | Annotated[Annotated[Whole, Field
 """The number of a mode, or the column that has it."""
 
 Cell = Annotated[Annotated[str, TEXT] | Annotated[Number, NUMBER], BY_TYPE]
-"""What a cell of a table holds."""
+"""A cell of a table: text, or a number."""
 
 
 class MeasurementRecord(Entry):
@@ -92,7 +92,7 @@ class MeasurementRecord(Entry):
 
     Attributes:
         entries: what each of the columns holds.
-        differences: units of the numbers by which model and measurement differ: those that sigma is for.
+        differences: units of the differences between model and measurement, in which sigma is.
         of_sensor: keys whose numbers say where the sensor is: they may be unknown.
     """
 
@@ -138,11 +138,11 @@ class MeasurementRecord(Entry):
 
     @property
     def title(self) -> str:
-        """What results call it, where it has no other of that name."""
+        """Name in results, where the measurement has no name in the scene."""
         return self.name or f"{PurePath(self.file).stem} {self.quantity}"
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """What its table is read with is no parameter."""
+        """Numbers that the table is read with are no parameters."""
         if key in self.of_sensor:
             return super().parameter_refusal(key)
         known = " or ".join(self.of_sensor) or "none of its numbers"
@@ -168,7 +168,7 @@ class MeasurementRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """What the columns set are inputs of the scene."""
+        """Faults of names that columns set and that are no inputs of the scene."""
         inputs = given.get("inputs")
         if not isinstance(inputs, Mapping):
             return
@@ -193,7 +193,7 @@ class MovingMeasurement(MeasurementRecord):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """What is measured over time is measured in a motion, whose inputs no column sets."""
+        """Faults of measurements over time: they are made in a motion, whose inputs no column sets."""
         yield from super().scene_conflicts(given, scene)
         if "time" not in given:
             return
@@ -212,7 +212,7 @@ class MovingMeasurement(MeasurementRecord):
 
 
 def table_that_moves(name: Any, scene: SceneTables) -> int | None:
-    """Number of the motion whose table stands for an input, or for a part of it; None where there is none."""
+    """Index of the motion whose table stands for an input, or for a part of it; None without such a motion."""
     for i, motion in scene.tables("motions"):
         moved = motion.get("input")
         is_wave = "amplitude" in motion

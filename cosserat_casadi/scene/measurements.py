@@ -1,4 +1,4 @@
-"""What was measured: tables of positions, tensions, wrenches, frequencies and others, for `cosserat identify`."""
+"""Measurements: tables of positions, tensions, wrenches, frequencies and others, for `cosserat identify`."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ WANTED = {
     "model_type": "a table",
     "string_pattern_mismatch": "a letter, then letters, digits and underscores",
 }
-"""What a value must be, by pydantic's type of error."""
+"""Kind of the value that a key wants, by pydantic's type of error."""
 
 BOUNDS = {
     "greater_than": (">", "gt"),
@@ -46,7 +46,7 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
     Args:
         error: what pydantic raised.
         tables: the scene, whose order is that of the problems.
-        applied: overrides, the last one first: what they brought in is said of them.
+        applied: overrides, the last one first: a fault in a value that an override set is told of the override.
     """
     errors = error.errors(include_url=False)
     faults = [_fault(details) for details in errors]
@@ -140,7 +140,7 @@ def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) 
 
 
 def _description(path: Path, record: type[Record]) -> str:
-    """What the schema says of the key that a path ends in; nothing where the record does not have it."""
+    """Description of a key in the schema; empty where the record does not have the key."""
     keys = keys_of(record)
     names = [part for part in path if isinstance(part, str)]
     if not names or names[-1] not in keys:
@@ -164,7 +164,7 @@ class _FileOrder:
         self._orders: dict[int, dict[Any, int]] = {}
 
     def position(self, fault: Fault) -> tuple[int, ...]:
-        """Indices of the keys of a fault, level by level; what is missing stands at the end of its table."""
+        """Indices of the keys of a fault, level by level; a missing key stands at the end of its table."""
         indices: list[int] = []
         container: Any = self.tables
         for part in fault.path:

@@ -10,9 +10,9 @@ import numpy as np
 from cosserat_casadi.maths.splines import least_norm, table_values
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import field_faults, owners_of
-from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.values import numbers_of
 
@@ -24,7 +24,7 @@ DIGITS = 3
 
 
 class _Moving(NamedTuple):
-    """An input that a motion names: what is declared of it, and its owner's record and table."""
+    """An input that a motion names: its declaration, and its owner's record and table."""
 
     declared: InputField
     record: type[Entry]
@@ -33,7 +33,7 @@ class _Moving(NamedTuple):
 
 
 def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
-    """A motion is of what is no input or cannot be free, or its input cannot follow it."""
+    """Faults of motions of names that are no inputs or cannot be free, or of inputs that cannot follow them."""
     motions = scene.tables("motions")
     names = [motion.get("input") for _, motion in motions]
     # Motions of each input that must not be zero, by their places; only where all of its motions are sound.
@@ -69,14 +69,14 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _is_of_unknown_kind(name: str, scene: SceneTables) -> bool:
-    """Whether the owner of an input is there, and its kind is not known: that has a fault of its own."""
+    """Whether the owner of an input is there, and its kind is not known: that is another fault."""
     owner, _, _ = name.partition(".")
     record, table = owners_of(scene).get(owner, (None, {}))
     return record is None and bool(table)
 
 
 def _input_of(name: str, scene: SceneTables) -> _Moving | None:
-    """The input of a name; None where there is none."""
+    """The input of a name; None for a name that is no input."""
     owner, _, field = name.partition(".")
     record, table = owners_of(scene).get(owner, (None, {}))
     if record is None or field not in record.free_fields(table):

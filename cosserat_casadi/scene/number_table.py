@@ -17,7 +17,7 @@ MOST_TOLD = 20
 
 
 SEPARATORS = (";", "\t")
-"""What other programs put between columns; no name of a column has them."""
+"""Separators of columns in tables of other programs; no name of a column has them."""
 
 
 def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Problem]]:
@@ -62,7 +62,7 @@ def repeated(header: list[str]) -> list[str]:
 
 
 def length_faults(where: str, header: list[str], row: list[str]) -> list[Problem]:
-    """What is wrong with the number of cells of a row."""
+    """Problems with the number of cells of a row."""
     if len(row) == len(header):
         return []
     return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
@@ -89,7 +89,7 @@ def shortened(problems: list[Problem], where: str) -> list[Problem]:
 
 
 def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
-    """Put the numbers of a row into an array, and say what is wrong with the others."""
+    """Put the numbers of a row into an array, and return the problems of the other cells."""
     problems = length_faults(where, header, row)
     if problems:
         return problems

@@ -23,7 +23,7 @@ class Assignment:
 
     Attributes:
         key: its left side, as written.
-        leaf: path of what it sets.
+        leaf: path of the value that it sets.
         created: path of the outermost table that exists only because of it; otherwise the leaf.
     """
 
@@ -47,7 +47,7 @@ def apply_overrides(
         known: keys of a scene.
 
     Returns:
-        what was applied, the last one first, and what was refused.
+        the assignments that were applied, the last one first, and problems of the others.
     """
     applied: list[Assignment] = []
     refused: list[Problem] = []
@@ -147,7 +147,7 @@ def _index(container: Any, segment: str) -> Any:
 
 
 def _what_there_is(container: Any) -> str:
-    """What may be set where a key leads to something else; empty where that is no list."""
+    """Names or indices that a list has, for an override that leads to another; empty for a value that is no list."""
     if not isinstance(container, list) or not container:
         return ""
     names = [entry["name"] for entry in container if isinstance(entry, dict) and isinstance(entry.get("name"), str)]

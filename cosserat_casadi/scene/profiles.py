@@ -30,7 +30,7 @@ REMEDY = "give base and tip, or legendre, or powers"
 
 
 class Notation(Enum):
-    """What the numbers of a profile are; the value says it in words."""
+    """Meaning of the numbers of a profile; the value says it in words."""
 
     ENDS = "base and tip"
     LEGENDRE = "Legendre coefficients"

@@ -84,9 +84,9 @@ def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) 
 
 
 def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> list[Path]:
-    """The files that reading a scene reads: its own, and the tables that its motions and measurements name.
+    """The files that reading a scene reads: the scene file, and the tables that its motions and measurements name.
 
-    Of a scene that is refused the tables are those that can be told.
+    Of a scene that is refused, the tables that can be named before the refusal.
 
     Args:
         path: the file.

@@ -1,4 +1,4 @@
-"""What every table of a scene is: a frozen record, all of whose faults come at once.
+"""Base class of all tables of a scene: a frozen record, all of whose faults come at once.
 
 A record either holds what its fields promise or does not exist. The rules between keys and between tables look at what
 the file says, not at validated records, so that their faults come together with those of single values.
@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
 
 RecordType = TypeVar("RecordType", bound="Record")
 
@@ -60,7 +60,7 @@ def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
 
 
 def _as_given(value: Any) -> Any:
-    """Turn records back into the tables that they were read from, without what is not given."""
+    """Turn records back into the tables that they were read from; keys that were left out stay out."""
     # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
     if isinstance(value, BaseModel):
         value = value.model_dump(by_alias=True, exclude_unset=True)
@@ -117,7 +117,7 @@ class Record(BaseModel):
 
 
 def sound(record: type[RecordType], table: Table) -> RecordType | None:
-    """The record of a table; None where the table has faults of its own."""
+    """The record of a table; None where the table has faults."""
     try:
         return record.model_validate(table)
     except ValidationError:
@@ -160,7 +160,7 @@ class Entry(Record):
         yield from ()
 
     def input_upper(self, field: str) -> float:
-        """Largest value that each number of one of the free fields can have by what it is; inf where there is none."""
+        """Largest value that physics allows each number of a free field; inf where there is none."""
         return math.inf
 
 

@@ -10,24 +10,24 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from cosserat_casadi.scene.actuators import ACTUATORS
-from cosserat_casadi.scene.assembly import bases_on_nothing, bodies_that_nobody_holds, tips_held_twice
-from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, Body
+from cosserat_casadi.scene.actuator_records import ACTUATORS
+from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, tips_held_twice
+from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.input_ranges import ranges_of_no_input
+from cosserat_casadi.scene.input_range_records import ranges_of_no_input
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
-from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS, overlap
+from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
-from cosserat_casadi.scene.motions import InputMotion
-from cosserat_casadi.scene.obstacles import OBSTACLES
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults, tie_faults
+from cosserat_casadi.scene.obstacle_records import OBSTACLES
+from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, holders_of, parameter_faults, tie_faults
 from cosserat_casadi.scene.records import Entry, sound
-from cosserat_casadi.scene.rods import Rod, admitted_strains
-from cosserat_casadi.scene.targets import TARGETS, Bound
-from cosserat_casadi.scene.tubes import Tube, tube_faults
-from cosserat_casadi.scene.unknowns import Unknown
+from cosserat_casadi.scene.rod_records import Rod, admitted_strains
+from cosserat_casadi.scene.target_records import TARGETS, Bound
+from cosserat_casadi.scene.tube_records import Tube, tube_faults
+from cosserat_casadi.scene.unknown_records import Unknown
 
 Rule = Callable[[SceneTables], Iterator[Fault]]
 
@@ -46,7 +46,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "measurements": MEASUREMENTS,
     "unknowns": Unknown,
 }
-"""What the lists of a scene hold."""
+"""Records or families of the lists of a scene."""
 
 OF_ONE_COLUMN = ("name", "columns", "inputs", "scale", "shift", "sigma", "held_out")
 """Keys of a measurement that do not say which number of which rows it is."""
@@ -160,7 +160,7 @@ def own_rules(scene: SceneTables) -> Iterator[Fault]:
 
 
 def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
-    """Gravity acts on a rod whose mass is not given."""
+    """Faults of rods without mass on which gravity acts."""
     load_on_all, load_on_rod = _gravity(scene)
     for i, rod in scene.tables("rods"):
         # One fault a rod, however many loads weigh it.
@@ -180,7 +180,7 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
-    """The load that weighs every rod, if any, and those that weigh the rods they name."""
+    """The load that weighs every rod, if any, and the loads that weigh only rods that they name."""
     load_on_all: str | None = None
     load_on_rod: dict[str, str] = {}
     for i, load in scene.tables("loads"):
@@ -210,7 +210,7 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
 
 
 def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """What single rods are computed with is of rods of the scene, once each, with one number for each strain."""
+    """Faults of ``of_rods``: entries are of rods of the scene, once each, with one number for each strain."""
     accuracy = scene.get("accuracy")
     if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("of_rods"), list):
         return

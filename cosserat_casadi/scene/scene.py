@@ -1,4 +1,4 @@
-"""The scene: rods, what acts on them, and what is asked of them."""
+"""The scene: rods, loads and constraints on them, and the questions that are asked."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from cosserat_casadi.scene.accuracy import Accuracy
-from cosserat_casadi.scene.actuators import Actuator
-from cosserat_casadi.scene.constraints import Body, Joint, Support
+from cosserat_casadi.scene.actuator_records import Actuator
+from cosserat_casadi.scene.constraint_records import Body, Joint, Support
 from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
-from cosserat_casadi.scene.input_ranges import InputRanges
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.input_range_records import InputRanges
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Measurement
-from cosserat_casadi.scene.motions import InputMotion
-from cosserat_casadi.scene.obstacles import Obstacle
-from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
+from cosserat_casadi.scene.motion_records import InputMotion
+from cosserat_casadi.scene.obstacle_records import Obstacle
+from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
-from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
-from cosserat_casadi.scene.targets import Bound, Target
-from cosserat_casadi.scene.tubes import Tube
-from cosserat_casadi.scene.unknowns import Identification, Unknown
+from cosserat_casadi.scene.target_records import Bound, Target
+from cosserat_casadi.scene.tube_records import Tube
+from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
 from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 
 
@@ -109,8 +109,8 @@ inputs = ["push.force", "cable.tension"]
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
     measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")
     unknowns: tuple[Unknown, ...] = Field((), description="what is to be found; for `cosserat identify` alone")
-    identification: Identification = Field(
-        Identification(), description="how the unknowns are looked for; for `cosserat identify` alone"
+    identification: IdentificationSettings = Field(
+        IdentificationSettings(), description="how the unknowns are looked for; for `cosserat identify` alone"
     )
     estimation: Estimation = Field(
         Estimation(), description="how the unknowns of each row are looked for; for `cosserat estimate` alone"
@@ -124,7 +124,7 @@ inputs = ["push.force", "cable.tension"]
         return (*self.loads, *self.actuators)
 
     def free_inputs(self) -> tuple[FreeInput, ...]:
-        """What stays free at run time: the inputs that the scene lists, or else every magnitude that it gives.
+        """Inputs that stay free at run time: the listed ones, or else every magnitude of the scene.
 
         Returns:
             listed inputs in their order; rotations and translations of tubes, then magnitudes of loads, then of
@@ -162,7 +162,7 @@ inputs = ["push.force", "cable.tension"]
         return tuple(names_in(entry)[0] for entry in self.parameters)
 
     def with_numbers(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
-        """The scene with other numbers for those that one parameter names, and for those that follow them.
+        """The scene with other numbers for one parameter, and for the numbers that follow it.
 
         Args:
             numbers: what to change.
@@ -201,13 +201,13 @@ inputs = ["push.force", "cable.tension"]
         return self.simulation.tolerance
 
     def with_motion_inputs(self) -> Scene:
-        """The scene in which what its motions move is free as well, behind what it leaves free already."""
+        """The scene in which the inputs that its motions move are free as well, behind its free inputs."""
         # Several motions of one input add up.
         moving = dict.fromkeys(motion.input for motion in self.motions)
         return self._with_inputs(moving)
 
     def with_unknowns(self) -> Scene:
-        """The scene in which what its measurements set is an input, and what is unknown an input or a parameter.
+        """The scene in which inputs set by its measurements are free, and unknowns are inputs or parameters.
 
         Where something was measured over time, what moves is an input too.
         """
@@ -235,7 +235,7 @@ inputs = ["push.force", "cable.tension"]
         return any(getattr(measurement, "time", None) is not None for measurement in self.measurements)
 
     def _with_inputs(self, names: Iterable[str]) -> Scene:
-        """The scene in which these inputs are free as well, behind what it leaves free already."""
+        """The scene in which these inputs are free as well, behind its free inputs."""
         free = self.input_names()
         further = [name for name in names if name not in free]
         if not further:
@@ -261,5 +261,5 @@ inputs = ["push.force", "cable.tension"]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Tables that contradict each other, or name what is not in the scene."""
+        """Faults of tables that contradict each other, or that name a thing that is not in the scene."""
         yield from scene_faults(given)

@@ -1,4 +1,4 @@
-"""What of a scene varies along a rod, as its file says it: for whoever checks how a list was read."""
+"""Values that vary along a rod, as the scene file gives them: for whoever checks how a list was read."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def varying_values(scene: Scene, tables: Mapping[str, Any]) -> list[VaryingValue
 
     Args:
         scene: the scene.
-        tables: what it was read from, overrides included.
+        tables: the tables of the scene, overrides included.
     """
     return list(_of_record(scene, tables, ""))
 

@@ -16,8 +16,8 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
+from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.load_checks import check_loads
-from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.scene import parse_scene
 from cosserat_casadi.sweep.outcome_table import ENDINGS
 

@@ -20,8 +20,8 @@ from cosserat_casadi.sweep.row_model import error_numbers
 from cosserat_casadi.sweep.table import Table
 from cosserat_casadi.sweep.variants import Variant, Variants
 from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import TubeModels, solve_inputs
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs
 
 ENERGY = "energy"
 """Column of the energy, J."""

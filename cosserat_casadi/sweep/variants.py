@@ -19,10 +19,10 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.parameters import parameter_layout
-from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path

@@ -19,7 +19,7 @@ from cosserat_casadi.tubes.stages import Staged, composed
 
 @dataclass(frozen=True)
 class Directions:
-    """What a robot changes with, in this order: its m unknowns, its n translations, the numbers of its loads.
+    """Directions in which a robot changes, in this order: its m unknowns, its n translations, the numbers of its loads.
 
     Attributes:
         robot: the tubes.
@@ -100,8 +100,8 @@ def with_changes(function: ca.Function, directions: Directions, fixed: Mapping[i
 def changing_step(staged: Staged, directions: Directions) -> ca.Function:
     """(stacked, lengths, section) ↦ stacked: a step of the state and its changes.
 
-    Stacked are the state, what is carried, and the changes of both column after column. The lengths are that of the
-    step and how it changes with each translation, (1 + n)×1; the section is without what is carried.
+    Stacked are the state, the carried numbers, and the changes of both column after column. The lengths are the length
+    of the step and its derivatives with the translations, (1 + n)×1; the section is without the carried numbers.
     """
     stacked = ca.SX.sym("stacked", staged.width_with_carried * (1 + directions.count))
     before, length = (ca.SX.sym(name, 1 + directions.robot.size) for name in ("before", "length"))
@@ -123,7 +123,7 @@ def _changed(
     lengths: list[ca.SX],
     section: ca.SX,
 ) -> Matrix:
-    """What a stage makes of the state and its changes."""
+    """The state and its changes after a stage."""
     width = staged.width_with_carried
     state = stacked[: staged.width]
     carried = stacked[staged.width : width]

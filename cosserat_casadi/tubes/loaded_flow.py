@@ -33,7 +33,7 @@ TANGENT = ca.DM([0, 0, 1])
 
 @dataclass(frozen=True)
 class LoadedState:
-    """What is integrated along a robot that bears loads.
+    """State that is integrated along a robot that bears loads.
 
     Attributes:
         angles: of the tubes against the frame, n×1, rad.
@@ -70,7 +70,7 @@ class LoadedState:
 
 @dataclass(frozen=True)
 class LoadedSection:
-    """What is the same all along a piece of a robot that bears loads.
+    """Constants of a piece of a robot that bears loads.
 
     Attributes:
         torsion: GJ of every tube, n×1, N m².
@@ -78,7 +78,7 @@ class LoadedSection:
         bending: EI of all tubes that are here, 1×1, N m².
         own: Σ EI κ²/2 of the tubes that are curved here, 1×1, N.
         force: what the force in a section would be at the plate, world axes, 3×1, N.
-        weight: force per length, world axes, 3×1, N/m; None where there is none.
+        weight: force per length, world axes, 3×1, N/m; None in a robot without weight.
         potential: whether the work of the loads counts in the energy.
     """
 

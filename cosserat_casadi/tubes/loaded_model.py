@@ -16,14 +16,14 @@ import numpy as np
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_stages, loaded_step
 from cosserat_casadi.tubes.loaded_tangent import VECTOR, LoadedTangent, tangent_step
-from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad
 from cosserat_casadi.tubes.march import March
-from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.stages import Staged
-from cosserat_casadi.tubes.variations import Variations, of_loaded
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad
+from cosserat_casadi.tubes.tube_model import TubeModel
+from cosserat_casadi.tubes.variations import TipVariations, of_loaded
 
 FRAME = 4
 """Unknowns of the frame at the tip, a quaternion, and its equations."""
@@ -31,7 +31,7 @@ FRAME = 4
 
 @dataclass(frozen=True)
 class _Forces:
-    """What the loads that act farther out add up to, in world axes.
+    """Sums of the loads that act farther out, in world axes.
 
     Attributes:
         force: the force in a section, as it would be at the plate, 3×1, N.
@@ -70,7 +70,7 @@ class LoadedTubeModel(TubeFunctions):
         _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
-    def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the tubes and the tangent turn along the robot; all loads have an energy."""
         stations, along, of_steps = self.variations(x, inputs)
         return of_loaded(self.size, stations.full(), along.full(), of_steps.full())
@@ -160,7 +160,7 @@ class LoadedTubeModel(TubeFunctions):
     def _borne(self, piece: int) -> Iterator[tuple[TubeLoad, ca.MX, int]]:
         """The loads that act at the start of a piece, in their own axes, and the tube that bears them.
 
-        Those that act elsewhere are zero: which tubes end there is found as the function is evaluated.
+        A load that acts elsewhere is zero: which tubes end there is decided as the function is evaluated.
         """
         _, inputs, _ = self._arguments
         for index, rank in enumerate(self._ranks):
@@ -194,7 +194,7 @@ class LoadedTubeModel(TubeFunctions):
         return {number: self._rank(first + index) for index, number in enumerate(self._point_loads)}
 
     def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
-        """What is borne beyond the start of a piece, where tubes may end."""
+        """Forces beyond the start of a piece, where tubes may end and their loads are added."""
         for load, borne, index in self._borne(piece):
             tip, _ = self._ends[index]
             state, forces = _with_load(load, borne, index, tip, state, forces)
@@ -315,7 +315,7 @@ def _with_load(
 
 
 def _in_world(load: TubeLoad, value: ca.MX, tube: int, state: LoadedState) -> Matrix:
-    """A force or moment at a tube's tip in world axes, 3×1, where the load gives it in its own."""
+    """A force or moment at a tube's tip in world axes, 3×1; a follower's value is turned there from the tube's axes."""
     if not load.follower:
         return value
     half = state.angles[tube] / 2

@@ -15,8 +15,8 @@ from cosserat_casadi.maths.magnus import increment
 from cosserat_casadi.maths.rotation import cross, hat, quaternion_conjugate, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.tubes.loaded_flow import TANGENT, LoadedSection, LoadedState, section_of, section_width
-from cosserat_casadi.tubes.loads import TubeLoad
 from cosserat_casadi.tubes.stages import composed
+from cosserat_casadi.tubes.tube_loads import TubeLoad
 
 VECTOR = 3
 

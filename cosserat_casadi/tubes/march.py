@@ -10,7 +10,7 @@ from cosserat_casadi.maths.typing import Matrix
 
 
 class AnyState(Protocol):
-    """What every state along a robot has: angles and torques of the tubes, pose of the frame, energy."""
+    """Common part of all states along a robot: angles and torques of the tubes, pose of the frame, energy."""
 
     @property
     def angles(self) -> Matrix:

@@ -17,15 +17,15 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
-from cosserat_casadi.model.rods import shear_modulus
+from cosserat_casadi.model.scene_rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
 from cosserat_casadi.spelling import closest
-from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad, loads_of
+from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad, loads_of
 
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)
 
 Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
-"""Inputs as they are given: by name, all in order, or None for those of the scene."""
+"""Inputs by name, all in order, or None for the inputs of the scene."""
 
 SLACK = 1e-12
 """By how much, relative to a length, a translation may leave its range: what rounding does to it."""

@@ -32,7 +32,7 @@ class Staged:
 
     @property
     def width_with_carried(self) -> int:
-        """Entries of the state with what is carried behind it."""
+        """Number of entries of the state with the carried numbers behind it."""
         return self.width + self.carried
 
 

@@ -1,8 +1,8 @@
-"""How the configuration of a robot and what is conjugate to it change along the robot with the free tip.
+"""Changes of the configuration of a robot and of its conjugates along the robot, with the free tip.
 
 Without loads the configuration of a section is the angles of its tubes, and conjugate to them are the torques. With
 loads the direction of the tangent belongs to it too, and conjugate to that is the bending moment. The frame may be
-turned about the tangent by any angle, with all angles of tubes turned back; what is said here is the same for all.
+turned about the tangent by any angle, with all angles of tubes turned back, without a change of the equations here.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ DIRECTIONS = 2
 
 
 @dataclass(frozen=True)
-class Variations:
+class TipVariations:
     """Changes with m degrees of freedom of the tip, at k stations from the tip to the plate.
 
     Attributes:
         configuration: of each station with that of the tip, shape (k, m, m), rad: turns of the tubes about the tangent,
             then those of the tangent.
         at_plate: torques of the tubes at the plate, which are conjugate to their turns, shape (n, m), N m.
-        of_steps: the configuration at the end of each step with what is conjugate to it at its start, shape
-            (k − 1, m, m), rad/(N m).
+        of_steps: the configuration at the end of each step by its conjugates at the start, shape (k − 1, m, m), rad/(N
+            m).
     """
 
     configuration: FloatArray
@@ -35,7 +35,7 @@ class Variations:
     of_steps: FloatArray
 
 
-def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> Variations:
+def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> TipVariations:
     """Variations of a robot without loads.
 
     Args:
@@ -45,14 +45,14 @@ def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> Variations:
     """
     # Of each station the changes of angles, then those of torques.
     changes = along.reshape(-1, 2 * size, size)
-    return Variations(
+    return TipVariations(
         configuration=changes[:, :size],
         at_plate=changes[-1, size:],
         of_steps=of_steps.reshape(size, -1, size).transpose(1, 0, 2),
     )
 
 
-def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> Variations:
+def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> TipVariations:
     """Variations of a robot under loads that have an energy.
 
     Args:
@@ -80,11 +80,11 @@ def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: Floa
         conjugate[size:, size:] = frame[:, :DIRECTIONS]
         responses.append(_configuration(size, step @ conjugate, end))
     torques = changes[-1, size : 2 * size]
-    return Variations(np.array(configuration), torques, np.array(responses))
+    return TipVariations(np.array(configuration), torques, np.array(responses))
 
 
 def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatArray:
-    """Changes of the configuration where those of a state are given.
+    """Changes of the configuration, from changes of the state.
 
     Args:
         size: number n of tubes.

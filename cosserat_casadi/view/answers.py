@@ -1,4 +1,4 @@
-"""What goes to and from a page: inputs as it sends them, equilibria as it draws them."""
+"""Data that go to and from a page: inputs as it sends them, equilibria as it draws them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 def stacked_inputs(inputs: Sequence[float | None]) -> FloatArray:
-    """Stacked inputs; JSON has null for what is not a number."""
+    """Stacked inputs; NaN for null, which JSON has in place of a number."""
     return np.array([np.nan if value is None else value for value in inputs], dtype=np.float64)
 
 
@@ -23,7 +23,7 @@ def state_of(found: Solution | CompiledSolution, drawn: FloatArray, *, anew: boo
 
     Args:
         found: how the solve ended, in Python or in C.
-        drawn: what is drawn of it, shape (k,).
+        drawn: drawn parts of the equilibrium, shape (k,).
         anew: whether it was solved from the unloaded scene, because the last equilibrium led nowhere.
     """
     return {
@@ -52,5 +52,5 @@ def accuracy_of(solution: Solution | None) -> dict[str, Any]:
     text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
     if not solution.within_tolerance:
         text += " " + remedy(solution)
-    refines = not solution.within_tolerance and not accuracy.fixed and not solution.model.scene.touches_exactly
+    refines = not solution.within_tolerance and not accuracy.fixed_by_hand and not solution.model.scene.touches_exactly
     return {"within": solution.within_tolerance, "text": text, "refines": refines}

@@ -1,4 +1,4 @@
-"""What a page asks of a scene whose contacts are exact: equilibria that are found anew for every move, in Python."""
+"""Session of a scene whose contacts are exact: equilibria are solved anew for every move, in Python."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.accuracy.ranges import Given
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
-from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.drawn_model import drawn_numbers
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 
 ALONG_LINE = 25
@@ -33,9 +34,11 @@ class ContactSession:
 
     Attributes:
         first: the equilibrium at the scene's own inputs, with its contacts.
+        asked: ranges of the sliders; by default those that modes are chosen for.
     """
 
     first: Solution
+    asked: Given | None = None
     model: Model = field(init=False)
     _present: Solution = field(init=False)
 
@@ -51,7 +54,7 @@ class ContactSession:
         return self.model.inputs.size
 
     def facts(self) -> dict[str, Any]:
-        """Facts of the scene for its page, which offers what is answered here alone."""
+        """Facts of the scene for its page, which offers only the questions that this session answers."""
         began = time.perf_counter()
         self.move(self.model.pack().tolist())
         seconds = time.perf_counter() - began
@@ -60,7 +63,7 @@ class ContactSession:
             "Derivatives, the ring at the tip, vibrations and motions are for scenes without it."
         )
         offered = {"hand": [], "motion": False, "modes": False, "derivatives": False}
-        return {**page_facts(self.first, self.model), **offered, "note": note}
+        return {**page_facts(self.first, self.model, self.asked), **offered, "note": note}
 
     def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs, whose contacts are tried from those of the last one on."""

@@ -1,4 +1,4 @@
-"""What a browser may ask, read from what it sends: whatever the bytes are, the outcome is a question or a refusal."""
+"""Questions of a browser, read from its bytes: whatever the bytes are, the outcome is a question or a refusal."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from typing import Any
 
 POSE_KINDS = ("rod", "body")
-"""What a point that is led may belong to: the tip of a rod, or a body."""
+"""Owners of a point that is led: the tip of a rod, or a body."""
 
 
 class QuestionError(Exception):
-    """What was sent is no question that is answered here."""
+    """The bytes are no question that is answered here."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """What stands in a question, each part checked when it is taken.
+    """Parts of a question, each checked when it is taken.
 
     Attributes:
         parts: of the question, by name.
@@ -42,7 +42,7 @@ class Question:
         return cls(parts)
 
     def inputs(self, count: int) -> list[float | None]:
-        """So many stacked inputs; JSON has null for what is not a number.
+        """So many stacked inputs; None for null, which JSON has in place of a number.
 
         Raises:
             QuestionError: they are missing, or are not so many numbers.

@@ -26,7 +26,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.questions import Question, QuestionError
-from cosserat_casadi.view.session import Session
+from cosserat_casadi.view.view_session import ViewSession
 
 HOST = "127.0.0.1"
 """Nobody else's machine reaches it."""
@@ -43,7 +43,7 @@ PATIENCE = 30.0
 SECRET_BYTES = 16
 """Random bytes in a secret: more than can be tried."""
 
-SCRIPTS = ("server_robot.js", "theatre.js")
+SCRIPTS = ("server_robot.js", "playback.js")
 
 
 def check_port(port: int) -> None:
@@ -69,7 +69,7 @@ class Desk:
         policy: what the page may do, as the header Content-Security-Policy says it.
     """
 
-    session: Session | ContactSession
+    session: ViewSession | ContactSession
     page: bytes = field(init=False)
     policy: str = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
@@ -92,10 +92,10 @@ class Desk:
             QuestionError: there is no such question, or something it needs is missing or wrong.
         """
         session = self.session
-        if name == "motion" and isinstance(session, Session):
+        if name == "motion" and isinstance(session, ViewSession):
             # It may take a minute, in which the robot can be moved: it has a model of its own.
             return _refusable(session.motion)
-        if name == "refined" and isinstance(session, Session):
+        if name == "refined" and isinstance(session, ViewSession):
             # The robot can be moved while modes are chosen: what it is then refined for counts no more.
             inputs = question.inputs(session.input_count)
             with self._lock:
@@ -112,16 +112,16 @@ class Desk:
                 return session.eigenvalues()
             if name == "accuracy":
                 return session.accuracy()
-            if name == "reach" and isinstance(session, Session):
+            if name == "reach" and isinstance(session, ViewSession):
                 pose = question.pose(_pose_names(session))
                 position = question.position()
                 return _refusable(lambda: session.reach(pose, position))
-            if name == "modes" and isinstance(session, Session):
+            if name == "modes" and isinstance(session, ViewSession):
                 return _refusable(session.modes)
         raise QuestionError("the page asks no such question")
 
 
-def _pose_names(session: Session) -> dict[str, list[str]]:
+def _pose_names(session: ViewSession) -> dict[str, list[str]]:
     """Names of what can be led to a point, by kind."""
     scene = session.first.model.scene
     return {"rod": [rod.name for rod in scene.rods], "body": [body.name for body in scene.bodies]}
@@ -135,7 +135,7 @@ def _refusable(answer: Callable[[], dict[str, Any]]) -> dict[str, Any]:
 
 
 def _policy(page: str) -> str:
-    """What a page may do: run the scripts and have the style that stand in it, and ask this server."""
+    """Policy of the page: it runs its own scripts and styles, and asks this server alone."""
     scripts = " ".join(map(_digest, re.findall(r"<script>(.*?)</script>", page, re.DOTALL)))
     styles = " ".join(map(_digest, re.findall(r"<style>(.*?)</style>", page, re.DOTALL)))
     rules = (
@@ -164,7 +164,7 @@ class RobotServer(ThreadingHTTPServer):
         desk: who answers.
     """
 
-    def __init__(self, session: Session | ContactSession, port: int = 0) -> None:
+    def __init__(self, session: ViewSession | ContactSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
         self._secret = secrets.token_urlsafe(SECRET_BYTES)
@@ -175,12 +175,12 @@ class RobotServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """What a browser is to open; it holds the secret."""
+        """Address for a browser to open; it holds the secret."""
         return f"http://{HOST}:{self.server_port}/{self._secret}/"
 
     @property
     def address_for_once(self) -> str:
-        """What leads to the address the first time that it is opened, and nowhere afterwards.
+        """Address that leads to the page the first time that it is opened, and nowhere afterwards.
 
         Arguments of programs, such as a browser's, can be read by all users of a machine.
         """
@@ -199,7 +199,7 @@ class RobotServer(ThreadingHTTPServer):
         return valid
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a thread of its own, or close it where there are too many."""
+        """Serve a connection in a new thread, or close it where there are too many."""
         if not self._free.acquire(blocking=False):
             self.shutdown_request(request)
             return
@@ -223,7 +223,7 @@ class RobotServer(ThreadingHTTPServer):
 
 
 class _Arrival(io.RawIOBase):
-    """What arrives at a socket before a moment; TimeoutError for what is late.
+    """Bytes that arrive at a socket before a moment; TimeoutError for later bytes.
 
     A time limit of the socket begins anew with every byte: whoever sends one now and then would never end.
     """
@@ -241,7 +241,7 @@ class _Arrival(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Fill a buffer with what has arrived."""
+        """Fill a buffer with bytes that have arrived."""
         left = self._end - time.monotonic()
         if left <= 0.0:
             raise TimeoutError
@@ -311,7 +311,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(HTTPStatus.OK, "application/json", _json(answer))
 
     def _name(self) -> str | None:
-        """What stands behind the secret in the path; None where the secret is missing."""
+        """Name behind the secret in the path; None where the secret is missing."""
         secret, slash, name = self.path.removeprefix("/").partition("/")
         return name if slash and self.server.is_secret(secret) else None
 
@@ -332,7 +332,7 @@ class _Handler(BaseHTTPRequestHandler):
         return length
 
     def _is_foreign(self) -> bool:
-        """Refuse a request that a page from elsewhere makes, under a name of its own for this machine."""
+        """Refuse a request that a page from elsewhere makes, under another name for this machine."""
         port = self.server.server_port
         named = self.headers.get("Host", "")
         origin = self.headers.get("Origin", f"http://{named}")
@@ -344,7 +344,8 @@ class _Handler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Refuse a request, and close the connection.
 
-        The sentence is the content: in the line of the status, or in a header, what was sent would stand among headers.
+        The sentence is the content: in the line of the status, or in a header, text of the request would stand among
+            headers.
         """
         status = HTTPStatus(code)
         sentence = message or status.phrase
@@ -369,7 +370,7 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def _json(answer: Any) -> bytes:
-    """An answer as text; JSON has no word for what is not a number, and the page takes null for it."""
+    """An answer as text; JSON has no word for NaN or infinity, and the page takes null for them."""
     try:
         return json.dumps(answer, allow_nan=False).encode()
     except ValueError:

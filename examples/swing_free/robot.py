@@ -16,7 +16,7 @@ from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.time_steps import integrate
-from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.motion_records import InputMotion
 
 
 class Robot:

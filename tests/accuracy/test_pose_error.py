@@ -14,7 +14,7 @@ from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.maths.pose_change import change_size, rotation_angles, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.follow import follow_path
-from cosserat_casadi.paths.refine import path_distance
+from cosserat_casadi.paths.path_refinement import path_distance
 from tests.pose_errors import distance_between, pose_error
 from tests.scenes import WEIGHT, push, rod, scene
 

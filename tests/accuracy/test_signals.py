@@ -14,7 +14,7 @@ from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import LOADED_SWEEPS, Resolution
 from cosserat_casadi.equilibrium.metrics import cable_distance
 from cosserat_casadi.maths.pose_change import change_size
-from cosserat_casadi.model.signals import BEYOND, signal_modes
+from cosserat_casadi.model.required_modes import BEYOND, signal_modes
 from tests.scenes import push, scene
 
 ROD: dict[str, Any] = {

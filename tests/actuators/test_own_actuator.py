@@ -18,8 +18,8 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
 from cosserat_casadi.rod.strain_density import StrainDensity
-from cosserat_casadi.scene.actuators import ActuatorRecord
-from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.actuator_records import ActuatorRecord
+from cosserat_casadi.scene.input_fields import InputField
 from tests.registration import forget
 from tests.scenes import STIFFNESS, push
 

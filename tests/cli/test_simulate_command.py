@@ -18,7 +18,7 @@ import pytest
 from cosserat_casadi import Scene, Solution
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, REFUSED, TERMINATED
 from cosserat_casadi.cli.main import app, run
-from cosserat_casadi.motion.restart import ContactEvent
+from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from tests.commands import WIRE
 from tests.conftest import ROOT
@@ -67,7 +67,7 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """Runs the command with a stand-in for the simulation; returns the exit code."""
 
     def run_with(*arguments: str, simulate: Simulate = swing) -> int:
-        module = types.ModuleType("cosserat_casadi.motion.resolve")
+        module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
         module.simulate_scene = simulate  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, module.__name__, module)
         return run(lambda **options: app(["simulate", *arguments], **options))
@@ -155,7 +155,9 @@ def test_a_motion_may_start_from_a_result(folder: Path, command: Callable[..., i
     assert starts[1] is None
 
 
-@pytest.mark.parametrize("outcome", [MotionOutcome.STEP_TOO_SMALL, MotionOutcome.UNRESOLVED])
+@pytest.mark.parametrize(
+    "outcome", mostly_slow([MotionOutcome.STEP_TOO_SMALL, MotionOutcome.UNRESOLVED], quick=[MotionOutcome.UNRESOLVED])
+)
 def test_a_motion_that_ended_early_is_written_with_exit_code_3(
     folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str], outcome: MotionOutcome
 ) -> None:
@@ -270,7 +272,7 @@ def simulate_scene(scene, *, start, progress):
     except KeyboardInterrupt:
         return replace(motion, outcome=outcome, message=outcome.value)
 
-module = types.ModuleType("cosserat_casadi.motion.resolve")
+module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
 module.simulate_scene = simulate_scene
 sys.modules[module.__name__] = module
 main()

@@ -14,7 +14,7 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at
+from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at
 from cosserat_casadi.numerics.step_matrices import step_matrices
 from tests import moving_scenes
 from tests.codegen.libraries import Exported
@@ -100,13 +100,13 @@ def equations(model: Model, inputs: FloatArray, rate: FloatArray, acceleration: 
     return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
 
 
-def python_steps(model: Model, state: StepState, driven: Drive) -> list[Step]:
+def python_steps(model: Model, state: StepState, driven: Drive) -> list[TimeStep]:
     """The steps of numerics.time_steps with two stages of Radau IIA, each with a Jacobian of its own, to rounding."""
     differential = model.discrete.unknowns.differential
     method = radau(2)
     bounds = NewtonBounds(np.where(differential, displacements(model), 0.0), 0.0, 40)
     now = Instant(0.0, state.x, state.v, state.a)
-    steps = list[Step]()
+    steps = list[TimeStep]()
     for inputs, rate, acceleration in driven.steps:
         system = equations(model, inputs, rate, acceleration)
         guess = np.tile(np.where(differential, now.a, now.x), (2, 1))
@@ -120,7 +120,7 @@ def python_steps(model: Model, state: StepState, driven: Drive) -> list[Step]:
         # Each step has a clock of its own.
         end = end_of(method, differential, now, driven.dt, found.unknowns, 0.0)
         nothing = {"error": 0.0, "iterations": 0, "residual": 0.0, "contraction": 0.0}
-        steps.append(Step(method, differential, now, driven.dt, found.unknowns, end, **nothing))  # type: ignore[arg-type]
+        steps.append(TimeStep(method, differential, now, driven.dt, found.unknowns, end, **nothing))  # type: ignore[arg-type]
         now = end
     return steps
 

@@ -12,7 +12,7 @@ from cosserat_casadi import Model
 from cosserat_casadi.codegen.compiled_motion import StepOptions, StepSensitivity, StepState
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.numerics.step import TimeStep, stages_of
 from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
@@ -24,7 +24,7 @@ FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, "given length", DRIVEN]
 DT = 4e-3
 
 
-def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
+def of_python(model: Model, step: TimeStep, driven: Drive) -> StepSensitivity:
     """The linear system of both stages, dense, in accelerations and multipliers themselves."""
     size, count = model.size, len(driven.inputs[0])
     method = radau(2)

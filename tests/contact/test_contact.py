@@ -35,7 +35,7 @@ from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import embedded, stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.motion.stage import motion_stage
+from cosserat_casadi.motion.collocated_stage import motion_stage
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result

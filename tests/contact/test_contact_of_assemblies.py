@@ -24,9 +24,9 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.codegen.rows import row_results
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import body_gap, body_pairs, gap_along, pairs
-from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.outcome import Outcome

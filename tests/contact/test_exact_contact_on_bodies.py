@@ -13,11 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Outcome, Solution, build, export, follow_path, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
+from cosserat_casadi.equilibrium.contact.contact_search import found_at
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
-from cosserat_casadi.equilibrium.contact.settle import found_at
-from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.verdict import _gap_curvature
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FrameName
@@ -26,7 +26,7 @@ from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.figure import figure_class
-from cosserat_casadi.plots.obstacles import surface_lines, surface_net
+from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
 from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.sweep.row_model import RowModel
 from tests.conftest import ROOT
@@ -139,6 +139,7 @@ def _nothing_is_inside(solution: Solution) -> None:
     assert all(min(contact.ends) > 0.0 for contact in solution.contacts if contact.kind == "point")
 
 
+@pytest.mark.slow
 def test_a_bar_that_crosses_a_rod_in_space(crossed: Solution) -> None:
     """Forces and moments of both clamps and of the push are in balance, and so are those on each rod."""
     solution = crossed
@@ -362,6 +363,7 @@ def test_every_motion_that_keeps_the_contact_costs_energy(touching: Solution) ->
         assert abs(above - below) < 0.3 * (above + below)
 
 
+@pytest.mark.slow
 def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
     """The finger alone bends until its disk is at the other, which is straight: z = −0.05 and X from its x."""
     model = build(parse_scene(FINGERS))

@@ -33,7 +33,7 @@ from cosserat_casadi import (
 from cosserat_casadi.control import embedded
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
-from cosserat_casadi.loads.trace import traced
+from cosserat_casadi.loads.load_trace import traced
 from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result
 from cosserat_casadi.sweep.run import plan_sweep
@@ -563,6 +563,7 @@ width = 1e-3
 """
 
 
+@pytest.mark.slow
 def test_no_step_of_a_path_passes_through_a_thin_wire() -> None:
     """Steps of their own length would end behind it; the solve from a solution and the path end in front of it."""
     model = build(parse_scene(ROD + PUSH + WIRE))

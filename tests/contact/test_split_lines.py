@@ -9,10 +9,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_newton import sought
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
-from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
-from cosserat_casadi.equilibrium.contact.steps import sought
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 from cosserat_casadi.results.solution_file import result
@@ -120,6 +120,7 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert lifted.stable
 
 
+@pytest.mark.slow
 def test_a_load_inside_a_line_over_a_drum() -> None:
     """Along a drum the bending moment is constant, and so there is no shear force: each normal force is borne at once.
 

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import integrated
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.numerics.integration import StepSettings
-from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.motion_records import InputMotion
 
 STAGES, STEP = 8, 0.04
 """Stages of the horizon, and the duration of each, s: together half a period of the first mode."""

@@ -16,7 +16,7 @@ from cosserat_casadi.control.inverse import search, search_near
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.control.nearby_inputs import _shortest, followed
-from cosserat_casadi.scene.targets import PoseTarget, PositionTarget
+from cosserat_casadi.scene.target_records import PoseTarget, PositionTarget
 from tests.scenes import push, scene
 
 POSE = {"kind": "pose", "rod": "rod", "position": [0.0, 0.0, 0.8], "quaternion": [1, 0, 0, 0]}

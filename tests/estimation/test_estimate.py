@@ -14,7 +14,7 @@ from scipy.stats import chi2
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.estimation import Estimate, estimate, row_library
-from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.model.operations import operations
 from cosserat_casadi.results.estimate_file import estimate_result, estimate_table
 from cosserat_casadi.scene import Scene

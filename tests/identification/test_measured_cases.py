@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build
-from cosserat_casadi.identification.cases import Case, Datum, read_cases
+from cosserat_casadi.identification.measured_cases import Case, Datum, read_cases
 from cosserat_casadi.identification.measured_rows import by_instant
 from cosserat_casadi.scene import read_scene, scene_from_dict
 

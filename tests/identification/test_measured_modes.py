@@ -9,10 +9,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, identify, identify_scene, modes_of, solve
-from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.identification.equilibria import Equilibria
+from cosserat_casadi.identification.case_equilibria import Equilibria
+from cosserat_casadi.identification.fit_unknowns import unknown_layout
+from cosserat_casadi.identification.measured_cases import read_cases
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.identification.unknowns import unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.families import mostly_slow

@@ -9,12 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Identification, Model, SceneError, build, identify, parse_scene
-from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.identification.equilibria import Equilibria
+from cosserat_casadi.identification.case_equilibria import Equilibria
+from cosserat_casadi.identification.case_motions import StartInputs
+from cosserat_casadi.identification.case_time_steps import STEP_ERROR
+from cosserat_casadi.identification.fit_unknowns import unknown_layout
+from cosserat_casadi.identification.measured_cases import read_cases
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.identification.motions import StartInputs
-from cosserat_casadi.identification.time_steps import STEP_ERROR
-from cosserat_casadi.identification.unknowns import unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.released import CANTILEVER, NAMES, NOISE, TIMES, TRUTH, path_of, with_noise

@@ -7,15 +7,15 @@ from typing import Any
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build
-from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.identification.discretisation import Choice, with_discretisation
-from cosserat_casadi.motion.modes import modes_of_scene
+from cosserat_casadi.identification.fit_discretisation import FitDiscretisation, with_discretisation
+from cosserat_casadi.identification.measured_cases import read_cases
+from cosserat_casadi.motion.vibration_modes import modes_of_scene
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import WIRE, MadeUp
 from tests.scenes import push, rod, scene
 
 
-def chosen(shapes: MadeUp, stages: list[str] | None = None, **changes: Any) -> Choice:
+def chosen(shapes: MadeUp, stages: list[str] | None = None, **changes: Any) -> FitDiscretisation:
     """What is chosen for the wire with a table of accuracy and one of measurements changed."""
     measured = {**WIRE["measurements"][0], **changes.pop("measured", {})}
     completed = scene_from_dict({**WIRE, "accuracy": {}, "measurements": [measured], **changes}).with_unknowns()

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from benchmarks.validation import PAGE, SCENES, STUDIES, marks, pages_tables, validated
-from cosserat_casadi.identification.cases import read_cases
+from cosserat_casadi.identification.measured_cases import read_cases
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import read_scene
 

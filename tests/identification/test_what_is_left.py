@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, SceneError, build, identify, solve
 from cosserat_casadi.identification.statistics import NORMAL_95, NoiseFrom, Statistics, statistics
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arrow_least_squares import Arrow
+from cosserat_casadi.numerics.arrow_least_squares import ArrowStep
 from cosserat_casadi.scene import scene_from_dict
 
 STRIP: dict[str, Any] = {
@@ -119,7 +119,7 @@ def linear(noise_from: NoiseFrom, squares: float) -> Statistics:
     ones = np.ones((count, 1))
     offsets = np.array([0, count])
     nothing = np.zeros((1, 0))
-    arrow = Arrow(
+    arrow = ArrowStep(
         np.zeros(count),
         ones,
         np.zeros((count, 0)),

@@ -13,8 +13,8 @@ from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
 from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
-from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import LoadRecord
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.load_records import LoadRecord
 from tests.registration import forget
 
 Vector = tuple[float, float, float]

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, follow_path, load, read_scene, solve, solve_scene
 from cosserat_casadi.cli.main import REFUSED, app, run
-from cosserat_casadi.model.price import prices_of_effects
+from cosserat_casadi.model.operation_cost import prices_of_effects
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"

@@ -9,7 +9,7 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.properties import RodProperties
 from tests.scenes import rod, scene
 

@@ -15,9 +15,9 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion import history
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.paths import path_distance
-from cosserat_casadi.motion.poses import section_poses
+from cosserat_casadi.motion.pose_series import section_poses
 from cosserat_casadi.motion.simulate import Simulator, moving_inputs, started
+from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.numerics.motion_equations import Instant
 from tests import moving_scenes
 from tests.motion import transients

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import build, parse_scene, read_scene, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.restart import ContactEvent
+from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from tests.families import mostly_slow
 

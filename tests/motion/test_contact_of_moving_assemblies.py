@@ -15,12 +15,12 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.coincident_ends import MeetingEnds, RodEnd, meetings, watched_ends
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import LEEWAY, ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.meeting_ends import MeetingEnds, RodEnd, meetings, watched_ends
 from cosserat_casadi.motion.simulate import moving_inputs
-from cosserat_casadi.motion.touching import Follower, Touch
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.plots.motion_plot import save_motion_plot
@@ -138,7 +138,7 @@ def test_derivatives_of_gaps_of_assemblies_are_those_of_differences(name: str, s
     lift = "[[motions]]\ninput = 'trunk.base.position'\namplitude = [0, 0, 0.1]\nfrequency = 1.0\n"
     model = moving(head() + TWIGS + lift)
     number = [facing.owner for facing in facings(model)].index(name)
-    follower = Follower(facings(model), (Touch(number, 0.5 if slides else 1.0, slides),))
+    follower = Follower(facings(model), (MovingContact(number, 0.5 if slides else 1.0, slides),))
     (facing,) = follower.facings
     rng = np.random.default_rng(3)
     x = 0.1 * rng.normal(size=model.size)
@@ -311,22 +311,22 @@ def test_ends_that_are_one_point_are_watched_once() -> None:
 def test_a_place_stays_at_a_corner_and_goes_on_where_there_is_none() -> None:
     series = rod("first", 0.2) + rod("second", 0.2, '{ rod = "first", at = 1.0, quaternion = [COS, 0, SIN, 0] }')
     ball = '[[obstacles]]\nname = "ball"\nkind = "sphere"\ncentre = [0.2, 0, -0.05]\nradius = 0.03\n'
-    arriving = Touch(0, 1.0, True)
-    went: dict[float, Touch] = {}
+    arriving = MovingContact(0, 1.0, True)
+    went: dict[float, MovingContact] = {}
     # Over a ball a rod that goes on upwards leaves a corner that points down.
     for turn in (0.0, -0.3):
         turned = series.replace("COS", str(np.cos(turn / 2))).replace("SIN", str(np.sin(turn / 2)))
         model = moving(head() + turned + ball)
         x = model.unloaded()
         went[turn] = MeetingEnds(facings(model)).gone_on(arriving, x, model.pack())
-    assert went[0.0] == Touch(1, 0.0, True)
-    assert went[-0.3] == Touch(0, 1.0, False)
+    assert went[0.0] == MovingContact(1, 0.0, True)
+    assert went[-0.3] == MovingContact(0, 1.0, False)
     ends = MeetingEnds(facings(model))
-    assert ends.rise(Touch(0, 1.0, False), x, model.pack()) == pytest.approx(0.0, abs=1e-12)
-    assert ends.beside(Touch(0, 0.99, True), 0.02) == [(1, 0.0)]
-    known = (Touch(0, 0.995, True),)
-    assert ends.distinct(known, (Touch(1, 0.004, True),), 0.02) == known
-    assert len(ends.distinct(known, (Touch(1, 0.5, True),), 0.02)) == 2
+    assert ends.rise(MovingContact(0, 1.0, False), x, model.pack()) == pytest.approx(0.0, abs=1e-12)
+    assert ends.beside(MovingContact(0, 0.99, True), 0.02) == [(1, 0.0)]
+    known = (MovingContact(0, 0.995, True),)
+    assert ends.distinct(known, (MovingContact(1, 0.004, True),), 0.02) == known
+    assert len(ends.distinct(known, (MovingContact(1, 0.5, True),), 0.02)) == 2
 
 
 def test_a_ball_on_a_bar_that_is_too_thin_is_refused() -> None:

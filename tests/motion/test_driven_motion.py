@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Motion, MotionOutcome, build, simulate, solve
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.paths import path_distance
 from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.tip_paths import path_distance
 from tests import moving_scenes
 from tests.families import mostly_slow
 from tests.motion.stepping import moving_model

@@ -8,9 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, scene_from_dict
-from cosserat_casadi.motion.paths import path_distance
-from cosserat_casadi.motion.resolve import COARSER, Level, exact_in_time, told_by_coarser
+from cosserat_casadi.motion.motion_refinement import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
 from cosserat_casadi.motion.simulate import FORETOLD, TIGHTER, Simulator, started
+from cosserat_casadi.motion.tip_paths import path_distance
+from tests.families import mostly_slow
 from tests.motion import transients
 
 STEP_TOLERANCE = 1e-3
@@ -35,12 +36,14 @@ def cantilever() -> Simulator:
     return simulator_of(transients.sudden_weight(duration=1.0))
 
 
-@pytest.fixture(scope="module", params=[free_rod, cantilever], ids=["free rod", "cantilever"])
-def level(request: pytest.FixtureRequest) -> Level:
+@pytest.fixture(
+    scope="module", params=mostly_slow([free_rod, cantilever], quick=[cantilever]), ids=["free rod", "cantilever"]
+)
+def level(request: pytest.FixtureRequest) -> ResolvedMotion:
     """A motion and the steps that it was computed with."""
     simulator: Simulator = request.param()
     history = simulator.controlled(STEP_TOLERANCE)
-    return Level(simulator, history, simulator.paths(history))
+    return ResolvedMotion(simulator, history, simulator.paths(history))
 
 
 def true_error(simulator: Simulator, found: Any) -> float:
@@ -49,7 +52,7 @@ def true_error(simulator: Simulator, found: Any) -> float:
     return path_distance(simulator.paths(found), simulator.paths(exact))
 
 
-def test_error_told_by_a_coarser_motion_is_not_too_small(level: Level) -> None:
+def test_error_told_by_a_coarser_motion_is_not_too_small(level: ResolvedMotion) -> None:
     told = told_by_coarser(level, STEP_TOLERANCE)
     error = true_error(level.simulator, level.history)
     assert told.history is level.history
@@ -58,13 +61,13 @@ def test_error_told_by_a_coarser_motion_is_not_too_small(level: Level) -> None:
     assert told.error <= 100.0 * error
 
 
-def test_coarser_motion_that_does_not_end_tells_nothing(level: Level, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_coarser_motion_that_does_not_end_tells_nothing(level: ResolvedMotion, monkeypatch: pytest.MonkeyPatch) -> None:
     broken = level.history
     monkeypatch.setattr(type(broken), "completed", False)
     assert told_by_coarser(level, STEP_TOLERANCE).error == float("inf")
 
 
-def test_steps_are_made_more_exact_until_their_error_is_allowed(level: Level) -> None:
+def test_steps_are_made_more_exact_until_their_error_is_allowed(level: ResolvedMotion) -> None:
     told = told_by_coarser(level, STEP_TOLERANCE)
     allowed = told.error / 2.0
     found = exact_in_time(level, STEP_TOLERANCE, allowed)

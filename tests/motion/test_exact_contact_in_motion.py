@@ -26,11 +26,11 @@ from cosserat_casadi import (
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion import start as starts
+from cosserat_casadi.motion import motion_start as starts
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.start import given_start
-from cosserat_casadi.motion.touching import Follower, Touch
+from cosserat_casadi.motion.motion_start import given_start
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 
 ROD = """
@@ -76,7 +76,7 @@ def test_derivatives_of_the_least_gap_are_those_of_differences(slides: bool) -> 
     v = rng.normal(size=3)
     still = [np.zeros(model.inputs.size)] * 2
     inputs = model.pack()
-    follower = Follower([facing], (Touch(0, 0.6 if slides else 1.0, slides),))
+    follower = Follower([facing], (MovingContact(0, 0.6 if slides else 1.0, slides),))
 
     def gap(at: FloatArray) -> float:
         return follower.gaps(at, inputs)[1][0].value
@@ -325,6 +325,7 @@ def without_starts_below(least: int, monkeypatch: pytest.MonkeyPatch) -> list[in
     return tried
 
 
+@pytest.mark.slow
 def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = simulate_scene(lying())
     tried = without_starts_below(9, monkeypatch)
@@ -336,6 +337,7 @@ def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.M
     assert_allclose(motion.tip().position, wanted, rtol=0, atol=2e-3 * 0.4)
 
 
+@pytest.mark.slow
 def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = without_starts_below(100, monkeypatch)
     motion = simulate_scene(lying())

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from cosserat_casadi import Motion, scene_from_dict, simulate_scene
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
-from cosserat_casadi.motion.paths import Paths, _watched_arms, path_distance
-from cosserat_casadi.scene.constraints import Body
+from cosserat_casadi.motion.tip_paths import Paths, _watched_arms, path_distance
+from cosserat_casadi.scene.constraint_records import Body
 from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity, table
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor, Plane, tangent_along
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Hyperplane, Monitor, tangent_along
 from cosserat_casadi.numerics.branches import crossing_direction
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, bracketed_zero
@@ -230,7 +230,7 @@ def test_correction_of_least_norm_where_a_direction_is_neutral() -> None:
         lambda x, t: [0.0, 0.0],
         [0.0, 0.0],
     )
-    corrected = neutral.correct(np.array([1.2, 0.7, 0.3]), Plane(np.array([0.0, 0.0, 1.0]), 0.3))
+    corrected = neutral.correct(np.array([1.2, 0.7, 0.3]), Hyperplane(np.array([0.0, 0.0, 1.0]), 0.3))
     assert corrected is not None
     assert_allclose(corrected.y, [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
 

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Scene, build, export, load, solve
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.page.drawn_model import DrawnModel
-from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.page.webassembly import VARIABLE, find_wasm_compiler, wasm_of
 from tests.page.pages_made import portal, run_node, strip, wasm_compiler
 

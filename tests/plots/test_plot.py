@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Outcome, SceneError, Solution, build, solve
 from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
-from cosserat_casadi.plots.shapes import SAMPLES
+from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 

@@ -17,7 +17,7 @@ from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Scene, Solution
-from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.scene_rods import rod_properties
 from tests.pose_errors import pose_error
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

@@ -15,12 +15,12 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import FrameMotion, StrainRates
 from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.rod_motion import FrameMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench
+from cosserat_casadi.rod.wrenches import LineWrench, WrenchAt
 
 HOOKE = np.array([1.0, 1.5, 0.8, 50.0, 60.0, 100.0])
 STRAIGHT = ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))
@@ -60,7 +60,7 @@ def coordinates(basis, seed=0, size=1.0):
 
 
 def point(at, force=None, moment=None, *, follower=False):
-    return PointWrench(at, *(None if v is None else ca.DM(v) for v in (force, moment)), follower)
+    return WrenchAt(at, *(None if v is None else ca.DM(v) for v in (force, moment)), follower)
 
 
 def line(basis, force=None, moment=None, *, follower=False):
@@ -164,7 +164,7 @@ def reference_wrench(basis, q, wrenches, rotation=None):
         X = basis.grid.nodes[e * width : (e + 1) * width][::-1]
         strain = element_strain(basis, q, e)
         for w in wrenches:
-            if isinstance(w, PointWrench) and w.at == X[0]:
+            if isinstance(w, WrenchAt) and w.at == X[0]:
                 wrench = wrench + _in_body(w, R)
 
         def rate(x, y, strain=strain):

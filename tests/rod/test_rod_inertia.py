@@ -20,7 +20,7 @@ from rods import (
 
 from cosserat_casadi.rod.inertia import RodInertia, second_moments, section_masses
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
 
 RODS = {"planar": PLANAR, "kirchhoff": KIRCHHOFF, "reissner": REISSNER, "stretched": (5,)}
 ROTARY = pytest.mark.parametrize("rotary", [False, True], ids=["point", "rotary"])

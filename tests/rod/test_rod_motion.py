@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import AT_REST, NO_CHANGE, FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.rod_motion import AT_REST, NO_CHANGE, FrameMotion, RodMotion, StrainRates
 
 RODS = {
     "planar": PLANAR,

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from rods import KIRCHHOFF, PLANAR, REISSNER, coordinates, massive, rod, strain_basis, tapered
 
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.motion import StrainRates
+from cosserat_casadi.rod.rod_motion import StrainRates
 from cosserat_casadi.rod.viscosity import Viscosity
 
 RODS = pytest.mark.parametrize("admitted", [PLANAR, KIRCHHOFF, REISSNER, (1, 5)])

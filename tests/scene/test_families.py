@@ -14,7 +14,7 @@ from cosserat_casadi.scene import ACTUATORS, JOINTS, LOADS, SUPPORTS, InputField
 from cosserat_casadi.scene.families import contents_of
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.json_schema import scene_json_schema
-from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import LISTS
 from cosserat_casadi.scene.values import Positive, Vector
 from cosserat_casadi.scene.writing import scene_text

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, parse_scene
-from cosserat_casadi.model.input_ranges import ranges_of_inputs
+from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import WEIGHT, push, scene

@@ -13,13 +13,13 @@ from typing import Any
 import pytest
 
 from cosserat_casadi import scene_from_dict
-from cosserat_casadi.scene import Scene, reference
+from cosserat_casadi.scene import Scene, scene_reference
 from cosserat_casadi.scene.families import Family, contents_of
 from cosserat_casadi.scene.measurement_record import MeasurementRecord
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.rods import SectionRecord
+from cosserat_casadi.scene.rod_records import SectionRecord
 
-PAGE = reference.reference_text()
+PAGE = scene_reference.reference_text()
 EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
 
 # What the examples of the page refer to.
@@ -68,7 +68,7 @@ def completed(example: str) -> dict[str, Any]:
         if key == "helix":
             del tables["actuators"][0]["offset"]
             tables["actuators"][0][key] = value
-        elif key not in reference.contents_by_key(Scene):
+        elif key not in scene_reference.contents_by_key(Scene):
             rod = tables["rods"][0]
             if key == "stiffness":
                 del rod["material"], rod["section"]
@@ -104,7 +104,7 @@ def lines() -> list[list[str]]:
 
 
 def test_the_committed_page_is_the_generated_one() -> None:
-    assert reference.COMMITTED.read_text(encoding="utf-8") == PAGE
+    assert scene_reference.COMMITTED.read_text(encoding="utf-8") == PAGE
 
 
 def test_the_module_writes_the_committed_page(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ def test_the_module_writes_the_committed_page(tmp_path: Path) -> None:
 import pathlib, runpy
 write = pathlib.Path.write_text
 pathlib.Path.write_text = lambda path, text, encoding: write(pathlib.Path({str(page)!r}), text, encoding)
-runpy.run_module("cosserat_casadi.scene.reference", run_name="__main__")
+runpy.run_module("cosserat_casadi.scene.scene_reference", run_name="__main__")
 """
     subprocess.run([sys.executable, "-c", program], check=True)
     assert page.read_text(encoding="utf-8") == PAGE
@@ -132,7 +132,7 @@ def test_a_key_that_is_not_read_is_not_in_an_example() -> None:
 
 def test_every_record_has_an_example_and_every_key_a_line() -> None:
     expected = [
-        key for record in records() for key in reference.contents_by_key(record) if not in_a_heading(record, key)
+        key for record in records() for key in scene_reference.contents_by_key(record) if not in_a_heading(record, key)
     ]
     assert sorted(row[0].strip("`") for row in lines()) == sorted(expected)
     assert [record.__name__ for record in records() if record.example not in EXAMPLES] == []
@@ -141,7 +141,7 @@ def test_every_record_has_an_example_and_every_key_a_line() -> None:
 def in_a_heading(record: type[Record], key: str) -> bool:
     """Whether a key heads a section: a table of the scene, or the word of a kind."""
     if record is Scene:
-        return reference.contents_by_key(Scene)[key] is not None
+        return scene_reference.contents_by_key(Scene)[key] is not None
     if key == "quantity":
         return issubclass(record, MeasurementRecord)
     return key == "kind" or (key == "shape" and issubclass(record, SectionRecord))
@@ -160,4 +160,4 @@ def test_links_lead_to_headings() -> None:
     for anchor in re.findall(r"\]\(#([^)]+)\)", PAGE):
         assert headings.count(anchor) == 1, anchor
     for path in re.findall(r"\]\(([^)#]+)\)", PAGE):
-        assert (reference.COMMITTED.parent / path).exists(), path
+        assert (scene_reference.COMMITTED.parent / path).exists(), path

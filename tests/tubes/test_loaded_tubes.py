@@ -15,11 +15,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 from cosserat_casadi import SceneError, TubeSolution, parse_scene, solve_scene
-from cosserat_casadi.tubes.arrows import load_arrows
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.solve import solution_near, solve_at
+from cosserat_casadi.tubes.tube_arrows import load_arrows
+from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
 from tests.tubes.test_tube_robots import THREE, TWO
 
 DIFFERENCE = 1e-6

@@ -22,7 +22,7 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solve import solution_near
+from cosserat_casadi.tubes.tube_solve import solution_near
 from tests.commands import cosserat
 from tests.scenes import push
 from tests.scenes import scene as scene_of_rods

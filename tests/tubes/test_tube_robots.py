@@ -26,11 +26,11 @@ from cosserat_casadi import (
     result,
     solve_scene,
 )
-from cosserat_casadi.model.input_ranges import ranges_of_inputs
-from cosserat_casadi.tubes import equilibria
+from cosserat_casadi.model.input_bounds import ranges_of_inputs
+from cosserat_casadi.tubes import tube_equilibria
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.solution import tip_error
-from cosserat_casadi.tubes.solve import solution_near
+from cosserat_casadi.tubes.tube_solution import tip_error
+from cosserat_casadi.tubes.tube_solve import solution_near
 from tests.commands import cosserat
 
 TWO = """
@@ -251,6 +251,7 @@ def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
         assert_allclose(rate, -found.shape.torques[0, tube], rtol=0, atol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_straight_third_tube_only_stiffens() -> None:
     scene = parse_scene(THREE, ["innermost.curvature=0.0", "innermost.translation=0.2", "accuracy.tolerance=1e-6"])
     inputs = {"inner.rotation": 3.4}
@@ -267,24 +268,24 @@ def test_a_straight_third_tube_only_stiffens() -> None:
 
 def test_a_search_that_ran_out_of_work_is_not_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-6"])
-    monkeypatch.setattr(equilibria, "MOST_STEPS", 16)
+    monkeypatch.setattr(tube_equilibria, "MOST_STEPS", 16)
     assert all_equilibria(scene).complete
-    monkeypatch.setattr(equilibria, "MOST_EVALUATIONS", equilibria.FIRST_INTERVALS + 1)
+    monkeypatch.setattr(tube_equilibria, "MOST_EVALUATIONS", tube_equilibria.FIRST_INTERVALS + 1)
     found = all_equilibria(scene)
     # Nothing is missing, and the signs add up: but nobody has looked closely enough to know.
     assert sum(np.sign(solution.stability.determinant) for solution in found.solutions) == 1
     assert not found.complete
     assert "may be missing" in found.message
     # One grid alone has not shown that a finer one finds nothing else.
-    monkeypatch.setattr(equilibria, "GRIDS", {3: (2,)})
+    monkeypatch.setattr(tube_equilibria, "GRIDS", {3: (2,)})
     found = all_equilibria(parse_scene(THREE, ["accuracy.tolerance=1e-6"]))
     assert found.solutions
     assert not found.complete
 
 
 def test_a_search_that_found_nothing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(equilibria, "MOST_STEPS", 8)
-    monkeypatch.setattr(equilibria, "GRIDS", {3: ()})
+    monkeypatch.setattr(tube_equilibria, "MOST_STEPS", 8)
+    monkeypatch.setattr(tube_equilibria, "GRIDS", {3: ()})
     (tmp_path / "tubes.toml").write_text(THREE)
     ended = cosserat("solve", "tubes.toml", "--all", "--output", "o.json", "--plot", "o.png", cwd=tmp_path)
     assert ended.returncode == 3, ended.stderr
@@ -392,7 +393,7 @@ stiffness = { bending_y = 1.0 }
         (TWO.replace("stiffness = { bending = 0.03, torsion = 0.022 }", ""), ["tubes[1].material", "tubes[1].section"]),
         (TWO.replace("0.03,", "0.0,"), ["tubes[1].stiffness.bending"]),
         (TWO + ROD, ["rods"]),
-        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs", "inputs[0]"]),
+        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs"]),
         (TWO.replace("accuracy = {", "accuracy = { modes = 4,"), ["accuracy.modes"]),
         ("schema = 1", ["rods"]),
         (
@@ -437,7 +438,7 @@ def test_what_works_on_rods_refuses_tubes() -> None:
 
 def test_files_hold_what_python_says(tmp_path: Path) -> None:
     scene = tmp_path / "tubes.toml"
-    scene.write_text(TWO.replace("1e-8", "1e-5"))
+    scene.write_text(TWO.replace("1e-8", "1e-3"))
     read = parse_scene(scene.read_text())
     ended = cosserat("solve", "tubes.toml", "--json", cwd=tmp_path)
     assert ended.returncode == 0

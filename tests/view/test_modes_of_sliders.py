@@ -6,7 +6,7 @@ import numpy as np
 
 from cosserat_casadi import build, choose, discretise, read_scene, solve, solve_scene
 from cosserat_casadi.equilibrium.metrics import pose_distance
-from cosserat_casadi.page.ranges import sliders
+from cosserat_casadi.page.slider_ranges import sliders
 from tests.conftest import ROOT
 
 

@@ -27,7 +27,7 @@ from cosserat_casadi.cli.reports.identification import (
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification import identify_scene
-from cosserat_casadi.identification.fitted import beside
+from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.identification_file import identification_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text

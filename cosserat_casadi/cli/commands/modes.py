@@ -21,7 +21,7 @@ from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.modes import print_modes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
-from cosserat_casadi.motion.modes import DEFAULT_COUNT, Modes, modes_of_scene
+from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of_scene
 from cosserat_casadi.results.modes_file import modes_text
 from cosserat_casadi.scene import Scene, read_scene
 

@@ -147,7 +147,7 @@ def _check_scene(
 def _simulate_with_progress(scene: Scene, start: Solution | None) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
-    from cosserat_casadi.motion.resolve import simulate_scene
+    from cosserat_casadi.motion.motion_refinement import simulate_scene
 
     with motion_display() as show_motion:
         motion: Motion = simulate_scene(scene, start=start, progress=show_motion)

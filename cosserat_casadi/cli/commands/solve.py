@@ -70,7 +70,7 @@ def solve(
         raise SceneError(*problems)
     if every:
         # Imported here, because no scene of rods needs the modules of tubes.
-        from cosserat_casadi.tubes.equilibria import all_equilibria
+        from cosserat_casadi.tubes.tube_equilibria import all_equilibria
 
         equilibria = all_equilibria(read)
         # Without an equilibrium there is nothing to draw.

@@ -12,7 +12,7 @@ from cosserat_casadi.results.solution_file import Solved
 from cosserat_casadi.scene import Scene
 
 if TYPE_CHECKING:
-    from cosserat_casadi.tubes.solution import TubeSolution
+    from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
 def solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution | TubeSolution:

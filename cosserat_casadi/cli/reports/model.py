@@ -14,13 +14,13 @@ from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
-from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.model.operation_cost import Price
 from cosserat_casadi.model.operations import Count
-from cosserat_casadi.model.price import Price
 from cosserat_casadi.scene.varying import VaryingValue
 
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
-from cosserat_casadi.motion.modes import Mode, Modes
+from cosserat_casadi.motion.vibration_modes import Mode, Modes
 
 
 def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None:

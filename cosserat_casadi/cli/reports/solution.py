@@ -21,7 +21,7 @@ from cosserat_casadi.spelling import counted
 # Only named in signatures: what prints a solution needs no solver of inverse problems.
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
-    from cosserat_casadi.control.targets import Gap
+    from cosserat_casadi.control.targets import TargetMiss
 
 STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
 
@@ -91,7 +91,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     _print_equilibrium(console, inverse.solution, work, written)
 
 
-def _angle(gap: Gap) -> str:
+def _angle(gap: TargetMiss) -> str:
     if gap.angle is None:
         return "free"
     return _with_error(gap.angle, gap.angle_error)

@@ -12,11 +12,11 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.tubes.equilibria import TubeEquilibria
-from cosserat_casadi.tubes.path import TubePath
 from cosserat_casadi.tubes.robot import Robot
-from cosserat_casadi.tubes.solution import TubeSolution
-from cosserat_casadi.tubes.solve import FEWEST_STEPS, model_of
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubePath
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, model_of
 
 
 def print_tubes(console: Console, solution: TubeSolution | TubeEquilibria, written: Sequence[Path]) -> None:

@@ -1,5 +1,5 @@
 /* What is at fault in an arrangement of contacts: forces that pull, and stretches of rods that are inside an obstacle.
-   cosserat_casadi/equilibrium/contact/settle.py looks for the same. */
+   cosserat_casadi/equilibrium/contact/contact_search.py looks for the same. */
 
 enum { MOST_FAULTS = 16 };
 

@@ -1,5 +1,5 @@
 /* From one arrangement of contacts to one that holds: a force that pulls or a section inside an obstacle says which is
-   tried next. cosserat_casadi/equilibrium/contact/settle.py looks in the same way among all arrangements; here those of
+   tried next. cosserat_casadi/equilibrium/contact/contact_search.py tries all arrangements in this way; here those of
    the library are tried, and their number is bounded. */
 
 enum { MOST_OPTIONS = 6 };

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
-from cosserat_casadi.equilibrium.contact.settle import Settling
-from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, with_contacts, without_contacts
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in, with_contacts, without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray

@@ -13,16 +13,16 @@ from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.fours_sources import Kernel
 from cosserat_casadi.codegen.kernels import by_columns, kernel
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Written
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
+from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, pairs
-from cosserat_casadi.equilibrium.contact.state import Touch
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import Expressions
-from cosserat_casadi.model.functions import resolution_index
+from cosserat_casadi.model.model_functions import resolution_index
 from cosserat_casadi.model.path_stretch import path_stretches
 from cosserat_casadi.model.system import System
 

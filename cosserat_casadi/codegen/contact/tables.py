@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import WORDS
-from cosserat_casadi.equilibrium.contact.equations import ContactEquations
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev

@@ -1,4 +1,4 @@
-"""What known contacts ask of gaps, as expressions: no gap where rods and bodies touch, no slope where contact moves.
+"""Equations of known contacts: no gap where rods and bodies touch, no slope of the gap where contact moves.
 
 Along a line they are the moments of the gap with the polynomials of its force. See docs/contact.md.
 """
@@ -13,9 +13,9 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, obstacle_of
-from cosserat_casadi.equilibrium.contact.state import ContactState, Place, Touch
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import Scalar, as_matrix
@@ -27,7 +27,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 
 
 def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
-    """What the contacts ask to be zero, without unit: for each, the rows of its sections, then the moments along it."""
+    """Residuals of the contacts, without unit: for each contact the rows of its sections, then the moments along it."""
     rows: list[Matrix] = [ca.MX(0, 1)]
     for touch in state.touches:
         if touch.of_body:

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions, world_directions
-from cosserat_casadi.equilibrium.contact.surfaces import distances, surface
+from cosserat_casadi.equilibrium.contact.body_obstacles import seen_positions, world_directions
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distances, surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray

@@ -3,7 +3,7 @@ const fs = require("fs");
 const vm = require("vm");
 
 const [assets, factsFile, inputsFile, moduleFile] = process.argv.slice(2);
-for (const script of ["spectrum.js", "wasm_robot.js"]) vm.runInThisContext(fs.readFileSync(`${assets}/${script}`, "utf8"));
+for (const script of ["symmetric_eigenvalues.js", "wasm_robot.js"]) vm.runInThisContext(fs.readFileSync(`${assets}/${script}`, "utf8"));
 const facts = JSON.parse(fs.readFileSync(factsFile));
 const cases = JSON.parse(fs.readFileSync(inputsFile));
 

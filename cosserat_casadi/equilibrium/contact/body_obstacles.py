@@ -1,0 +1,35 @@
+"""Obstacles that are fixed to bodies: rods are held against them in the axes of the body, where they stand still."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
+from cosserat_casadi.maths.typing import FloatArray
+
+
+def in_axes_of(body: SolvedPoses, positions: FloatArray) -> FloatArray:
+    """World positions, shape (k, 3) in m, in the axes of a body in its one pose."""
+    return np.asarray((positions - body.position[0]) @ body.rotation[0])
+
+
+def seen_positions(solution: Solution, obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
+    """World positions, shape (k, 3) in m, in the axes that an obstacle is given in: of its body, or the world's."""
+    if obstacle.body is None:
+        return positions
+    return in_axes_of(solution.body(obstacle.body), positions)
+
+
+def seen_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directions: FloatArray) -> FloatArray:
+    """World directions, shape (k, 3), in the axes that an obstacle is given in."""
+    if obstacle.body is None:
+        return directions
+    return np.asarray(directions @ solution.body(obstacle.body).rotation[0])
+
+
+def world_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directions: FloatArray) -> FloatArray:
+    """Directions in the axes that an obstacle is given in, shape (k, 3), in those of the world."""
+    if obstacle.body is None:
+        return directions
+    return np.asarray(directions @ solution.body(obstacle.body).rotation[0].T)

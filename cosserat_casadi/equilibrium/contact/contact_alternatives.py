@@ -1,0 +1,110 @@
+"""Contacts that may hold in place of others, known by their places alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch
+
+NEAR = 0.03
+"""Distance along the rod within which a penetration belongs to a contact."""
+
+LIES_FROM = 0.8
+"""Where a rod that lies down from its tip on is first thought to begin to."""
+
+ACROSS = 0.05
+"""Distance beyond a section with a load at which contact is tried when it would slide past."""
+
+MET = 4e-3
+"""Distance below which a place has run into a section with a load, the tip or another place."""
+
+BEYOND = 0.01
+"""Distance beyond a section at which a place that has run into it is tried next."""
+
+
+def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
+    """Contacts that may take the place of a contact that pulls."""
+    if not touch.is_line:
+        yield ()
+        return
+    middle = (touch.start + touch.end) / 2
+    first, last, between = (
+        Touch.point(touch.obstacle, touch.owner, place) for place in (touch.start, touch.end, middle)
+    )
+    yield (first, last)
+    yield (between,)
+    yield (first,)
+    yield (last,)
+    if touch.reaches_tip:
+        # A rod that curls up leaves before its tip.
+        yield (replace(touch, end=touch.start + 0.7 * (touch.end - touch.start)),)
+
+
+def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
+    """The same contacts with one place on the other side of a section with a load next to it, the nearest first."""
+    crossings: list[tuple[float, ContactState]] = []
+    places = state.places
+    rods = [touch.owner for touch in state.touches for _ in touch.moving]
+    for index, (rod, place) in enumerate(zip(rods, places.tolist(), strict=True)):
+        stations = np.array([0.0, *sections[rod], TIP])
+        before = int(np.searchsorted(stations, place)) - 1
+        for section, beyond in ((before, before - 1), (before + 1, before + 2)):
+            if not 0 < section < len(stations) - 1:
+                continue
+            way = stations[beyond] - stations[section]
+            moved = places.copy()
+            moved[index] = stations[section] + np.sign(way) * min(ACROSS, abs(way) / 2)
+            crossings.append((abs(stations[section] - place), state.at(moved.tolist())))
+    yield from (other for _, other in sorted(crossings, key=lambda crossing: crossing[0]))
+
+
+def otherwise(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
+    """States beside one whose equations have no solution near by."""
+    yield from _across(state, sections)
+    for index, touch in enumerate(state.touches):
+        rest = [other for i, other in enumerate(state.touches) if i != index]
+        if touch.is_line:
+            for option in instead_of_pulling(touch):
+                yield ContactState.of([*rest, *option])
+        elif touch.reaches_tip:
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.owner, TIP - 2 * NEAR)])
+            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.owner, LIES_FROM, TIP)])
+        elif not touch.of_body:
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.owner, TIP)])
+        yield ContactState.of(rest)
+
+
+def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
+    """States after places of contact have run into each other, the tip or a load: joined, ended or beyond it.
+
+    Args:
+        state: with the places where a solve gave up.
+        sections: abscissae of each rod at which loads act, by name.
+    """
+    of_rods = [touch for touch in state.touches if not touch.of_body]
+    for first, second in pairwise(of_rods):
+        same = (first.owner, first.obstacle) == (second.owner, second.obstacle)
+        if same and second.start - first.end < MET:
+            yield _with(state, {first: Touch.line(first.obstacle, first.owner, first.start, second.end), second: None})
+    for touch in of_rods:
+        if touch.is_line and touch.end - touch.start < MET:
+            yield _with(state, {touch: Touch.point(touch.obstacle, touch.owner, touch.start)})
+            continue
+        if TIP - MET < touch.end < TIP:
+            yield _with(state, {touch: replace(touch, start=touch.start if touch.is_line else TIP, end=TIP)})
+        for section in sections[touch.owner]:
+            for number, place in enumerate(touch.moving):
+                if abs(place - section) < MET:
+                    places = list(touch.moving)
+                    places[number] = section + BEYOND * np.sign(section - place)
+                    yield _with(state, {touch: touch.moved(places)})
+
+
+def _with(state: ContactState, changes: Mapping[Touch, Touch | None]) -> ContactState:
+    """The state with some contacts replaced; by None where they go."""
+    touches = [changes.get(touch, touch) for touch in state.touches]
+    return ContactState.of([touch for touch in touches if touch is not None])

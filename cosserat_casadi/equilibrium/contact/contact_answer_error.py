@@ -1,0 +1,83 @@
+"""The error of an answer in exact contact, from its distance to one with modes and intervals added."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_tolerance_note
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
+from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.model.enrichment import enriched
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.numerics.newton import NewtonSettings
+
+
+def with_error_in_contact(
+    solution: Solution, values: Mapping[str, npt.ArrayLike] | None, newton: NewtonSettings
+) -> Solution:
+    """A solution in contact with the estimates of its errors; as it is where it is no equilibrium.
+
+    Places and forces of contact are unknowns that the sweeps of answers without contact do not have: the same contacts
+    are solved on the richer modes, from this solution. Where other contacts come out the error is not known.
+
+    Args:
+        solution: of a scene with obstacles.
+        values: its inputs by name.
+        newton: limits of the solve.
+    """
+    if not solution.converged:
+        return solution
+    scene = without_contacts(solution.model.scene)
+    modes = signal_modes(scene)
+    grids = {name: enriched(chosen, modes) for name, chosen in solution.model.discretisation.items()}
+    finer = solve_contact(scene, Grids(grids), values, start=solution, newton=newton)
+    if finer.converged and same_contacts(solution, finer):
+        return with_tolerance_note(with_contact_error(solution, finer))
+    return with_tolerance_note(replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN))
+
+
+def same_contacts(first: Solution, second: Solution) -> bool:
+    """Whether the same rods touch the same obstacles in the same way."""
+    names = [
+        [(touch.owner, touch.obstacle, touch.kind, touch.of_body) for touch in solution.contacts]
+        for solution in (first, second)
+    ]
+    return names[0] == names[1]
+
+
+def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
+    """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
+
+    Forces count relative to EI/ℓ² or to the largest one, whichever is more.
+    """
+    judged = with_estimate(coarse, fine)
+    discrete = coarse.model.discrete
+    units = [discrete.contact_unit(contact.owner, of_body=contact.of_body) for contact in coarse.contacts]
+    largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
+    distances = [0.0]
+    for first, second in zip(coarse.contacts, fine.contacts, strict=True):
+        distances += [abs(first.start - second.start), abs(first.end - second.end)]
+        forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
+        distances.append(float(np.abs(forces).max()) / largest)
+        distances += [distance / largest for distance in _between_sections(first, second)]
+    contact_error = SAFETY * max(distances)
+    assert judged.error_estimate is not None
+    assert judged.shape_error_estimate is not None
+    return replace(
+        judged,
+        error_estimate=max(judged.error_estimate, contact_error),
+        shape_error_estimate=max(judged.shape_error_estimate, contact_error),
+    )
+
+
+def _between_sections(first: Contact, second: Contact) -> list[float]:
+    """Differences of the forces at sections inside two lines, N."""
+    one, other = ({section.at: section.force for section in contact.inside} for contact in (first, second))
+    return [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]

@@ -1,0 +1,357 @@
+"""Equations of rods and bodies in known contact: balance, no gap where they touch, no slope where contact moves.
+
+Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
+are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives the same at
+its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
+length is split: the section takes a point force and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
+end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
+See docs/contact.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    SHORTEST,
+    ContactState,
+    contact_loads,
+    with_contacts,
+)
+from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows
+from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
+from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.scene_equations import SceneEquations
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.numerics.newton import Equations
+from cosserat_casadi.rod.discretisation import Discretisation
+
+FIT = 1e-3
+"""Singular values, relative to the largest, below which a first guess of forces does without them."""
+
+TORSION = 2
+"""Index of the torsion among the strains: bendings come before it."""
+
+
+@dataclass(frozen=True)
+class Grids:
+    """Modes, nodes and rotation integrator of the elements of every rod, wherever elements end.
+
+    Attributes:
+        rods: by name; their own breaks are not read.
+    """
+
+    rods: Mapping[str, Discretisation]
+
+    def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
+        """One for every rod of a scene, with elements that end where its loads say."""
+        return {name: replace(own, breaks=element_ends(scene, name)) for name, own in self.rods.items()}
+
+    def bending_modes(self, scene: scenes.Scene) -> dict[str, int]:
+        """Polynomials that all curvatures of each rod have at least, by name."""
+        fewest = {}
+        for rod in scene.rods:
+            modes = self.rods[rod.name].modes
+            bending = [count for strain, count in zip(rod.admitted, modes, strict=True) if strain < TORSION]
+            fewest[rod.name] = min(bending, default=1)
+        return fewest
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A model whose elements end at the contacts of a state.
+
+    Attributes:
+        model: of the scene with the forces of the contacts as inputs.
+        state: the contacts.
+        given: stacked inputs of the scene without contacts.
+        modes: polynomials of the curvature of each rod, by name.
+    """
+
+    model: Model
+    state: ContactState
+    given: FloatArray
+    modes: Mapping[str, int]
+
+    @cached_property
+    def force_entries(self) -> list[int]:
+        """Entries of the forces in the stacked inputs, in the order of the loads."""
+        names = {load.name for load in contact_loads(self.model.scene)}
+        entries: list[int] = []
+        for entry, span in self.model.inputs:
+            if entry.owner in names:
+                entries.extend(range(span.start, span.stop))
+        return entries
+
+    @cached_property
+    def force_units(self) -> FloatArray:
+        """Unit of each force, shape (k,): EI/ℓ² of its rod or body, in N, or EI/ℓ³, in N/m."""
+        discrete = self.model.discrete
+        units = []
+        for load in contact_loads(self.model.scene):
+            if isinstance(load, ContactLine):
+                unit = discrete.tension_unit(load.rod) / discrete.rods[load.rod].length
+                units += [unit] * len(load.force[0])
+            elif load.body is not None:
+                units.append(discrete.contact_unit(load.body, of_body=True))
+            else:
+                assert load.rod is not None, "what is of no body is of a rod"
+                units.append(discrete.tension_unit(load.rod))
+        return np.array(units)
+
+    @cached_property
+    def _spread(self) -> tuple[FloatArray, FloatArray]:
+        """Matrices from the inputs of the scene to all inputs, shape (m, m − k), and from the forces, (m, k)."""
+        size = self.model.inputs.size
+        others = np.setdiff1d(np.arange(size), self.force_entries)
+        by_given = np.zeros((size, len(others)))
+        by_given[others, np.arange(len(others))] = 1.0
+        by_forces = np.zeros((size, len(self.force_entries)))
+        by_forces[self.force_entries, np.arange(len(self.force_entries))] = self.force_units
+        return by_given, by_forces
+
+    def inputs(self, forces: FloatArray) -> FloatArray:
+        """Stacked inputs of the model for forces without unit, shape (k,)."""
+        by_given, by_forces = self._spread
+        return np.asarray(by_given @ self.given + by_forces @ forces)
+
+    def written_inputs(self, given: Matrix, forces: Matrix) -> Matrix:
+        """The same as expressions of the stacked inputs of the scene too."""
+        by_given, by_forces = self._spread
+        return ca.sparsify(ca.DM(by_given)) @ given + ca.sparsify(ca.DM(by_forces)) @ forces
+
+    def fitting_forces(self, x: FloatArray) -> FloatArray:
+        """Forces that balance a shape best, shape (k,): its balance is linear in them."""
+        _, matrix = self._spread
+        inputs = self.inputs(np.zeros(len(self.force_units)))
+        balance = column(self.model.path_residual(x, inputs, 1.0))
+        by_forces = self.model.input_jacobian(x, inputs).full() @ matrix
+        fitting, *_ = np.linalg.lstsq(by_forces, -balance, rcond=FIT)
+        return np.asarray(fitting)
+
+    def residual(self, x: FloatArray, forces: FloatArray) -> FloatArray:
+        """Balance and gaps, without unit."""
+        inputs = self.inputs(forces)
+        balance = column(self.model.path_residual(x, inputs, 1.0))
+        gaps, _ = self.gaps(x, inputs)
+        return np.concatenate([balance, column(gaps)])
+
+    @cached_property
+    def gaps(self) -> ca.Function:
+        """(x, inputs) ↦ what the contacts ask to be zero, without unit, and its derivative with x."""
+        x = ca.MX.sym("x", self.model.size)
+        inputs = ca.MX.sym("inputs", self.model.inputs.size)
+        system = System(self.model.discrete, Arguments(x, inputs))
+        gaps = gap_rows(system, self.state, self.modes)
+        return ca.Function("gaps", [x, inputs], [gaps, ca.jacobian(gaps, x)])
+
+    def obstacle(self, name: str) -> scenes.ObstacleRecord:
+        """The obstacle of a name."""
+        return obstacle_of(self.model.scene, name)
+
+
+@dataclass(frozen=True)
+class Written:
+    """The equations of a state as expressions.
+
+    Attributes:
+        unknowns: symbols of x, f and p.
+        given: symbol of the stacked inputs of the scene without contacts.
+        state: the contacts, at expressions of p.
+        system: rods whose elements end there.
+        modes: polynomials of the curvature of each rod, by name.
+    """
+
+    unknowns: tuple[ca.MX, ca.MX, ca.MX]
+    given: ca.MX
+    state: ContactState
+    system: System
+    modes: Mapping[str, int]
+
+    @property
+    def arguments(self) -> list[ca.MX]:
+        """Arguments of the functions of the equations."""
+        return [*self.unknowns, self.given]
+
+    @cached_property
+    def _balance(self) -> SceneEquations:
+        return SceneEquations(self.system)
+
+    @cached_property
+    def _gaps(self) -> Matrix:
+        return gap_rows(self.system, self.state, self.modes)
+
+    @property
+    def residual(self) -> Matrix:
+        """Balance, then gaps."""
+        return ca.vertcat(self._balance.residual, self._gaps)
+
+    @property
+    def jacobian(self) -> Matrix:
+        """Its derivative with z: that of the balance with x is written out; what the contacts add is small."""
+        _, f, p = self.unknowns
+        balance = self._balance.residual
+        by_forces = ca.jacobian(balance, f)
+        by_places = ca.jacobian(balance, p)
+        of_balance = ca.horzcat(self._balance.jacobian, by_forces, by_places)
+        gaps_by_others = [ca.jacobian(self._gaps, part) for part in (f, p)]
+        return ca.vertcat(of_balance, ca.horzcat(self._gaps_by_unknowns(by_forces), *gaps_by_others))
+
+    def _gaps_by_unknowns(self, by_forces: Matrix) -> Matrix:
+        """Derivative of the gaps with x. A force does work on its gap alone: one is the derivative of the other.
+
+        Args:
+            by_forces: derivative of the balance with the forces.
+        """
+        x, _, _ = self.unknowns
+        # The balance of a frame is not in the unit of that of a rod.
+        if self.system.discrete.frames:
+            return ca.jacobian(self._gaps, x)
+        rows: list[Matrix] = [ca.MX(0, x.shape[0])]
+        force = 0
+        for number, width in enumerate(force_widths(self.state, self.modes)):
+            if width is None:
+                rows.append(ca.jacobian(self._gaps[number], x))
+            else:
+                rows.append(-by_forces[:, force].T / width)
+                force += 1
+        return ca.vertcat(*rows)
+
+
+@dataclass(frozen=True)
+class ContactEquations:
+    """Equations of one state in z = (x, f, p).
+
+    Attributes:
+        scene: the scene without contacts.
+        given: its stacked inputs.
+        grids: modes and nodes of every element.
+        state: the contacts, at the places that the equations start from.
+    """
+
+    scene: scenes.Scene
+    given: FloatArray
+    grids: Grids
+    state: ContactState
+
+    def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
+        """The model of the contacts at known places, with other inputs of the scene if there are any."""
+        modes = self.grids.bending_modes(self.scene)
+        loaded = with_contacts(self.scene, state, modes)
+        model = build(loaded, self.grids.discretisation(loaded))
+        return Placed(model, state, self.given if given is None else given, modes)
+
+    @cached_property
+    def nominal(self) -> Placed:
+        """The model that the equations start from, whose elements the places of contact move."""
+        return self.placed(self.state)
+
+    @cached_property
+    def slope_rows(self) -> list[int]:
+        """Rows of the residual that ask for no slope, one for each place that is sought."""
+        widths = force_widths(self.state, self.nominal.modes)
+        return [self.nominal.model.size + number for number, width in enumerate(widths) if width is None]
+
+    def parts(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """x, f and p."""
+        unknowns = self.nominal.model.size
+        x, f, p = np.split(z, [unknowns, unknowns + len(self.nominal.force_units)])
+        return x, f, p
+
+    @cached_property
+    def written(self) -> Written:
+        """The equations as expressions."""
+        nominal = self.nominal
+        x = ca.MX.sym("x", nominal.model.size)
+        f = ca.MX.sym("f", len(nominal.force_units))
+        p = ca.MX.sym("p", len(self.state.places))
+        given = ca.MX.sym("given", len(self.given))
+        # One expression for each place: what ends there is found by it.
+        state = self.state.at([p[i] for i in range(p.shape[0])])
+        discrete = self._discrete_at(state) if p.shape[0] else nominal.model.discrete
+        system = System(discrete, Arguments(x, nominal.written_inputs(given, f)))
+        return Written((x, f, p), given, state, system, nominal.modes)
+
+    @cached_property
+    def _functions(self) -> tuple[ca.Function, ca.Function]:
+        """(x, f, p, inputs) ↦ residual, and ↦ its derivative with z."""
+        written = self.written
+        residual = ca.Function("residual", written.arguments, [written.residual])
+        return residual, ca.Function("jacobian", written.arguments, [written.jacobian])
+
+    @cached_property
+    def _rate(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ derivative of the residual with the inputs."""
+        written = self.written
+        return ca.Function("rate", written.arguments, [ca.jacobian(written.residual, written.given)])
+
+    def _discrete_at(self, state: ContactState) -> DiscreteScene:
+        """The scene whose elements end at expressions."""
+        written = with_contacts(self.scene, state, self.nominal.modes)
+        return with_numbers(self.nominal.model.discrete, written)
+
+    def ends(self, rod: str, p: FloatArray) -> FloatArray:
+        """Where the elements of a rod end at places of contact p, shape (E + 1,)."""
+        breaks = self.nominal.model.discretisation[rod].breaks
+        moved = self.state.at(p.tolist())
+        places = dict(zip(self._places_on(self.state, rod), self._places_on(moved, rod), strict=True))
+        return np.array([places.get(end, end) for end in breaks])
+
+    @staticmethod
+    def _places_on(state: ContactState, rod: str) -> list[float]:
+        return [float(end) for touch in state.along(rod) for end in touch.carriers]
+
+    def moved_strains(self, p: FloatArray) -> FloatArray:
+        """Factors that take the unknowns of elements at rest to the unknowns of elements moved to p, shape (n,).
+
+        Strains of moved elements are counted per length that has moved; all other unknowns keep their values.
+        """
+        return self._widths(p) / self.nominal_widths
+
+    @cached_property
+    def nominal_widths(self) -> FloatArray:
+        """Width of the element that each strain coordinate is of, where the equations start from; else 1, (n,)."""
+        return self._widths(self.state.places)
+
+    def _widths(self, p: FloatArray) -> FloatArray:
+        model = self.nominal.model
+        widths = np.ones(model.size)
+        for name, rod in model.discrete.rods.items():
+            own = np.diff(self.ends(name, p))
+            first = model.discrete.unknowns.strain(name).start
+            for entries in rod.columns.values():
+                modes = (entries.stop - entries.start) // rod.grid.elements
+                widths[first + entries.start : first + entries.stop] = np.repeat(own, modes)
+        return widths
+
+    def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
+        x, f, p = self.parts(z)
+        if any(np.diff(self.ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
+            return np.full(len(z), np.nan)
+        return column(self._functions[0](x, f, p, given))
+
+    def jacobian(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Derivative of the residual with z."""
+        return np.asarray(self._functions[1](*self.parts(z), given).full())
+
+    def rate(self, z: FloatArray, given: FloatArray, change: FloatArray) -> FloatArray:
+        """Rate of the residual as the inputs change, shape (len(z),)."""
+        by_given = self._rate(*self.parts(z), given).full()
+        return np.asarray(by_given @ change)
+
+    @property
+    def equations(self) -> Equations:
+        """As Newton's method takes them."""
+        return Equations(lambda z: self.residual(z, self.given), lambda z: self.jacobian(z, self.given))

@@ -1,0 +1,166 @@
+"""From contacts that hold to a solution: its residual, its contacts by name, and its stability.
+
+Contacts that press are constraints, and the curvature of the gap times their force is in the Jacobian already: their
+forces have the energy −N d. The place of a point of contact follows the motion; it moves so that the gap is least, and
+of the second variation of −N min d the part N (∂d′/∂x)² / d″ is left to add. (E. Polak, *Optimization*, Springer 1997,
+section 3.1, for the least value over a parameter.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.body_obstacles import seen_directions, seen_positions
+from cosserat_casadi.equilibrium.contact.contact_search import Found
+from cosserat_casadi.equilibrium.contact.contact_state import Touch
+from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
+from cosserat_casadi.equilibrium.judge import stability_note
+from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
+from cosserat_casadi.equilibrium.vanished_paths import with_paths
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.newton import relative_norm
+from cosserat_casadi.numerics.outcome import Outcome
+
+FLAT = 1e-6
+"""Curvature of the gap, relative to the length, below which a point of contact does not slide."""
+
+PRESSING = 1e-9
+"""Force, relative to the largest, from which a contact is a constraint."""
+
+
+def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> Solution:
+    """A state as a solution.
+
+    Args:
+        found: the state, solved.
+        holds: whether no force pulls and nothing is inside an obstacle.
+        iterations: Newton steps that it took to find it.
+        tolerance: bound on the relative norm of the residual.
+    """
+    residual = found.placed.residual(found.x, found.forces)
+    norm = relative_norm(residual, np.concatenate([found.x, found.forces]))
+    outcome = Outcome.CONVERGED if holds else Outcome.CONTACT_UNSETTLED
+    inputs = found.solution.inputs
+    if not norm <= tolerance:
+        outcome = Outcome.MAX_ITERATIONS
+    elif holds and float(found.placed.model.resolution_index(found.x, inputs)) > 1.0:
+        outcome = Outcome.UNRESOLVED
+    outcome, message = with_paths(found.placed.model, found.x, inputs, outcome)
+    solution = replace(
+        found.solution,
+        outcome=outcome,
+        message=message,
+        residual_norm=norm,
+        iterations=iterations,
+        contacts=contacts_of(found),
+    )
+    if not solution.converged or not found.placed.model.has_potential(inputs):
+        return solution
+    stability = stability_of(_eigenvalues(found))
+    critical = stability.neutral
+    return replace(
+        solution,
+        smallest_eigenvalue=stability.smallest_eigenvalue,
+        stable=stability.stable and not critical,
+        message=solution.message + stability_note(stability, critical),
+    )
+
+
+def contacts_of(found: Found) -> tuple[Contact, ...]:
+    """The contacts by name, with the forces on the rods."""
+    contacts = []
+    for touch, carried, line in found.parts():
+        unit = found.placed.model.discrete.contact_unit(touch.owner, of_body=touch.of_body)
+        obstacle = found.placed.obstacle(touch.obstacle)
+        zero = PRESSING * found.largest_force
+        # What only rounding pulls does not pull.
+        forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
+        if touch.of_body:
+            normal = body_normal(found.solution, touch.owner, obstacle)[None, :]
+        else:
+            normal = normals(found.solution, touch.owner, obstacle, np.array(touch.carriers))
+        total = forces @ normal
+        if touch.is_line:
+            total = total + unit * _resultant(found, touch, obstacle, line)
+        ends, sections = touch.sorted_forces(forces)
+        contacts.append(
+            Contact(
+                obstacle=touch.obstacle,
+                owner=touch.owner,
+                start=touch.start,
+                end=touch.end,
+                force=total,
+                ends=ends,
+                kind=touch.kind,
+                of_body=touch.of_body,
+                # Where loads have no jump of their own a section carries what the polynomials leave.
+                inside=tuple(own for own in sections if abs(own.force) > unit * zero),
+            )
+        )
+    return tuple(contacts)
+
+
+def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
+    """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
+    grid = found.placed.model.discrete.rods[touch.owner].grid
+    total = np.zeros(3)
+    for start, end, own in touch.by_stretch(line, found.placed.modes[touch.owner]):
+        nodes = grid.nodes_in(start, end)
+        X = known(grid.nodes_at(nodes))
+        along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
+        normal = normals(found.solution, touch.owner, obstacle, X)
+        total += (grid.weights[nodes] * along) @ normal
+    return total
+
+
+def _eigenvalues(found: Found) -> FloatArray:
+    """Eigenvalues of the second variation over the motions that contacts admit."""
+    placed = found.placed
+    model = placed.model
+    inputs = found.solution.inputs
+    jacobian = model.path_jacobian(found.x, inputs, 1.0).full()
+    rows = placed.gaps(found.x, inputs)[1].full()
+    held: list[FloatArray] = []
+    first = 0
+    for touch, carried, line in found.parts():
+        count = len(carried) + len(touch.moving) + len(line)
+        own = rows[first : first + count]
+        first += count
+        if touch.is_line:
+            held.extend(own)
+            continue
+        if carried[0] <= PRESSING * found.largest_force:
+            continue
+        held.append(own[0])
+        if touch.moving:
+            bend = _gap_curvature(found, touch)
+            if bend <= FLAT:
+                held.append(own[1])
+            else:
+                # Every row of the Jacobian is in a unit of its own.
+                unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
+                jacobian = jacobian + carried[0] / bend * np.outer(unit * own[1], own[1])
+    return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
+
+
+def _gap_curvature(found: Found, touch: Touch) -> float:
+    """Second derivative of the gap with X at a point of contact, over the length."""
+    X = np.array([touch.start])
+    pose = found.solution.pose(X, touch.owner)
+    strain = found.solution.strain(X, touch.owner)[0]
+    length = found.placed.model.discrete.rods[touch.owner].properties.length
+    tangent = length * pose.rotation[0] @ strain[3:]
+    # The rate of the extension is along the tangent, on which the normal stands.
+    bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])
+    obstacle = found.placed.obstacle(touch.obstacle)
+    (position,) = seen_positions(found.solution, obstacle, pose.position)
+    first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
+    distance = distance_along(obstacle, position, first, second)
+    return distance.bend / length

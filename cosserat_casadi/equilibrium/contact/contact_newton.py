@@ -1,0 +1,113 @@
+"""Newton's method for rods in contact whose places are sought.
+
+Forces of a short stretch hardly tell on the shape, so that a large error of theirs is a large residual although the
+shape is near the solution: the residual is no measure of progress. Full steps are taken instead, from places that are
+held first, with shape and forces in balance there; a step is shortened only where it would squeeze an element. Steps
+end where they are no larger than rounding, and not at a given residual: forces of a short stretch are known worse than
+the shape by the cube of its length, and whether a force presses or pulls is read from its sign.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
+
+HELD_STEPS = 6
+"""Most steps with the places held."""
+
+HELD_ENOUGH = 1e-6
+"""Residual at which the places are let go."""
+
+MOST_STEPS = 25
+"""Most steps with places that are sought."""
+
+SQUEEZED = 0.5
+"""Share of its width that an element may lose in a step."""
+
+COLLAPSED = 1e-4
+"""Width of an element, over the length of the rod, below which its ends have met."""
+
+
+def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSettings) -> tuple[FloatArray, bool, int]:
+    """Shape, forces and places from a start.
+
+    Args:
+        equations: of one state.
+        start: z, shape (n,).
+        settings: of these the tolerance counts; steps end at rounding, not at the aim.
+
+    Returns:
+        the last z, whether it solves the equations, and the steps that were taken.
+    """
+    z, taken = _held(equations, start)
+    if z is None:
+        return start, False, taken
+    best = z
+    least = np.inf
+    for _ in range(MOST_STEPS):
+        residual = equations.residual(z, equations.given)
+        norm = relative_norm(residual, z)
+        if not np.isfinite(norm):
+            break
+        if least <= settings.tolerance and norm >= 0.5 * least:
+            # Nothing but rounding is left.
+            break
+        best = z
+        least = norm
+        if _narrowest(equations, z) < COLLAPSED:
+            break
+        step = _step(equations.jacobian(z, equations.given), -residual)
+        if step is None:
+            break
+        z = z + _share(equations, z, step) * step
+        taken += 1
+    return best, bool(least <= settings.tolerance), taken
+
+
+def _held(equations: ContactEquations, start: FloatArray) -> tuple[FloatArray | None, int]:
+    """Shape and forces in balance with contacts at the places of the start, that may have a slope there."""
+    count = len(equations.state.places)
+    size = len(start)
+    known = np.arange(size - count)
+    rows = np.setdiff1d(np.arange(size), equations.slope_rows)
+    z = start.copy()
+    for number in range(HELD_STEPS):
+        residual = equations.residual(z, equations.given)[rows]
+        if not np.isfinite(residual).all():
+            return None, number
+        if relative_norm(residual, z) <= HELD_ENOUGH:
+            return z, number
+        jacobian = equations.jacobian(z, equations.given)
+        step = _step(jacobian[np.ix_(rows, known)], -residual)
+        if step is None:
+            return None, number
+        z[known] += step
+    return z, HELD_STEPS
+
+
+def _step(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
+    try:
+        step = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return None
+    return np.asarray(step) if np.isfinite(step).all() else None
+
+
+def _widths(equations: ContactEquations, z: FloatArray) -> FloatArray:
+    """Widths of the elements of all rods."""
+    _, _, places = equations.parts(z)
+    return np.concatenate([np.diff(equations.ends(rod, places)) for rod in equations.grids.rods])
+
+
+def _narrowest(equations: ContactEquations, z: FloatArray) -> float:
+    return float(_widths(equations, z).min())
+
+
+def _share(equations: ContactEquations, z: FloatArray, step: FloatArray) -> float:
+    """Share of a step at which no element has lost too much of its width."""
+    before = _widths(equations, z)
+    lost = (before - _widths(equations, z + step)) / before
+    return float(min(1.0, SQUEEZED / max(lost.max(), SQUEEZED)))

@@ -1,0 +1,385 @@
+"""From a first guess of the contacts to contacts that hold: states are tried until one has no fault.
+
+A state is at fault where a force pulls, or a section or a body is inside an obstacle; the fault says which states to
+try next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends
+without a state that holds, it says so. See docs/contact.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR, instead_of_pulling, met, otherwise
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, Placed
+from cosserat_casadi.equilibrium.contact.contact_newton import sought
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, body_gap, body_pairs, gap_along, pairs, runs
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.newton import NewtonSettings, newton, relative_norm
+from cosserat_casadi.numerics.outcome import Outcome
+
+MOST_STATES = 24
+"""Most states that are tried."""
+
+ROUNDING = 1e-12
+"""Force, relative to the largest, that is zero."""
+
+AT_TIP = 1e-3
+"""Distance from the tip within which it is the tip that touches."""
+
+OPENING = 0.3
+"""Share of the way to the nearer end of a line over which it is first thought to open inside."""
+
+ALIKE = 0.05
+"""Places of contact that differ by less make the same attempt."""
+
+SAMPLES = np.linspace(0.0, 1.0, 41)
+"""Places along a stretch at which its force per length is looked at."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A state whose equations are solved.
+
+    Attributes:
+        placed: the model with elements that end at the contacts.
+        x: unknowns.
+        forces: of the contacts, without unit.
+        solution: the same as a solution, not judged yet.
+    """
+
+    placed: Placed
+    x: FloatArray
+    forces: FloatArray
+    solution: Solution
+
+    @property
+    def state(self) -> ContactState:
+        """The contacts."""
+        return self.placed.state
+
+    def parts(self) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact, the forces at its sections, and the coefficients of the force along it, without unit."""
+        return self.state.with_forces(self.forces, self.placed.modes)
+
+    @property
+    def largest_force(self) -> float:
+        """Scale of the forces, without unit: EI/ℓ², or the largest force at a point."""
+        return max(1.0, float(np.abs(self.forces).max(initial=0.0)))
+
+    def pulls(self) -> Iterator[tuple[Touch, float]]:
+        """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
+        for touch, carried, line in self.parts():
+            least = float(carried.min())
+            if touch.is_line:
+                _, pressure = self.pressure(touch, line)
+                # Per length, over the whole of it.
+                least = min(least, float(pressure.min()) * (touch.end - touch.start))
+            yield touch, max(-least, 0.0) / self.largest_force
+
+    def pressure(self, touch: Touch, line: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Abscissae along a line of contact and the force per length there, without unit."""
+        return pressure_along(touch, line, self.placed.modes[touch.owner])
+
+    def weakest(self, touch: Touch) -> float:
+        """Abscissa at which a line presses least, or pulls most; of sections too."""
+        for other, carried, line in self.parts():
+            if other != touch:
+                continue
+            X, pressure = self.pressure(touch, line)
+            sections = np.array(touch.carriers)
+            forces = np.concatenate([pressure * (touch.end - touch.start), carried])
+            return float(np.concatenate([X, sections])[forces.argmin()])
+        raise ValueError("no contact of this state")
+
+    @property
+    def worst_pull(self) -> float:
+        """The largest of them."""
+        return max((pull for _, pull in self.pulls()), default=0.0)
+
+    def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
+        """Stretches and bodies that are inside an obstacle by more than a tolerance."""
+        for rod, obstacle in pairs(self.placed.model.scene):
+            X = np.union1d(DENSE, self._beside_contacts(rod))
+            gaps = gap_along(self.solution, rod, obstacle, X)
+            for stretch in runs(gaps < -tolerance):
+                inside = X[stretch]
+                deepest = int(np.argmin(gaps[stretch]))
+                yield Penetrated(rod, obstacle.name, inside[0], inside[-1], inside[deepest], -gaps[stretch][deepest])
+        for body, obstacle in body_pairs(self.placed.model.scene):
+            gap = body_gap(self.solution, body, obstacle)
+            if gap < -tolerance:
+                yield Penetrated(body.name, obstacle.name, 0.0, 0.0, 0.0, -gap, of_body=True)
+
+    def _beside_contacts(self, rod: str) -> FloatArray:
+        """Abscissae close to the places of contact, where a rod that lies on starts to enter."""
+        beside = np.concatenate([-np.geomspace(1e-4, 2e-2, 12), np.geomspace(1e-4, 2e-2, 12)])
+        ends = [end for touch in self.state.along(rod) for end in touch.ends]
+        X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
+        return X[(X > 0.0) & (X < 1.0)]
+
+    def depth(self) -> float:
+        """How deep any rod is inside an obstacle, relative to its length."""
+        return max((penetrated.depth for penetrated in self.penetrations(0.0)), default=0.0)
+
+
+@dataclass(frozen=True)
+class Penetrated:
+    """A stretch of a rod that is inside an obstacle; or a body.
+
+    Attributes:
+        owner: name of the rod, or of the body, that is inside.
+        obstacle: name of the obstacle.
+        start: abscissa of its first section.
+        end: of its last one.
+        deepest: of the one that is deepest inside.
+        depth: there, relative to the length of the rod.
+        of_body: whether it is a body.
+    """
+
+    owner: str
+    obstacle: str
+    start: float
+    end: float
+    deepest: float
+    depth: float
+    of_body: bool = False
+
+    def joined(self, other: Penetrated) -> Penetrated:
+        """One stretch from the start of the first to the end of the last."""
+        deeper = self if self.depth >= other.depth else other
+        return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
+
+    def is_at(self, touch: Touch) -> bool:
+        """Whether it begins or ends at a contact."""
+        if (touch.owner, touch.obstacle, touch.of_body) != (self.owner, self.obstacle, self.of_body):
+            return False
+        return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
+
+
+@dataclass
+class Settling:
+    """The search for a state that holds.
+
+    Attributes:
+        scene: without contacts.
+        given: its stacked inputs.
+        grids: modes and nodes of every element.
+        newton: limits of the solve of each state.
+        tolerance: depth and pull, relative, up to which a state holds.
+        iterations: Newton steps so far.
+        squeezed: the contacts of the last state that was not solved, where its places were last; None of none.
+    """
+
+    scene: scenes.Scene
+    given: FloatArray
+    grids: Grids
+    newton: NewtonSettings
+    tolerance: float
+    iterations: int = 0
+    squeezed: ContactState | None = None
+
+    @cached_property
+    def sections(self) -> dict[str, tuple[float, ...]]:
+        """Abscissae inside each rod at which lines of contact have seams, by name."""
+        return load_sections(self.scene)
+
+    def run(self, guesses: Sequence[tuple[ContactState, Solution]]) -> tuple[Found | None, bool]:
+        """Try states until one holds.
+
+        Args:
+            guesses: the first ones, the likeliest first, each with a shape to start from.
+
+        Returns:
+            the state that holds, or the last one that was solved; whether it holds.
+        """
+        waiting = list(guesses)
+        tried: list[ContactState] = []
+        last: Found | None = None
+        while waiting and len(tried) < MOST_STATES:
+            candidate, start = waiting.pop(0)
+            candidate = candidate.split(self.sections)
+            if not candidate.in_order or any(_alike(candidate, other) for other in tried):
+                continue
+            tried.append(candidate)
+            found = self.solve(candidate, start)
+            if found is None:
+                # Where places have run into something the state beyond it is the likeliest.
+                beyond = [] if self.squeezed is None else list(met(self.squeezed, self.sections))
+                waiting = [(other, start) for other in beyond] + waiting
+                waiting += [(other, start) for other in otherwise(candidate, self.sections)]
+                continue
+            last = found
+            others = list(next_states(found, self.tolerance))
+            if not others:
+                return found, True
+            # What follows from a state that was solved comes before what was only thought of.
+            waiting = [(other, found.solution) for other in others] + waiting
+        return last, False
+
+    def solve(self, state: ContactState, near: Solution) -> Found | None:
+        """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
+        equations = ContactEquations(self.scene, self.given, self.grids, state)
+        z = self.solved(equations, near)
+        if z is None:
+            return None
+        return found_at(equations, z, self.given)
+
+    def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
+        """Unknowns, forces and places that solve equations, from a shape near them."""
+        x = projected(near, equations.nominal.model)
+        start = np.concatenate([x, equations.nominal.fitting_forces(x), equations.state.places])
+        self.squeezed = None
+        if len(equations.state.places):
+            z, solved, taken = sought(equations, start, self.newton)
+            self.iterations += taken
+            if solved:
+                return z
+            _, _, places = equations.parts(z)
+            self.squeezed = equations.state.at(places.tolist())
+        result = newton(equations.equations, start, self.newton)
+        self.iterations += result.iterations
+        if result.outcome is not Outcome.CONVERGED:
+            return None
+        return result.x
+
+
+def found_at(equations: ContactEquations, z: FloatArray, given: FloatArray) -> Found:
+    """The solution z of the equations of a state, for stacked inputs of its scene."""
+    x, forces, places = equations.parts(z)
+    # What only rounding presses does not press.
+    forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
+    placed = equations.placed(equations.state.at(places.tolist()), given)
+    x = x / equations.moved_strains(places)
+    outcome = Outcome.CONVERGED
+    norm = relative_norm(placed.residual(x, forces), np.concatenate([x, forces]))
+    solution = Solution(placed.model, placed.inputs(forces), x, outcome, outcome.value, norm, iterations=0)
+    return Found(placed, x, forces, solution)
+
+
+def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:
+    """Abscissae along a line of contact and the force per length there, without unit.
+
+    Args:
+        touch: the line.
+        line: coefficients of its force per length.
+        modes: polynomials of the curvature of its rod.
+    """
+    X = []
+    pressure = []
+    for start, end, own in touch.by_stretch(line, modes):
+        X.append(start + (end - start) * SAMPLES)
+        pressure.append(legendre_polynomials(len(own), SAMPLES) @ own)
+    return np.concatenate(X), np.concatenate(pressure)
+
+
+def _alike(first: ContactState, second: ContactState) -> bool:
+    """Whether two states are the same attempt."""
+    if first.signature != second.signature or any(
+        one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
+    ):
+        return False
+    return bool(np.all(np.abs(first.places - second.places) < ALIKE))
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """States of one contact that may replace a contact that is at fault.
+
+    Attributes:
+        touch: the contact; None where a stretch is inside an obstacle that no contact is at.
+        options: the contacts that may be there instead, the likeliest first.
+    """
+
+    touch: Touch | None
+    options: tuple[tuple[Touch, ...], ...]
+
+
+def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
+    """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
+    pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
+    changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
+    for penetrated, touch in _by_touch(found, tolerance):
+        # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
+        if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
+            continue
+        if touch not in pulling:
+            changes.append(Replacement(touch, tuple(_instead_of_entering(penetrated, touch))))
+    if not changes:
+        return
+    # All that is at fault is changed at once; then each in another way.
+    likeliest = [(change.touch, change.options[0]) for change in changes]
+    yield _changed(found.state, likeliest)
+    for index, change in enumerate(changes):
+        others = likeliest[:index] + likeliest[index + 1 :]
+        for option in change.options[1:]:
+            yield _changed(found.state, [*others, (change.touch, option)])
+
+
+def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
+    """Stretches inside an obstacle, each with the contact that it is at; those on both sides of one contact joined."""
+    alone: list[tuple[Penetrated, Touch | None]] = []
+    joined: dict[Touch, Penetrated] = {}
+    for penetrated in found.penetrations(tolerance):
+        touch = next((touch for touch in found.state.touches if penetrated.is_at(touch)), None)
+        if touch is None:
+            alone.append((penetrated, None))
+        else:
+            joined[touch] = penetrated.joined(joined.get(touch, penetrated))
+    return [*alone, *((penetrated, touch) for touch, penetrated in joined.items())]
+
+
+def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[Touch, ...]]]) -> ContactState:
+    """The state with some contacts replaced by others; None replaces no contact."""
+    replaced = {old for old, _ in changes}
+    kept = [touch for touch in state.touches if touch not in replaced]
+    added = [touch for _, new in changes for touch in new]
+    return ContactState.of([*kept, *added])
+
+
+def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
+    """Contacts that may take the place of one that pulls; of a line that is lifted in its middle first two."""
+    if touch.is_line:
+        lifted = found.weakest(touch)
+        reach = OPENING * min(lifted - touch.start, touch.end - lifted)
+        if reach > 0.0:
+            before = Touch.line(touch.obstacle, touch.owner, touch.start, lifted - reach)
+            after = Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end)
+            yield before, after
+    yield from instead_of_pulling(touch)
+
+
+def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
+    """Contacts that hold a stretch outside of an obstacle, alone or in place of the contact beside it."""
+    if penetrated.of_body:
+        yield (Touch.ball(penetrated.obstacle, penetrated.owner),)
+        return
+    here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
+    point = Touch.point(penetrated.obstacle, penetrated.owner, here)
+    if touch is None:
+        yield (point,)
+        return
+    start = min(penetrated.start, touch.start)
+    end = max(penetrated.end, touch.end)
+    line = Touch.line(penetrated.obstacle, penetrated.owner, start, end)
+    if touch.is_line:
+        yield (line,)
+        yield (touch, point)
+    elif touch.end == TIP:
+        # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
+        inwards = Touch.point(penetrated.obstacle, penetrated.owner, min(here, TIP - 2 * NEAR))
+        yield (inwards,)
+        yield (line,)
+        yield (inwards, touch)
+    else:
+        yield (line,)
+        yield (touch, point)
+        yield (point,)

@@ -1,0 +1,108 @@
+"""Equilibrium of a scene with obstacles, on given modes and nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
+
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import judged
+from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    TIP,
+    ContactState,
+    continuations,
+    state_in,
+    without_contacts,
+)
+from cosserat_casadi.equilibrium.contact.cushions import approach, first_state
+from cosserat_casadi.equilibrium.contact.passing_through import passes_through
+from cosserat_casadi.equilibrium.contact.raised_cushions import likely_states, sharpened
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.numerics.newton import NewtonSettings
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
+
+LEAST_TOLERANCE = 1e-9
+"""Depth and pull, relative, below which rounding decides."""
+
+BESIDE_JOINT = 0.15
+"""Distance from the joint of two rods, of a stretch that soft cushions hold off, within which it lies on both."""
+
+
+def solve_contact(
+    scene: scenes.Scene,
+    grids: Grids,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    start: Solution | None = None,
+    newton: NewtonSettings | None = None,
+    progress: Progress | None = None,
+) -> Solution:
+    """Find the contacts of a scene and its equilibrium.
+
+    Args:
+        scene: with obstacles; parameters have values.
+        grids: modes and nodes of every element.
+        values: inputs by name.
+        start: a solution of the same rods and obstacles whose contacts are tried first, where that takes no rod through
+            an obstacle; by default, and else, those of the unloaded rods under growing loads.
+        newton: limits of the solve of each state.
+        progress: told the share of the load path that is done.
+    """
+    bare = without_contacts(scene)
+    given = input_layout(bare).pack(values)
+    settings = newton or NewtonSettings()
+    tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
+    settling = Settling(bare, given, grids, settings, tolerance)
+    if start is not None:
+        found, holds = settling.run([(state_in(start.model.scene), start)])
+        if found is not None and holds and not passes_through(start, found.solution):
+            return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
+    cushioned = approach(bare, values, progress)
+    settling.iterations += cushioned.iterations
+    if not cushioned.converged:
+        # Short of the full load there is nothing whose contacts could be found.
+        return replace(cushioned, iterations=settling.iterations)
+    first = first_state(cushioned)
+    found, holds = settling.run(_guesses(cushioned, first))
+    if found is None:
+        found = settling.solve(ContactState(()), cushioned)
+    if found is None:
+        unsettled = Outcome.CONTACT_UNSETTLED
+        message = unsettled.value + _over_joints(bare, first)
+        return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=message)
+    solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
+    if solution.converged and PATH_OF_ENERGY in cushioned.message:
+        return replace(solution, message=solution.message + PATH_OF_ENERGY)
+    if not holds:
+        return replace(solution, message=solution.message + _over_joints(bare, first))
+    return solution
+
+
+def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
+    """Contacts read off the cushions, each with the shape there; contacts that hold rods at the surface come first."""
+    rough = (first, cushioned)
+    sharp = sharpened(cushioned)
+    if sharp is None:
+        return [rough]
+    return [*((state, sharp.shape) for state in likely_states(sharp)), rough]
+
+
+def _over_joints(scene: scenes.Scene, state: ContactState) -> str:
+    """A sentence on a stretch that lies on an obstacle on both sides of a joint; nothing where there is none."""
+    for first, second in continuations(scene).items():
+        for before, after in product(state.along(first), state.along(second)):
+            meets = before.end > TIP - BESIDE_JOINT and after.start < BESIDE_JOINT
+            if meets and before.obstacle == after.obstacle and (before.is_line or after.is_line):
+                return (
+                    f" {first!r} and {second!r} lie on {before.obstacle!r} on both sides of their joint: a line of "
+                    "contact is not found over a joint. Give the obstacles a width, m, or make one rod of the two."
+                )
+    return ""

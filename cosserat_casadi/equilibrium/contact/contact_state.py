@@ -1,0 +1,355 @@
+"""Which sections touch which obstacles: discrete data, with the places of contact as numbers that are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import SectionForce
+from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.loads.contact_point import ContactPoint
+from cosserat_casadi.maths.numbers import is_symbolic
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.element_ends import element_ends
+
+Place = Any
+"""An abscissa X: a number, or an expression while it is sought."""
+
+TIP = 1.0
+"""Abscissa of the section that contact cannot move beyond."""
+
+CLEAR = 1e-3
+"""Distance of a place from a section with a load below which it is sought from a place that far beside it."""
+
+SHORTEST = 1e-5
+"""Least distance of places of contact from each other and from the base, relative to the length of the rod."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One contact of a rod with an obstacle, a point or a stretch that lies on it; or of a body, a ball.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        owner: name of the rod, or of the body, that touches.
+        start: abscissa X at which contact begins; 0 for a body.
+        end: abscissa at which it ends; the same for a point.
+        is_line: whether a stretch lies on the obstacle.
+        of_body: whether it is a body that touches.
+        seams: abscissae inside a line where the force per length may jump, base to tip; they do not move.
+    """
+
+    obstacle: str
+    owner: str
+    start: Place
+    end: Place
+    is_line: bool = False
+    of_body: bool = False
+    seams: tuple[float, ...] = ()
+
+    @classmethod
+    def ball(cls, obstacle: str, body: str) -> Touch:
+        """Contact of a body, whose place on the obstacle follows from where it is."""
+        return cls(obstacle, body, 0.0, 0.0, of_body=True)
+
+    @classmethod
+    def point(cls, obstacle: str, rod: str, at: float) -> Touch:
+        """Contact at one section."""
+        return cls(obstacle, rod, at, at)
+
+    @classmethod
+    def line(cls, obstacle: str, rod: str, start: float, end: float) -> Touch:
+        """A stretch that lies on an obstacle."""
+        return cls(obstacle, rod, start, end, is_line=True)
+
+    @property
+    def ends(self) -> tuple[Place, ...]:
+        """Abscissae of the one point, or of both ends."""
+        return (self.start, self.end) if self.is_line else (self.start,)
+
+    @property
+    def moves(self) -> tuple[bool, ...]:
+        """Whether each of its ends is sought: all but the tip, none of a body."""
+        if self.of_body:
+            return (False,)
+        return tuple(is_symbolic(end) or end < TIP for end in self.ends)
+
+    @property
+    def moving(self) -> tuple[Place, ...]:
+        """The ends whose places are unknowns."""
+        return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
+
+    @property
+    def carriers(self) -> tuple[Place, ...]:
+        """Abscissae of the forces at sections, base to tip: of the one point, or of both ends and the seams."""
+        return (self.start, *self.seams, self.end) if self.is_line else (self.start,)
+
+    @property
+    def carriers_move(self) -> tuple[bool, ...]:
+        """Whether each of these is sought."""
+        return (self.moves[0], *(False for _ in self.seams), *self.moves[1:])
+
+    def sorted_forces(self, forces: FloatArray) -> tuple[tuple[float, ...], tuple[SectionForce, ...]]:
+        """Forces at sections as those at the ends, and those inside a line."""
+        if not self.is_line:
+            return tuple(forces.tolist()), ()
+        first, *inside, last = forces.tolist()
+        return (first, last), tuple(map(SectionForce, self.seams, inside))
+
+    @property
+    def stretches(self) -> tuple[tuple[Place, Place], ...]:
+        """Start and end of each part of a line along which its force per length is smooth; none of a point."""
+        return tuple(pairwise(self.carriers))
+
+    @property
+    def reaches_tip(self) -> bool:
+        """Whether it ends at the tip."""
+        return not self.of_body and not self.moves[-1]
+
+    @property
+    def kind(self) -> str:
+        """The word of the result file."""
+        return "line" if self.is_line else "point"
+
+    def moved(self, places: Sequence[Place]) -> Touch:
+        """The same contact at other places, one for each that is sought."""
+        if self.of_body:
+            return self
+        ends = [*places, TIP][: len(self.ends)]
+        return replace(self, start=ends[0], end=ends[-1])
+
+    def split(self, sections: Sequence[float]) -> Touch:
+        """The same contact with seams at those sections that are inside it, and no place on a section.
+
+        Args:
+            sections: abscissae at which loads make the shear force, or its rate, jump.
+        """
+        if not self.is_line:
+            place = _beside(self.start, sections, CLEAR) if self.moves[0] else self.start
+            return replace(self, start=place, end=place)
+        start = _beside(self.start, sections, -CLEAR)
+        end = self.end if self.reaches_tip else _beside(self.end, sections, CLEAR)
+        return replace(self, start=start, end=end, seams=tuple(X for X in sections if start < X < end))
+
+    def moment_counts(self, modes: int) -> tuple[int, ...]:
+        """Number of polynomials of the force per length on each stretch.
+
+        In a stretch whose curvature has n polynomials the distance has n + 2. At its start distance and slope are
+        known: where the line begins as the conditions of a sought end, at a seam from the stretch before. At its end a
+        sought end takes two more, a seam or the tip the distance alone; with the rest all are met, and none twice.
+        """
+        counts = []
+        for moves in self.carriers_move[1:]:
+            conditions = 2 + (2 if moves else 1)
+            counts.append(max(modes + 2 - conditions, 1))
+        return tuple(counts)
+
+    def moment_count(self, modes: int) -> int:
+        """Number of polynomials of the force per length, over all stretches."""
+        return sum(self.moment_counts(modes))
+
+    def by_stretch(self, along: FloatArray, modes: int) -> Iterator[tuple[float, float, FloatArray]]:
+        """Start and end of each stretch, with its part of the coefficients of the force per length."""
+        first = 0
+        for (start, end), count in zip(self.stretches, self.moment_counts(modes), strict=True):
+            yield start, end, along[first : first + count]
+            first += count
+
+
+def _beside(place: float, sections: Sequence[float], way: float) -> float:
+    """A place, or one by a way beside a section on which it is."""
+    for section in sections:
+        if abs(place - section) < CLEAR:
+            return section + way
+    return place
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """All contacts of a scene.
+
+    Attributes:
+        touches: sorted by rod and abscissa, those of bodies last.
+    """
+
+    touches: tuple[Touch, ...]
+
+    @classmethod
+    def of(cls, touches: Sequence[Touch]) -> ContactState:
+        """The state of some contacts, in order."""
+        return cls(tuple(sorted(touches, key=_order)))
+
+    @property
+    def signature(self) -> tuple[tuple[str, str, str, bool, bool], ...]:
+        """The discrete part of the state: two states with the same signature differ in their places alone."""
+        return tuple(
+            (touch.owner, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
+        )
+
+    def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
+        """The same contacts with seams at the sections of each rod, by name, that are inside them."""
+        touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
+        return ContactState(tuple(touches))
+
+    @property
+    def places(self) -> FloatArray:
+        """All abscissae that are sought, shape (k,)."""
+        return np.array([float(place) for touch in self.touches for place in touch.moving])
+
+    def along(self, rod: str) -> list[Touch]:
+        """The contacts of a rod, from base to tip."""
+        return [touch for touch in self.touches if touch.owner == rod and not touch.of_body]
+
+    def at(self, places: Sequence[Place]) -> ContactState:
+        """The same contacts at other places: numbers, or expressions."""
+        touches = []
+        first = 0
+        for touch in self.touches:
+            last = first + len(touch.moving)
+            touches.append(touch.moved(places[first:last]))
+            first = last
+        return ContactState(tuple(touches))
+
+    def with_forces(
+        self, forces: FloatArray, modes: Mapping[str, int]
+    ) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact, the forces at its sections, and the coefficients of the force along it.
+
+        Args:
+            forces: of all contacts, in the order of the loads.
+            modes: polynomials of the curvature of each rod, by name.
+        """
+        first = 0
+        for touch in self.touches:
+            last = first + len(touch.carriers)
+            count = touch.moment_count(modes[touch.owner]) if touch.is_line else 0
+            yield touch, forces[first:last], forces[last : last + count]
+            first = last + count
+
+    @property
+    def in_order(self) -> bool:
+        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        for rod in {touch.owner for touch in self.touches}:
+            ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers)]
+            gaps = np.diff(ends)
+            if np.any(gaps < SHORTEST) or ends[-1] > TIP:
+                return False
+        return True
+
+    def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
+        """The forces of the contacts as loads of the scene, without magnitude yet: at its sections, then along it.
+
+        Args:
+            scene: the scene without them.
+            modes: polynomials of the curvature of each rod, by name.
+        """
+        obstacles = {obstacle.name: obstacle for obstacle in scene.obstacles}
+        loads: list[scenes.LoadRecord] = []
+        for touch in self.touches:
+            obstacle = obstacles[touch.obstacle]
+            for end in touch.carriers:
+                loads.append(
+                    ContactPoint.model_construct(
+                        name=f"contact {len(loads) + 1}",
+                        rod=None if touch.of_body else touch.owner,
+                        body=touch.owner if touch.of_body else None,
+                        obstacle=obstacle,
+                        at=end,
+                        force=0.0,
+                    )
+                )
+            if not touch.is_line:
+                continue
+            for span, count in zip(touch.stretches, touch.moment_counts(modes[touch.owner]), strict=True):
+                loads.append(
+                    ContactLine.model_construct(
+                        name=f"contact {len(loads) + 1}",
+                        rod=touch.owner,
+                        obstacle=obstacle,
+                        span=span,
+                        force=((0.0,) * count,),
+                    )
+                )
+        return loads
+
+
+def continuations(scene: scenes.Scene) -> dict[str, str]:
+    """Rods by the name of the rod whose tip they start from and whose line they go on without a corner."""
+    following = {}
+    for rod in scene.rods:
+        base = rod.base
+        if base.rod is None or base.at != TIP or any(base.position):
+            continue
+        # About its own axis it may be turned as it likes.
+        _, x, y, _ = base.quaternion
+        if x == 0.0 and y == 0.0:
+            following[base.rod] = rod.name
+    return following
+
+
+def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
+    """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
+    loads = state.loads(scene, modes)
+    changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
+    if scene.inputs is not None:
+        changes["inputs"] = (*scene.inputs, *(f"{load.name}.force" for load in loads))
+    return scene.model_copy(update=changes)
+
+
+def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine]:
+    """The forces of contacts among the loads of a scene, which no scene file names."""
+    loads: Sequence[scenes.LoadRecord] = scene.loads
+    return [load for load in loads if isinstance(load, ContactPoint | ContactLine)]
+
+
+def without_contacts(scene: scenes.Scene) -> scenes.Scene:
+    """The scene as its file has it."""
+    names = {load.name for load in contact_loads(scene)}
+    if not names:
+        return scene
+    changes: dict[str, object] = {"loads": tuple(load for load in scene.loads if load.name not in names)}
+    if scene.inputs is not None:
+        inputs = {f"{name}.force" for name in names}
+        changes["inputs"] = tuple(name for name in scene.inputs if name not in inputs)
+    return scene.model_copy(update=changes)
+
+
+def load_sections(scene: scenes.Scene) -> dict[str, tuple[float, ...]]:
+    """Abscissae inside each rod at which what acts on it makes the shear force, or its rate, jump, by name."""
+    return {rod.name: element_ends(scene, rod.name)[1:-1] for rod in scene.rods}
+
+
+def state_in(scene: scenes.Scene) -> ContactState:
+    """The contacts whose forces are among the loads of a scene."""
+    touches: list[Touch] = []
+    loads = contact_loads(scene)
+    for line in loads:
+        if not isinstance(line, ContactLine):
+            continue
+        start, end = line.span
+        touch = Touch.line(line.obstacle.name, line.rod, start, end)
+        last = touches[-1] if touches else None
+        if last is not None and (last.owner, last.obstacle, last.end) == (touch.owner, touch.obstacle, start):
+            # One line, of stretches that follow each other.
+            before = touches.pop()
+            touch = replace(touch, start=before.start, seams=(*before.seams, start))
+        touches.append(touch)
+    of_lines = {(touch.owner, touch.obstacle, at) for touch in touches for at in touch.carriers}
+    for point in loads:
+        if not isinstance(point, ContactPoint):
+            continue
+        if point.body is not None:
+            touches.append(Touch.ball(point.obstacle.name, point.body))
+        elif point.rod is not None and (point.rod, point.obstacle.name, point.at) not in of_lines:
+            touches.append(Touch.point(point.obstacle.name, point.rod, point.at))
+    return ContactState.of(touches)
+
+
+def _order(touch: Touch) -> tuple[bool, str, Place, str]:
+    """Key by which contacts are sorted."""
+    return touch.of_body, touch.owner, touch.start, touch.obstacle

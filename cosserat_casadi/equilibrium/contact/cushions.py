@@ -1,0 +1,286 @@
+"""Where contact is, roughly: rods that sink a little into cushions, on coarse elements, as the loads grow from zero.
+
+The pressure of the cushions says which stretches are held off, and how. A cushion is an obstacle made soft: it grows
+with the loads, so that a rod whose unloaded shape lies in an obstacle, as a straight rod in a bent lumen, is pushed out
+of it on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs, runs
+from cosserat_casadi.equilibrium.load_path import input_path, load_path
+from cosserat_casadi.equilibrium.relax import can_relax, relaxed
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.loads.penetration import Penetration
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, Path, follow
+from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.rod.discretisation import Discretisation
+
+Values = Mapping[str, npt.ArrayLike] | None
+"""Inputs by name."""
+
+ELEMENTS = 10
+"""Elements of every rod, beside the elements that its loads ask for: pressure is not smooth."""
+
+MODES = 3
+NODES = 6
+
+MODES_ALONE = 5
+"""Modes of a rod that touches no obstacle, which needs no elements for it."""
+
+STIFFNESS = 1e6
+"""First stiffness of a cushion, in units of EI/ℓ⁵."""
+
+SHALLOW = 0.01
+"""Depth, relative to the length, to which rods may sink into it."""
+
+BALL_STIFFNESS = 1e5
+"""First stiffness of a cushion on a body, in units of EI/ℓ⁴: where it is SHALLOW it pushes with 10 EI/ℓ²."""
+
+THIN_BALL_FORCE = 40.0
+"""Least stiffness times the square of the distance to the middle: half of it deep it pushes with 10 EI/ℓ²."""
+
+LONG = 0.2
+"""Stretch of pressure from which a line of contact is tried before a point."""
+
+THIN_FORCE = 37.0
+"""Stiffness of the cushion of a thin bar times the cube of its radius, in units of EI/ℓ⁵ and ℓ.
+
+A rod across it that has sunk in by half the radius is pressed over two radii, and with ten times EI/ℓ².
+"""
+
+MOST_ELEMENTS = 20
+"""Most elements of a rod beside a thin bar, which must not lie between two nodes."""
+
+HARDER = 10.0
+"""Factor on the stiffness of cushions through which a rod would be pushed."""
+
+MOST_STIFFENINGS = 3
+"""Times that cushions are made stiffer where rods sink in deeper."""
+
+LONGEST_STEP = 0.15
+"""Longest step of the continuation: a rod must not jump through an obstacle."""
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """A stretch that a cushion holds off.
+
+    Attributes:
+        rod: name of the rod.
+        obstacle: name of the obstacle.
+        X: abscissae of the stretch, shape (k,).
+        values: force per length there, shape (k,), any unit.
+    """
+
+    rod: str
+    obstacle: str
+    X: FloatArray
+    values: FloatArray
+
+    def touch(self) -> Touch:
+        """The contact that the pressure looks like."""
+        start, end = float(self.X[0]), float(self.X[-1])
+        rises = np.diff(self.values) > 0
+        falls = np.flatnonzero(~rises)
+        first_peak = float(self.X[falls[0]]) if len(falls) else end
+        at_tip = end == TIP
+        if end - start > LONG:
+            last_rise = np.flatnonzero(rises)
+            last_peak = float(self.X[last_rise[-1] + 1]) if len(last_rise) else start
+            line_end = TIP if at_tip else last_peak
+            if line_end - first_peak > LONG / 2:
+                return Touch.line(self.obstacle, self.rod, first_peak, line_end)
+        place = float(self.X[np.argmax(self.values)])
+        if not at_tip:
+            place = float(self.X @ self.values / self.values.sum())
+        return Touch.point(self.obstacle, self.rod, place)
+
+
+def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
+    """The scene with cushions for obstacles, on coarse elements.
+
+    Args:
+        scene: without contacts.
+        factor: on the stiffness of the cushions.
+    """
+    cushions: list[Penetration] = []
+    records = {rod.name: rod for rod in scene.rods}
+    for number, (rod_name, obstacle) in enumerate(pairs(scene), start=1):
+        record = records[rod_name]
+        stiffness = _unit(record) * max(STIFFNESS, THIN_FORCE * _thinness(obstacle, record) ** 3) * factor
+        cushion = Penetration.model_construct(
+            name=f"cushion {number}", rod=rod_name, obstacle=obstacle, stiffness=stiffness
+        )
+        cushions.append(cushion)
+    cushions += _cushions_of_bodies(scene, factor)
+    changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
+    if scene.inputs is not None:
+        names = [f"{cushion.name}.stiffness" for cushion in cushions]
+        names += [f"{cushion.name}.raised" for cushion in cushions if cushion.rod is not None]
+        changes["inputs"] = (*scene.inputs, *names)
+    soft = scene.model_copy(update=changes)
+    discretisation = {}
+    for rod in scene.rods:
+        own = element_ends(scene, rod.name)
+        if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
+            discretisation[rod.name] = Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
+            continue
+        # None as short as the distance of an end of the loads from one of ours may be.
+        thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
+        # Nodes are no farther apart than the thinnest bar is thick.
+        # The ratio may be beyond all range: it is bounded before it becomes a whole number.
+        elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
+        further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
+        modes = (MODES,) * len(rod.admitted)
+        discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
+    return build(soft, discretisation)
+
+
+def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetration]:
+    """The cushion of every obstacle on every body that it concerns, in units of the rods that hold it."""
+    records = {rod.name: rod for rod in scene.rods}
+    for number, (body, obstacle) in enumerate(body_pairs(scene), start=1):
+        holding = [records[joint.rod] for joint in scene.joints if joint.body == body.name]
+        unit = max(_unit(rod) * rod.length for rod in holding)
+        length = max(rod.length for rod in holding)
+        radius = ball_radius(body)
+        thinness = length / (obstacle.thickness / 2 + radius)
+        yield Penetration.model_construct(
+            name=f"cushion of body {number}",
+            rod=None,
+            body=body.name,
+            radius=radius,
+            obstacle=obstacle,
+            stiffness=unit * max(BALL_STIFFNESS, THIN_BALL_FORCE * thinness**2) * factor,
+        )
+
+
+def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
+    """Length of a rod over the radius of a bar or ball that it must not enter; 0 for other obstacles."""
+    if not obstacle.concerns(rod.name):
+        return 0.0
+    return 2 * rod.length / obstacle.thickness
+
+
+def _unit(rod: scenes.Rod) -> float:
+    """EI/ℓ⁵ of a rod, N/m⁴: a force per length, by the square of a depth, over the length."""
+    properties = rod_properties(rod)
+    return properties.bending_stiffness / properties.length**5
+
+
+def approach(scene: scenes.Scene, values: Values, progress: Progress | None = None) -> Solution:
+    """Equilibrium of a scene on its cushions, which are stiff enough for rods to sink in but little.
+
+    Args:
+        scene: without contacts.
+        values: inputs by name.
+        progress: told the share of the load path that is done.
+    """
+    settings = ContinuationSettings(longest=LONGEST_STEP)
+    found = _under_growing_loads(cushioned(scene), values, settings, progress)
+    factor = HARDER
+    while (
+        not found.converged
+        and Barriers(found.model, found.inputs).give_way(found.x)
+        and factor <= HARDER**MOST_STIFFENINGS
+    ):
+        # The cushion of a thin bar has given way: a harder one holds.
+        found = _under_growing_loads(cushioned(scene, factor), values, settings, progress)
+        factor *= HARDER
+    model = found.model
+    inputs = found.inputs
+    if not found.converged and can_relax(model) and model.has_potential(inputs):
+        # The rod snaps on the way: it is let settle to less energy where the path ended.
+        settled = relaxed(found, settings.newton, progress)
+        if settled is not None and Barriers(model, inputs).are_between(found.x, settled.x):
+            settled = None
+        found = found if settled is None else settled
+    stiffening = 0
+    while found.converged and depth(found) > SHALLOW and stiffening < MOST_STIFFENINGS:
+        # Pressure grows with the square of the depth.
+        factor = (2 * depth(found) / SHALLOW) ** 2
+        stiffer = inputs.copy()
+        for entry, span in model.inputs:
+            if entry.owner.startswith("cushion ") and entry.field == "stiffness":
+                stiffer[span] *= factor
+        end = follow(_guarded(model, inputs, input_path(model, found.x, inputs, stiffer)), settings, None)
+        found = _judged(model, stiffer, end)
+        inputs = stiffer
+        stiffening += 1
+    return found
+
+
+def _under_growing_loads(
+    model: Model, values: Values, settings: ContinuationSettings, progress: Progress | None
+) -> Solution:
+    """The end of the load path on cushions, on which no rod comes out on the other side of a bar or ball."""
+    inputs = model.pack(values)
+    end = follow(_guarded(model, inputs, load_path(model, inputs)), settings, progress)
+    return _judged(model, inputs, end)
+
+
+def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
+    """A path without steps through bars and balls."""
+    barriers = Barriers(model, inputs)
+    if not barriers.watched and not barriers.watched_bodies:
+        return path
+    return replace(path, admits=lambda before, after: not barriers.are_between(before[0], after[0]))
+
+
+def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:
+    """The end of a path as a solution; that coarse elements resolve a rod but roughly is no matter here."""
+    return Solution(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        end.outcome.value,
+        residual_norm=end.residual_norm,
+        iterations=end.iterations,
+        load_factor=end.reached,
+    )
+
+
+def depth(solution: Solution) -> float:
+    """How deep rods and bodies sink into obstacles, relative to their lengths."""
+    of_rods = max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
+    of_bodies = [-body_gap(solution, body, obstacle) for body, obstacle in body_pairs(solution.model.scene)]
+    return max([of_rods, *of_bodies])
+
+
+def first_state(solution: Solution) -> ContactState:
+    """The contacts that the pressure of cushions looks like."""
+    touches = []
+    for rod, obstacle, gaps in _all_gaps(solution):
+        # Quadratic in the depth, as the cushions are.
+        pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
+        touches += [pressure.touch() for pressure in pressed]
+    return ContactState.of([*touches, *pressed_balls(solution)])
+
+
+def pressed_balls(solution: Solution) -> Iterator[Touch]:
+    """The contacts of bodies that have sunk into cushions."""
+    for body, obstacle in body_pairs(solution.model.scene):
+        if body_gap(solution, body, obstacle) < 0.0:
+            yield Touch.ball(obstacle.name, body.name)
+
+
+def _all_gaps(solution: Solution) -> Iterator[tuple[str, scenes.ObstacleRecord, FloatArray]]:
+    """Gaps of every rod to every obstacle that concerns it, along all of it."""
+    for rod, obstacle in pairs(solution.model.scene):
+        yield rod, obstacle, gap_along(solution, rod, obstacle, DENSE)

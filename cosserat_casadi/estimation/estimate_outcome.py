@@ -1,0 +1,206 @@
+"""The end of an estimate: the estimates of each row, how well they are known, and directions that no sensor sees."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, Knowledge
+from cosserat_casadi.estimation.consistency import Consistency
+from cosserat_casadi.estimation.optima import SecondBest
+from cosserat_casadi.estimation.shared import SharedNumbers
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+BLIND = 1e-10
+"""Share of the largest eigenvalue of the information, in typical sizes, below which data and prior say nothing."""
+
+HARDLY_SEEN = 0.01
+"""Information of the data, relative to that of the prior, below which the prior alone speaks: a deviation that is
+narrower by half a percent."""
+
+SHOWN_PART = 0.2
+"""Least part of an unknown in a direction that is told."""
+
+NORMAL_95 = 1.959963984540054
+"""Deviations that hold 95 % of a normal distribution."""
+
+SURE = 0.95
+"""Share of the posterior mass from which on the best minimum stands for all."""
+
+NOT_DETERMINED = "not_determined"
+"""Word for a row whose unknowns neither data nor priors determine."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Estimates of every case.
+
+    Attributes:
+        model: the model of the estimates.
+        cases: first row of each in words.
+        labels: names of the unknown numbers.
+        units: of these.
+        outcomes: how each case ended: ``found``, or why not, see :data:`REASONS`.
+        values: the maxima a posteriori, shape (cases, k); NaN where nothing was found.
+        covariance: shape (cases, k, k); likewise; the uncertainty of the shared numbers is in it. By draws it holds the
+            mean products of deviations from the values.
+        cost: half the sum of squares in squared standard deviations, shape (cases,).
+        numbers: how many were measured in each case, shape (cases,).
+        x: the equilibria, shape (cases, size).
+        inputs: stacked inputs of each, shape (cases, inputs).
+        parameters: stacked parameters of each, shape (cases, parameters); often none.
+        second: what else explains the rows; None where one search was made for each.
+        unseen: directions that the data do not see, in words, with the number of cases in which that is so.
+        consistency: how well data, priors and model go together.
+        shared: what all rows share; None where nothing of that is unknown.
+        checked: cases solved again on a finer discretisation: number of the case, estimated error.
+        warnings: sentences on what looks wrong.
+    """
+
+    model: Model
+    cases: tuple[str, ...]
+    labels: tuple[str, ...]
+    units: tuple[str, ...]
+    outcomes: tuple[str, ...]
+    values: FloatArray
+    covariance: FloatArray
+    cost: FloatArray
+    numbers: npt.NDArray[np.int64]
+    x: FloatArray
+    inputs: FloatArray
+    parameters: FloatArray
+    second: SecondBest | None
+    unseen: dict[str, int]
+    consistency: Consistency
+    shared: SharedNumbers | None = None
+    checked: tuple[tuple[int, float | None], ...] = ()
+    warnings: tuple[str, ...] = field(default=())
+
+    @property
+    def found(self) -> npt.NDArray[np.bool_]:
+        """Which cases were found, shape (cases,)."""
+        return np.array([outcome == ENDINGS[0] for outcome in self.outcomes])
+
+    @property
+    def doubtful(self) -> npt.NDArray[np.bool_]:
+        """Cases that were found, but might be otherwise: another minimum has a share worth telling, shape (cases,)."""
+        if self.second is None:
+            return np.zeros(len(self.cases), dtype=bool)
+        return self.found & (self.second.share < SURE)
+
+    @property
+    def sigma(self) -> FloatArray:
+        """Standard deviations, shape (cases, k)."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+
+    @property
+    def intervals(self) -> FloatArray:
+        """Intervals that hold 95 % of the posterior, shape (cases, k, 2)."""
+        half = NORMAL_95 * self.sigma
+        return np.stack([self.values - half, self.values + half], axis=2)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many cases ended in each way."""
+        return dict(Counter(self.outcomes))
+
+    @property
+    def message(self) -> str:
+        """How many cases were found, in words."""
+        return f"{int(np.count_nonzero(self.found))} of {len(self.cases)} rows found."
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether every case that was solved again is within the scene's tolerance.
+
+        None where none was, and where no tolerance has a meaning.
+        """
+        accuracy = self.model.scene.accuracy
+        if not self.checked or not accuracy.binds:
+            return None
+        return all(error is not None and error <= accuracy.tolerance for _, error in self.checked)
+
+    @property
+    def holds(self) -> bool:
+        """Whether some case was found, and every one that was looked at is within the scene's tolerance."""
+        return self.within_tolerance is not False and bool(np.any(self.found))
+
+
+REASONS = {
+    "no_equilibrium": "No equilibrium at the values to begin with: give a prior near what is felt.",
+    "singular": "A limit or bifurcation point: no derivatives there.",
+    "not_found": "The search found no least misfit.",
+    NOT_DETERMINED: "Neither data nor priors determine the unknowns: give priors, or measure more.",
+}
+"""Why a case was not found, by its outcome."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """Information of data and priors on rows of estimates.
+
+    Attributes:
+        covariance: shape (cases, k, k); NaN where not determined.
+        determined: shape (cases,).
+        unseen: as in :class:`Estimate`.
+    """
+
+    covariance: FloatArray
+    determined: npt.NDArray[np.bool_]
+    unseen: dict[str, int]
+
+
+def what_is_known(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
+    """Covariances, and the directions that the data do not see.
+
+    Directions are told in the deviations of the priors, or in typical sizes where an unknown has no prior.
+    """
+    cases, k = found.unknowns.shape
+    has_prior = known.weight > 0.0
+    sizes = np.where(has_prior, 1.0 / np.where(has_prior, known.weight, 1.0), known.size)
+    covariance = np.full((cases, k, k), np.nan)
+    determined = np.zeros(cases, dtype=bool)
+    rows = np.flatnonzero(found.outcome == 0)
+    if not rows.size:
+        return Known(covariance, determined, {})
+    scaled = found.information[rows] * np.outer(sizes, sizes)
+    eigenvalues, vectors = np.linalg.eigh(scaled)
+    is_determined = eigenvalues[:, 0] > BLIND * eigenvalues[:, -1]
+    determined[rows] = is_determined
+    sound = np.where(is_determined[:, None], eigenvalues, np.nan)
+    inverse = np.einsum("cij,cj,ckj->cik", vectors, 1.0 / sound, vectors)
+    covariance[rows] = inverse * np.outer(sizes, sizes)
+    of_data = scaled - np.diag(np.where(has_prior, 1.0, 0.0))
+    return Known(covariance, determined, _unseen(of_data, has_prior, labels))
+
+
+def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Sequence[str]) -> dict[str, int]:
+    """Directions of little information, in words, with how many cases have them."""
+    eigenvalues, vectors = np.linalg.eigh(of_data)
+    least = BLIND * eigenvalues[:, -1:]
+    # Where every unknown has a prior, what hardly tightens it is not seen either.
+    limits = np.maximum(least, HARDLY_SEEN) if has_prior.all() else np.broadcast_to(least, (len(least), 1))
+    counted: Counter[str] = Counter()
+    for case, column in zip(*np.nonzero(eigenvalues <= limits), strict=True):
+        counted[_described(vectors[case, :, column], labels)] += 1
+    return dict(counted.most_common())
+
+
+def _described(direction: FloatArray, labels: Sequence[str]) -> str:
+    """A direction in words, such as ``0.97 push.force.x − 0.24 push.moment.y``."""
+    largest = int(np.argmax(np.abs(direction)))
+    signed = direction * np.sign(direction[largest])
+    order = np.argsort(-np.abs(signed), kind="stable")
+    parts: list[tuple[float, str]] = [(float(signed[i]), labels[i]) for i in order if abs(signed[i]) >= SHOWN_PART]
+    if len(parts) == 1:
+        return parts[0][1]
+    words = []
+    for part, label in parts:
+        sign = "− " if part < 0 else "+ "
+        words.append(f"{sign}{abs(part):.1f} {label}")
+    return " ".join(words).removeprefix("+ ")

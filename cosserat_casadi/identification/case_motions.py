@@ -1,0 +1,320 @@
+"""Motions of the cases that were measured over time, by the steps of the simulator, and their exact sensitivities.
+
+The steps have one size, so that the path is a smooth function of the unknowns. A step solves F = 0 at its stages. With
+U, their accelerations and multipliers, and G = ∂F/∂U, dU = −G⁻¹ (F_x dx + F_v dv + F_inputs d inputs + F_p dp), and
+the end of the step and its polynomial are linear in x, v and U. These are derivatives of the path as it is computed,
+not of the equations of motion (E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd
+ed., Springer 1993, section I.14).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.case_equilibria import split
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.motion_checks import immovable
+from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.simulate import EXACT, STAGES
+from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.numerics.collocation import Collocation, radau
+from cosserat_casadi.numerics.integration import StepSettings
+from cosserat_casadi.numerics.step import TimeStep, stages_of
+
+FIRST_STEPS = 16
+"""Steps that the longest motion is first divided into; they are halved until their error is small enough."""
+
+COARSE = 1e-2
+"""Error of a step, over the length, of the motion that tells how long the first steps are."""
+
+Flags = npt.NDArray[np.bool_]
+
+
+class StartInputs:
+    """The inputs at the start of a motion: those of a case where nothing moves them.
+
+    Attributes:
+        held: which inputs have no table over time, so that those of the case count, shape (inputs,).
+    """
+
+    def __init__(self, model: Model) -> None:
+        motions = model.scene.motions if model.scene.measured_over_time else ()
+        self.held: Flags = np.ones(model.inputs.size, dtype=bool)
+        for motion in motions:
+            if motion.is_table:
+                self.held[model.inputs.slices[motion.input]] = False
+        self.added = MovingInputs(model.inputs, motions, np.zeros(model.inputs.size)).at(0.0).value
+        """Values that motions add to the inputs, shape (inputs,)."""
+
+    def of(self, inputs: FloatArray, moves: Flags) -> FloatArray:
+        """Inputs of all cases where their motions start, shape (cases, inputs).
+
+        Args:
+            inputs: of all cases, shape (cases, inputs).
+            moves: which cases are motions, shape (cases,).
+        """
+        started = np.where(self.held, inputs, 0.0) + self.added
+        return np.where(moves[:, None], started, inputs)
+
+
+def check_motions(model: Model) -> None:
+    """Refuse motions whose path is no smooth function of the unknowns, or that are none.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = immovable(model.at())
+    for index, rod in enumerate(model.scene.rods):
+        if rod.base.free:
+            remedy = "hold the base, or move it by a motion of its position"
+            problems.append(Problem(f"rods[{index}].base.free", "is not for measurements over time", remedy))
+    for cable in SlackCables(model.at()).cables:
+        problem = f"{cable.tendon.name!r} may go slack in a motion, and the path is not smooth there"
+        problems.append(Problem("actuators", problem, "give its tension over time in place of its length"))
+    if problems:
+        raise SceneError(*problems)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A motion of one case at the times at which it was measured.
+
+    Attributes:
+        times: ascending, shape (T,), s.
+        x: unknowns, shape (T, size).
+        inputs: shape (T, inputs).
+        history: the steps; None where all times are the start.
+        p: parameters.
+    """
+
+    times: FloatArray
+    x: FloatArray
+    inputs: FloatArray
+    history: History | None
+    p: FloatArray
+
+
+class Motions:
+    """The motions of a model.
+
+    Attributes:
+        model: with its parameters.
+        start: inputs at the start.
+        times: at which each case was measured, by its number, ascending, s.
+        size: of the steps, s.
+    """
+
+    def __init__(self, model: Model, times: Mapping[int, FloatArray]) -> None:
+        self.model = model
+        self.start = StartInputs(model)
+        self.times = times
+        simulation = model.scene.simulation
+        longest = max((float(of_case[-1]) for of_case in times.values()), default=0.0)
+        self.size = longest / FIRST_STEPS
+        if simulation is not None and simulation.step is not None:
+            self.size = simulation.step
+        self._sensitivities: dict[tuple[int, int], ca.Function] = {}
+
+    @cached_property
+    def _method(self) -> Collocation:
+        return radau(STAGES)
+
+    @cached_property
+    def _newton(self) -> FloatArray:
+        """Error of each unknown that Newton's method may leave, shape (size,)."""
+        return EXACT / displacements(self.model.at())
+
+    def run(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> Run | None:
+        """The motion of a case; None where its steps cannot be solved.
+
+        Args:
+            case: its number.
+            x: unknowns at the start, shape (size,).
+            inputs: at the start, shape (inputs,).
+            p: parameters.
+
+        Raises:
+            SceneError: the start contradicts the constraints.
+        """
+        times = self.times[case]
+        end = float(times[-1])
+        if end == 0.0:
+            return Run(times, x[None, :], inputs[None, :], None, p)
+        settings = StepSettings(tolerance=self._newton, size=self.size, newton=1.0)
+        history = self._integrated(x, inputs, p, end, settings)
+        if not history.completed:
+            return None
+        path, inputs_over_time = history.rough_positions(times)
+        return Run(times, path, inputs_over_time, history, p)
+
+    def suggest_size(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> None:
+        """Begin with the mean step of a motion that is integrated to a coarse tolerance."""
+        end = float(self.times[case][-1])
+        if end == 0.0:
+            return
+        settings = StepSettings(tolerance=COARSE / displacements(self.model.at()))
+        history = self._integrated(x, inputs, p, end, settings)
+        if history.completed:
+            self.size = min(self.size, end / len(history.steps))
+
+    def _integrated(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray, end: float, settings: StepSettings
+    ) -> History:
+        moving = MovingInputs(self.model.inputs, self.model.scene.motions, inputs - self.start.added)
+        still = np.zeros(self.model.size)
+        parameters = p if self.model.parameters.size else None
+        return integrated(self.model, moving.pieces(end), x, still, self._method, settings, p=parameters)
+
+    def sensitivity(self, run: Run, x: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of unknowns and inputs at the measured times, shapes (T, size, m) and (inputs, m).
+
+        Args:
+            run: the motion.
+            x: derivatives of the start with m numbers, shape (size, m).
+            inputs: of the inputs of the case, shape (inputs, m).
+            p: of the parameters, shape (parameters, m).
+        """
+        by_inputs = inputs * self.start.held[:, None]
+        differential = self.model.discrete.unknowns.differential
+        if run.history is None:
+            return x[None], by_inputs
+        propagated = self._stage_responses(run, by_inputs, p)
+        method = self._method
+        position = np.where(differential[:, None], x, 0.0)
+        velocity = np.zeros_like(position)
+        moved = np.empty((len(run.times), *x.shape))
+        numbers = np.array([run.history.number_at(float(time)) for time in run.times])
+        for number, ((_, step), response) in enumerate(zip(run.history.steps, propagated, strict=True)):
+            stages = response.of(position, velocity)
+            accelerations = np.where(differential[:, None], stages, 0.0)
+            for row in np.flatnonzero(numbers == number):
+                share = (run.times[row] - step.start.time) / step.size
+                curved = np.tensordot(method.double_integrals_at(share), accelerations, 1)
+                straight = position + share * step.size * velocity
+                values = np.tensordot(method.values_at(share), stages, 1)
+                moved[row] = np.where(differential[:, None], straight + step.size**2 * curved, values)
+            bent = np.tensordot(method.position_weights, accelerations, 1)
+            position = position + step.size * velocity + step.size**2 * bent
+            velocity = velocity + step.size * np.tensordot(method.weights, accelerations, 1)
+        return moved, by_inputs
+
+    def _stage_responses(self, run: Run, inputs: FloatArray, p: FloatArray) -> list[_StageResponse]:
+        """How the unknowns of the stages of every step follow from its start and from the numbers themselves."""
+        assert run.history is not None
+        steps = run.history.steps
+        method = self._method
+        count = method.stages
+        size = self.model.size
+        differential = self.model.discrete.unknowns.differential
+        instants = []
+        for leg, step in steps:
+            stages = stages_of(method, differential, step.start, step.size, step.unknowns)
+            for i in range(count):
+                given = leg.piece.at(float(stages.times[i]))
+                instants.append([stages.x[i], stages.v[i], stages.a[i], *given])
+        columns = [np.array(column).T for column in zip(*instants, strict=True)]
+        shared = [run.p, p] if self.model.parameters.size else []
+        results = self._linearised(len(instants), p.shape[1])(*columns, *shared, inputs)
+        parts = [split(result, len(instants)).reshape(len(steps), count, size, -1) for result in results]
+        return [
+            _stage_response(step, method, differential, *(part[k] for part in parts))
+            for k, (_, step) in enumerate(steps)
+        ]
+
+    def _linearised(self, count: int, numbers: int) -> ca.Function:
+        """(x, v, a, inputs, their rates and accelerations, p, its derivatives, those of the inputs) ↦ derivatives of F.
+
+        With x, v, a, and with the numbers that inputs and parameters depend on; for so many instants side by side.
+        """
+        key = (count, numbers)
+        if key in self._sensitivities:
+            return self._sensitivities[key]
+        model = self.model
+        size = model.size
+        moving = [ca.MX.sym(name, size) for name in "xva"]
+        given = [ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration")]
+        by_inputs = ca.MX.sym("by_inputs", model.inputs.size, numbers)
+        between = []
+        shared = [by_inputs]
+        by_p = None
+        if model.parameters.size:
+            between = [ca.MX.sym("p", model.parameters.size)]
+            by_p = ca.MX.sym("by_p", model.parameters.size, numbers)
+            shared = [*between, by_p, by_inputs]
+        arguments = [*moving, given[0], *between, *given[1:]]
+        stiffness, damping, mass, _ = model.dynamics_jacobian(*arguments)
+        residual = model.inverse_dynamics(*arguments)
+        change = ca.jtimes(residual, given[0], by_inputs)
+        if by_p is not None:
+            change += ca.jtimes(residual, between[0], by_p)
+        results = [ca.densify(matrix) for matrix in (stiffness, damping, mass, change)]
+        one = ca.Function("linearised", [*moving, *given, *shared], results)
+        first = len(moving) + len(given)
+        function = one.map("all", "serial", count, list(range(first, first + len(shared))), [])
+        self._sensitivities[key] = function
+        return function
+
+
+@dataclass(frozen=True)
+class _StageResponse:
+    """Derivatives of the unknowns of the stages of a step.
+
+    Attributes:
+        by_position: with x at its start, shape (s, n, n).
+        by_velocity: with v there, shape (s, n, n), s.
+        direct: with m numbers, by inputs and parameters, shape (s, n, m).
+    """
+
+    by_position: FloatArray
+    by_velocity: FloatArray
+    direct: FloatArray
+
+    def of(self, position: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Outputs at states with m numbers that the start depends on, shape (s, n, m)."""
+        return np.asarray(self.by_position @ position + self.by_velocity @ velocity + self.direct)
+
+
+def _stage_response(
+    step: TimeStep,
+    method: Collocation,
+    differential: Flags,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    mass: FloatArray,
+    change: FloatArray,
+) -> _StageResponse:
+    """The linear equations of the stages of one step, solved.
+
+    Args:
+        step: the step.
+        method: the collocation method.
+        differential: which entries have accelerations, shape (n,).
+        stiffness: ∂F/∂x at each stage, shape (s, n, n).
+        damping: ∂F/∂v, likewise.
+        mass: ∂F/∂a, likewise.
+        change: of F with the numbers themselves, shape (s, n, m).
+    """
+    count, size, _ = stiffness.shape
+    h = step.size
+    matrix = np.zeros((count, size, count, size))
+    for i in range(count):
+        for j in range(count):
+            coupled = h**2 * method.matrix_squared[i, j] * stiffness[i] + h * method.matrix[i, j] * damping[i]
+            matrix[i, :, j] = np.where(differential, coupled, 0.0)
+        matrix[i, :, i] += np.where(differential, mass[i], stiffness[i])
+    by_position = np.where(differential, stiffness, 0.0)
+    by_velocity = np.where(differential, h * method.nodes[:, None, None] * stiffness + damping, 0.0)
+    right = np.concatenate([by_position, by_velocity, change], axis=2).reshape(count * size, -1)
+    whole = matrix.reshape(count * size, count * size)
+    solved = -np.linalg.solve(whole, right).reshape(count, size, -1)
+    return _StageResponse(solved[:, :, :size], solved[:, :, size : 2 * size], solved[:, :, 2 * size :])

@@ -1,0 +1,223 @@
+"""From the end of a search to its statistics, remarks and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from cosserat_casadi.identification.case_time_steps import STEP_ERROR
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout
+from cosserat_casadi.identification.identification_result import Identification, LeftOut, Row
+from cosserat_casadi.identification.measured_modes import JointModes
+from cosserat_casadi.identification.misfit import Misfit, MisfitState
+from cosserat_casadi.identification.statistics import Direction, Statistics
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
+from cosserat_casadi.spelling import counted
+
+POOR = 2.0
+"""Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
+
+TOLD = 3
+"""Cases that a sentence names."""
+
+
+@dataclass
+class Ending:
+    """Collects what an identification has to say.
+
+    Attributes:
+        model: that was fitted.
+        layout: the unknowns.
+        left_out: cases that took no part.
+        unstable: cases whose equilibrium is unstable.
+        unresolved: cases that the nodes do not resolve.
+        joint_modes: measured modes of one frequency.
+        warnings: sentences on what looks wrong.
+    """
+
+    model: Model
+    layout: UnknownLayout
+    left_out: list[LeftOut] = field(default_factory=list)
+    unstable: list[str] = field(default_factory=list)
+    unresolved: list[str] = field(default_factory=list)
+    joint_modes: list[JointModes] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def without_equilibrium(self, *, stopped: bool) -> Identification:
+        """The end where cases have no equilibrium."""
+        cases = named([case.where for case in self.left_out])
+        reason = self.left_out[0].reason
+        message = f"No case has an equilibrium at the start: {cases}. {reason}"
+        if stopped:
+            message = f"No equilibrium at the start in {cases}. {reason} Cases without one were to stop the search."
+        shared, own = self.layout.start(0)
+        n = len(shared)
+        nothing = Statistics(
+            covariance=np.full((n, n), np.nan),
+            determined=np.zeros(n, dtype=bool),
+            unseen=(),
+            settled=False,
+            noise=1.0,
+            quantile=np.nan,
+            own=own,
+        )
+        return Identification(
+            model=self.model,
+            layout=self.layout,
+            shared=np.full(n, np.nan),
+            own=own,
+            statistics=nothing,
+            converged=False,
+            outcome="no_equilibrium",
+            message=message,
+            iterations=0,
+            cost=np.nan,
+            rows=(),
+            cases=(),
+            unknowns_x=np.zeros((0, self.model.size)),
+            inputs=np.zeros((0, self.model.inputs.size)),
+            unstable=(),
+            left_out=tuple(self.left_out),
+            at_bounds=(),
+            warnings=tuple(self.warnings),
+            starts=(0, 0),
+        )
+
+    def found(
+        self,
+        fit: Fit[MisfitState],
+        known: Statistics,
+        rows: Sequence[Row],
+        misfit: Misfit,
+        limits: Limits,
+        starts: tuple[int, int],
+    ) -> Identification:
+        """The end of a search."""
+        at_bound = (fit.shared <= limits.lower) | (fit.shared >= limits.upper)
+        at_bounds = [label for label, is_there in zip(self.layout.shared_labels, at_bound, strict=True) if is_there]
+        outcome, message = self._outcome(fit, known)
+        draft = Identification(
+            model=self.model,
+            layout=self.layout,
+            shared=fit.shared,
+            own=fit.own,
+            statistics=known,
+            converged=outcome == "converged",
+            outcome=outcome,
+            message=message,
+            iterations=fit.iterations,
+            cost=fit.cost,
+            rows=tuple(rows),
+            cases=tuple(case.where for case in misfit.cases),
+            unknowns_x=fit.state.point.x,
+            inputs=fit.state.point.inputs,
+            unstable=tuple(self.unstable),
+            left_out=tuple(self.left_out),
+            at_bounds=tuple(at_bounds),
+            warnings=(),
+            starts=starts,
+        )
+        return replace(draft, warnings=(*self.warnings, *self._remarks(draft)))
+
+    def with_steps(self, found: Identification, step: float, error: float) -> Identification:
+        """The end of a search with the steps of its motions, and a warning where they are too long."""
+        warnings = found.warnings
+        if not error <= STEP_ERROR:
+            sentence = (
+                f"Steps of {step:.3g} s leave an error of {error:.2g} standard deviations in the motions: "
+                "give [simulation] a shorter step, or none."
+            )
+            warnings = (*warnings, sentence)
+        return replace(found, warnings=warnings, step=step, step_error=error)
+
+    def _outcome(self, fit: Fit[MisfitState], known: Statistics) -> tuple[str, str]:
+        """How it ended, in a word and in sentences."""
+        if fit.outcome is not FitOutcome.CONVERGED:
+            return fit.outcome.name.lower(), f"Not found: {fit.outcome.value}"
+        if self.unresolved:
+            cases = named(self.unresolved)
+            return "unresolved", f"Not found: the nodes do not resolve the rods in {cases}; allow more of them."
+        if not known.settled:
+            directions = "; ".join(described(direction) for direction in known.unseen)
+            remedy = "Leave unknowns out, give priors, or measure more."
+            return "not_determined", f"Not found: the data do not determine {directions}. {remedy}"
+        unknowns = counted(len(fit.shared), "unknown")
+        numbers = counted(len(fit.state.residual), "number")
+        return "converged", f"Found: {unknowns} from {numbers}."
+
+    def _remarks(self, found: Identification) -> list[str]:
+        """Remarks on the fit, for the user."""
+        remarks = []
+        rms = found.rms()
+        if rms is not None and rms > POOR:
+            remarks.append(
+                f"The residuals are {rms:.3g} standard deviations (rms): the model does not explain the data to the "
+                "accuracy that sigma states."
+            )
+        if found.converged and found.statistics.unseen:
+            directions = "; ".join(described(direction) for direction in found.statistics.unseen)
+            remarks.append(f"The data do not determine {directions}: there the priors alone speak.")
+        if found.at_bounds:
+            remarks.append(f"At a bound: {', '.join(found.at_bounds)}. The intervals of others take that as given.")
+        if self.unstable:
+            remarks.append(
+                f"The equilibrium is unstable in {named(self.unstable)}: what was measured there is hardly this one."
+            )
+        remarks += self._on_own_unknowns(found)
+        remarks += self._on_joint_modes(found.cases)
+        if self.left_out:
+            remarks.append(f"Left out: {named([case.where for case in self.left_out])}. {self.left_out[0].reason}")
+        return remarks
+
+    def _on_own_unknowns(self, found: Identification) -> list[str]:
+        """Remarks on unknowns of single cases: what their data leave open, and what that means for held-out cases."""
+        remarks = []
+        for label, deviations in zip(self.layout.own_labels, found.statistics.own.T, strict=True):
+            open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
+            if open_in:
+                remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there means nothing.")
+        held_out = {row.case for row in found.rows if row.held_out}
+        if held_out and self.layout.own_labels:
+            numbers = sum(row.held_out for row in found.rows)
+            fitted = counted(len(held_out) * len(self.layout.own_labels), "unknown")
+            remarks.append(
+                f"{fitted} of the held-out cases themselves were found from their {counted(numbers, 'number')}: "
+                "only what these numbers leave is predicted."
+            )
+        return remarks
+
+    def _on_joint_modes(self, cases: Sequence[str]) -> list[str]:
+        """Measured modes of one frequency, and what would part them."""
+        remarks = []
+        for numbers in dict.fromkeys(joint.numbers for joint in self.joint_modes):
+            alike = [joint for joint in self.joint_modes if joint.numbers == numbers]
+            modes = " and ".join(str(number) for number in numbers)
+            where = named([cases[joint.case] for joint in alike])
+            sentence = (
+                f"Modes {modes} have one frequency in {where}: what was measured of them is compared with their mean."
+            )
+            parted = np.any([joint.parted for joint in alike], axis=0)
+            names = [label for label, is_so in zip(self.layout.shared_labels, parted, strict=True) if is_so]
+            if names:
+                verb = "parts" if len(names) == 1 else "part"
+                sentence += f" {', '.join(names)} {verb} them, which their mean does not see: begin elsewhere."
+            remarks.append(sentence)
+        return remarks
+
+
+def named(cases: Sequence[str]) -> str:
+    """Some cases by name, and how many more there are."""
+    names = ", ".join(cases[:TOLD])
+    return names if len(cases) <= TOLD else f"{names} and {len(cases) - TOLD} more"
+
+
+def described(direction: Direction) -> str:
+    """A direction in words, such as ``−0.97 a + 0.24 b``."""
+    terms = []
+    for name, part in sorted(direction.parts.items(), key=lambda item: -abs(item[1])):
+        sign = "−" if part < 0 else "+"
+        terms.append(f"{sign} {abs(part):.2g} {name}" if len(direction.parts) > 1 else name)
+    return " ".join(terms).removeprefix("+ ")

@@ -1,0 +1,402 @@
+"""One identification: equilibria and motions at the start, searches, their end, and the statistics there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.identification.case_equilibria import Equilibria, Point
+from cosserat_casadi.identification.case_motions import StartInputs
+from cosserat_casadi.identification.case_time_steps import STEP_ERROR, error_of_steps, given_steps, with_steps
+from cosserat_casadi.identification.concluding import Ending
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout
+from cosserat_casadi.identification.identification_result import Identification, LeftOut, Row
+from cosserat_casadi.identification.measured_cases import Case
+from cosserat_casadi.identification.measured_quantities import QUANTITIES
+from cosserat_casadi.identification.misfit import Misfit, MisfitState, inputs_of, moving
+from cosserat_casadi.identification.statistics import NoiseFrom, Statistics, statistics
+from cosserat_casadi.identification.unit_warnings import plausibility
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fit, Limits
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Report
+from cosserat_casadi.numerics.robust_loss import Loss
+
+SEED = 16
+"""Of the cases that are held out, and of the random starts."""
+
+DECADES = 10.0
+"""Ratio of the bounds from which on starts are spread over their logarithm."""
+
+SAME_COST = 1e-3
+"""Difference of half the sums of squares within which two starts have ended at one optimum."""
+
+NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
+"""Why a case has none there."""
+
+NEAREST = 0.05
+"""Share of the way to a start at which it is given up, and the search begins where the first one does."""
+
+NOT_SWINGING = "A mode that was measured does not swing there."
+"""Why a case takes no part although it has an equilibrium."""
+
+NOT_MOVING = "The steps of its motion cannot be solved there."
+"""Why a motion takes no part."""
+
+MOST_RETRIES = 3
+"""Times that cases without an equilibrium or motion are tried again, at the fitted numbers."""
+
+MOST_SHORTENINGS = 3
+"""Times that the search is made again with half the step."""
+
+Progress = Callable[[int, float], None]
+"""Told the number of steps and half the sum of squares."""
+
+
+@dataclass(frozen=True)
+class _Missing:
+    """A case that takes no part.
+
+    Attributes:
+        case: the case.
+        reason: why, as a sentence.
+    """
+
+    case: Case
+    reason: str
+
+
+@dataclass(frozen=True)
+class _Started:
+    """Cases at unknowns to begin with.
+
+    Attributes:
+        misfit: of the cases that take part.
+        state: there.
+        missing: the others.
+    """
+
+    misfit: Misfit
+    state: MisfitState
+    missing: list[_Missing]
+
+
+@dataclass(frozen=True)
+class Task:
+    """An identification.
+
+    Attributes:
+        model: with the unknowns.
+        layout: the unknowns.
+        loss: what residuals cost.
+        options: of the scene.
+        starts: places from which the search begins.
+        report: called with the work under way.
+        progress: told the steps of the search.
+    """
+
+    model: Model
+    layout: UnknownLayout
+    loss: Loss
+    options: scenes.IdentificationSettings
+    starts: int
+    report: Report
+    progress: Progress | None
+
+    def run(self, fitted: Sequence[Case], held_out: Sequence[Case]) -> Identification:
+        """Fit some cases, predict others."""
+        ending = Ending(self.model, self.layout)
+        self.report("solving all cases")
+        shared, _ = self.layout.start(len(fitted))
+        started, missing = self._first(fitted, shared)
+        if started is None or (missing and self.options.failures == "stop"):
+            ending.left_out += [LeftOut(one.case.where, one.reason) for one in missing]
+            return ending.without_equilibrium(stopped=started is not None)
+        fit, ended_here = self._best(started.misfit, started.state)
+        started, fit = self._with_others(started, fit)
+        started, fit, step_error = self._with_short_steps(started, fit)
+        misfit = started.misfit
+        self.report("judging what was found")
+        ending.left_out += [LeftOut(one.case.where, one.reason) for one in started.missing]
+        arrow = self._arrow_fit(misfit).linear(fit.shared, fit.own, fit.state)
+        known = self._statistics(arrow, fit, misfit)
+        predicted = self._predicted(held_out, fit, ending.left_out)
+        rows = self._rows(misfit, fit.state, held_out=False)
+        if predicted is not None:
+            rows += self._rows(*predicted, held_out=True)
+        ending.warnings += plausibility(self.model, self.layout, rows)
+        ending.joint_modes += misfit.joint_modes(fit.state)
+        ending.unstable += _unstable(misfit, fit.state.point)
+        resolved = _resolved(misfit, fit.state)
+        ending.unresolved += [case.where for case, is_so in zip(misfit.cases, resolved, strict=True) if not is_so]
+        found = ending.found(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
+        if not misfit.motions.times:
+            return found
+        return ending.with_steps(found, misfit.motions.size, step_error)
+
+    def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, list[_Missing]]:
+        """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
+        _, own = self.layout.start(len(cases))
+        moves = moving(cases)
+        unloaded = moves & self._starts_unloaded
+        start = StartInputs(self.model)
+        everyone = Equilibria(self.model, len(cases), unloaded)
+        inputs = inputs_of(cases)
+        point, outcomes = everyone.loaded(start.of(inputs, moves), self.layout.p)
+        # From the scene's own numbers to the start, where a bound or another value moves it.
+        wanted = start.of(self.layout.inputs(shared, own, inputs), moves)
+        p = self.layout.parameters(shared)
+        moved, reached = everyone.tracked(point, point.x, wanted, p)
+        converged = np.array([outcome is Outcome.CONVERGED for outcome in outcomes])
+        if not np.all(converged & reached) and (np.any(p != self.layout.p) or np.any(wanted != point.inputs)):
+            # There may be an equilibrium where the search begins, and none at the scene's own numbers.
+            direct, direct_outcomes = everyone.loaded(wanted, p)
+            for i in np.flatnonzero(~(converged & reached)):
+                if direct_outcomes[i] is Outcome.CONVERGED:
+                    moved.x[i] = direct.x[i]
+                    outcomes[i] = Outcome.CONVERGED
+                    reached[i] = True
+        missing = []
+        kept = []
+        for i, (case, outcome) in enumerate(zip(cases, outcomes, strict=True)):
+            if outcome is not Outcome.CONVERGED:
+                missing.append(_Missing(case, outcome.value))
+            elif not reached[i]:
+                missing.append(_Missing(case, NOT_FOLLOWED))
+            elif _index(self.model, moved.x[i], moved.inputs[i], p) > 1.0:
+                missing.append(_Missing(case, Outcome.UNRESOLVED.value))
+            else:
+                kept.append(i)
+        if not kept:
+            return None, missing
+        # The equilibria of those that were reached otherwise are of other Jacobians.
+        whole = everyone.at_point(moved)
+        return self._of_finite([cases[i] for i in kept], _chosen(whole, kept), shared, own[kept], missing)
+
+    def _of_finite(
+        self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: list[_Missing]
+    ) -> tuple[_Started | None, list[_Missing]]:
+        """The misfit of the cases whose residuals are finite, and the other cases, with those missing before."""
+        misfit = self._misfit(cases)
+        state = with_steps(misfit, misfit.first(point, shared, own))
+        spoilt = set(misfit.row_cases[~np.isfinite(state.residual)].tolist())
+        if spoilt:
+            for i in sorted(spoilt):
+                reason = NOT_MOVING if cases[i].moves else NOT_SWINGING
+                missing.append(_Missing(cases[i], reason))
+            kept = [i for i in range(len(cases)) if i not in spoilt]
+            if not kept:
+                return None, missing
+            # Steps were halved as long as some motion could not be computed: the others may take longer ones.
+            misfit = self._misfit([cases[i] for i in kept])
+            state = with_steps(misfit, misfit.first(_chosen(point, kept), shared, own[kept]))
+        return _Started(misfit, state, missing), missing
+
+    def _misfit(self, cases: Sequence[Case]) -> Misfit:
+        unloaded = moving(cases) & self._starts_unloaded
+        return Misfit(self.model, self.layout, cases, Equilibria(self.model, len(cases), unloaded))
+
+    @property
+    def _starts_unloaded(self) -> bool:
+        """Whether motions begin in the unloaded shape, and not in an equilibrium."""
+        simulation = self.model.scene.simulation
+        return simulation is not None and simulation.start == "unloaded"
+
+    def _with_others(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState]]:
+        """The search again, with cases that had no equilibrium at the start and have one at the fitted numbers."""
+        for _ in range(MOST_RETRIES):
+            if not started.missing:
+                break
+            further, missing = self._first([one.case for one in started.missing], fit.shared)
+            if further is None:
+                break
+            points = (fit.state.point, further.state.point)
+            point = Point(
+                np.concatenate([one.x for one in points]),
+                np.concatenate([one.inputs for one in points]),
+                fit.state.point.p,
+                np.concatenate([one.inverses for one in points]),
+            )
+            misfit = self._misfit([*started.misfit.cases, *further.misfit.cases])
+            misfit.motions.size = min(started.misfit.motions.size, further.misfit.motions.size)
+            if not started.misfit.motions.times:
+                misfit.motions.size = further.misfit.motions.size
+            own = np.concatenate([fit.own, further.state.own])
+            state = misfit.first(point, fit.shared, own)
+            self.report("fitting, with cases that had no equilibrium before")
+            fit = self._arrow_fit(misfit).run(fit.shared, own, state, self.progress)
+            started = _Started(misfit, state, missing)
+        return started, fit
+
+    def _with_short_steps(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState], float]:
+        """The search again with shorter steps, where the steps of the start are too long at the fitted numbers."""
+        misfit = started.misfit
+        error = error_of_steps(misfit, fit.state)
+        for _ in range(MOST_SHORTENINGS):
+            if error <= STEP_ERROR or given_steps(self.model):
+                break
+            self.report("fitting, with shorter steps")
+            misfit.motions.size /= 2.0
+            state = misfit.first(fit.state.point, fit.shared, fit.own)
+            fit = self._arrow_fit(misfit).run(fit.shared, fit.own, state, self.progress)
+            error = error_of_steps(misfit, fit.state)
+        return started, fit, error
+
+    def _arrow_fit(self, misfit: Misfit, shared: Limits | None = None) -> ArrowFit[MisfitState]:
+        limits = self.layout.shared_limits if shared is None else shared
+        return ArrowFit(misfit, limits, self.layout.own_limits, self.loss)
+
+    def _best(self, misfit: Misfit, first: MisfitState) -> tuple[Fit[MisfitState], int]:
+        """The best fit of all starts, and how many of them ended there."""
+        arrow_fit = self._arrow_fit(misfit)
+        misfit.jacobians(first)
+        fits = []
+        for number, shared in enumerate(self._start_points(first.shared)):
+            self.report("fitting" if self.starts == 1 else f"fitting, start {number + 1} of {self.starts}")
+            state = self._towards(misfit, first, shared) if number else first
+            fits.append(arrow_fit.run(state.shared, first.own, state, self.progress))
+        best = min(fits, key=lambda fit: fit.cost)
+        alike = [fit for fit in fits if fit.cost - best.cost <= SAME_COST * (1 + best.cost)]
+        return best, len(alike)
+
+    def _towards(self, misfit: Misfit, first: MisfitState, shared: FloatArray) -> MisfitState:
+        """The state at a start, or as far on the way to it as all cases can be followed."""
+        ratios = self.layout.shared_limits.ratios
+        share = 1.0
+        while share > NEAREST:
+            way = first.shared + share * (shared - first.shared)
+            way[ratios] = first.shared[ratios] * (shared[ratios] / first.shared[ratios]) ** share
+            point, reached = misfit.moved(way, first.own, first)
+            if np.all(reached):
+                return misfit.first(point, way, first.own)
+            share /= 2
+        return first
+
+    def _start_points(self, first: FloatArray) -> list[FloatArray]:
+        """Where the searches begin: at the scene's values, then at random between bounds or from priors."""
+        limits = self.layout.shared_limits
+        rng = np.random.default_rng(SEED)
+        points = [first]
+        bounded = np.isfinite(limits.lower) & np.isfinite(limits.upper)
+        spread = bounded & (limits.lower > 0) & (limits.upper > DECADES * limits.lower)
+        even = bounded & ~spread
+        expected = ~bounded & (limits.weight > 0)
+        for _ in range(self.starts - 1):
+            shares = rng.random(len(first))
+            normal = rng.standard_normal(len(first))
+            point = first.copy()
+            point[even] = limits.lower[even] + shares[even] * (limits.upper[even] - limits.lower[even])
+            ratios = limits.upper[spread] / limits.lower[spread]
+            point[spread] = limits.lower[spread] * ratios ** shares[spread]
+            point[expected] = limits.mean[expected] + normal[expected] / limits.weight[expected]
+            points.append(limits.clipped(point))
+        return points
+
+    def _statistics(self, arrow: ArrowStep, fit: Fit[MisfitState], misfit: Misfit) -> Statistics:
+        """Statistics of the unknowns at the optimum."""
+        n, k = arrow.sizes
+        unknowns = n + k * len(misfit.cases)
+        priors = np.count_nonzero(self.layout.shared_limits.weight)
+        priors += len(misfit.cases) * np.count_nonzero(self.layout.own_limits.weight)
+        return statistics(
+            arrow,
+            self.layout.shared_labels,
+            (self.layout.scales(fit.shared), self.layout.own_scales),
+            freedom=len(fit.state.residual) + int(priors) - unknowns,
+            squares=self.loss.noise_squares(fit.state.residual),
+            noise_from=self._noise_from,
+        )
+
+    @property
+    def _noise_from(self) -> NoiseFrom:
+        """Where the noise of intervals is from: a loss for outliers says that sigma does not tell all of it."""
+        if self.options.noise == "residual":
+            return NoiseFrom.RESIDUALS
+        if self.loss.kind == "squares":
+            return NoiseFrom.SIGMA
+        return NoiseFrom.BOTH
+
+    def _predicted(
+        self, cases: Sequence[Case], fit: Fit[MisfitState], left_out: list[LeftOut]
+    ) -> tuple[Misfit, MisfitState] | None:
+        """Held-out cases at the fitted numbers; unknowns of single cases are fitted to the cases' data."""
+        if not cases:
+            return None
+        started, failed = self._first(cases, fit.shared)
+        left_out += [LeftOut(one.case.where, f"Held out: {one.reason}") for one in failed]
+        if started is None:
+            return None
+        misfit, state = started.misfit, started.state
+        if not self.layout.own:
+            return misfit, state
+        held = replace(self.layout.shared_limits, lower=fit.shared, upper=fit.shared, weight=np.zeros_like(fit.shared))
+        return misfit, self._arrow_fit(misfit, held).run(fit.shared, state.own, state).state
+
+    def _rows(self, misfit: Misfit, state: MisfitState, *, held_out: bool) -> list[Row]:
+        """Every measured number beside the model's."""
+        rows = []
+        for number, measured in misfit.measurements.items():
+            residual = misfit.residual_of(measured, state)
+            weights = self.loss.weights(residual)
+            for i, (datum, entry) in enumerate(measured.data):
+                value = QUANTITIES[measured.record.quantity].number(entry, datum.values)
+                difference = float(residual[i] * measured.sigma[entry])
+                row = Row(
+                    where=datum.where,
+                    measurement=number,
+                    entry=entry,
+                    case=measured.row_cases[i],
+                    measured=value,
+                    modelled=value + difference,
+                    residual=float(residual[i]),
+                    weight=1.0 if held_out else float(weights[i]),
+                    held_out=held_out,
+                    time=None if np.isnan(datum.time) else datum.time,
+                    at=None if np.isnan(datum.at) else datum.at,
+                )
+                rows.append(row)
+        return rows
+
+
+def _unstable(misfit: Misfit, point: Point) -> list[str]:
+    """Cases whose equilibrium is unstable, where that has a meaning."""
+    model = misfit.model
+    allowed = variations(model)
+    jacobians = misfit.equilibria.jacobians(point.x, point.inputs, point.p)
+    unstable = []
+    for i, (case, jacobian, inputs) in enumerate(zip(misfit.cases, jacobians, point.inputs, strict=True)):
+        if not misfit.equilibria.sought[i] or not model.has_potential(inputs):
+            continue
+        if not stability_of(admissible_eigenvalues(jacobian, allowed)).stable:
+            unstable.append(case.where)
+    return unstable
+
+
+def _resolved(misfit: Misfit, state: MisfitState) -> list[bool]:
+    """Whether the nodes resolve the rods in each case; in motions at all times that were measured."""
+    point = state.point
+    resolved = []
+    for i, (x, inputs) in enumerate(zip(point.x, point.inputs, strict=True)):
+        places = [(x, inputs)]
+        run = state.runs.get(i)
+        if run is not None:
+            places += list(zip(run.x, run.inputs, strict=True))
+        resolved.append(all(_index(misfit.model, *place, point.p) <= 1.0 for place in places))
+    return resolved
+
+
+def _index(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
+    """Resolution index, which is above 1 where the nodes do not resolve the rods."""
+    parameters: list[npt.NDArray[np.float64]] = [p] if model.parameters.size else []
+    return float(model.resolution_index(x, inputs, *parameters))
+
+
+def _chosen(point: Point, kept: Sequence[int]) -> Point:
+    """The equilibria of some cases."""
+    return Point(point.x[kept], point.inputs[kept], point.p, point.inverses[kept])

@@ -1,0 +1,249 @@
+"""The end of an identification: the identified numbers, how well they are known, and the misfit that remains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout
+from cosserat_casadi.identification.fitted_scene import with_found
+from cosserat_casadi.identification.measured_quantities import QUANTITIES
+from cosserat_casadi.identification.statistics import Statistics
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene import Scene
+
+OUTLIER = 4.0
+"""Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
+
+EARLY = ("stalled", "max_iterations")
+"""Outcomes of searches that ended before the misfit was least."""
+
+NORMAL_MEDIAN = 0.6744897501960817
+"""Median size of a normally distributed number, in standard deviations."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measured number beside the model's.
+
+    Attributes:
+        where: its row in words.
+        measurement: number of its measurement.
+        entry: which number of the quantity it is.
+        case: number of its case.
+        measured: in SI units; of an orientation 0.
+        modelled: measured plus the difference.
+        residual: the difference in standard deviations.
+        weight: what the loss leaves of it, 1 for all.
+        held_out: whether it was predicted and not fitted.
+        time: at which it was measured in its motion, s; None in an equilibrium.
+        at: abscissa X, or number of the mode, that its row gives; None without one.
+    """
+
+    where: str
+    measurement: int
+    entry: int
+    case: int
+    measured: float
+    modelled: float
+    residual: float
+    weight: float
+    held_out: bool
+    time: float | None = None
+    at: float | None = None
+
+
+@dataclass(frozen=True)
+class MarkerDistances:
+    """How far the model is from one marker, over all rows in which all of its coordinates were measured.
+
+    Attributes:
+        measurement: number of its measurement.
+        at: abscissa X of its section; None of a marker on a body.
+        rows: number of rows, without the held-out ones.
+        rms: root mean square of the distances, m.
+        largest: of the distances, m.
+        mean: mean of model less measurement, world axes, shape (3,), m: what an offset of the marker would mend.
+    """
+
+    measurement: int
+    at: float | None
+    rows: int
+    rms: float
+    largest: float
+    mean: FloatArray
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A case that took no part.
+
+    Attributes:
+        where: its first row in words.
+        reason: why.
+    """
+
+    where: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Identification:
+    """The end of an identification.
+
+    Attributes:
+        model: that was fitted, with its parameters.
+        layout: the unknowns.
+        shared: numbers found that all cases share, shape (n,), in the order of ``layout.shared_labels``.
+        own: those of each case, shape (cases, k).
+        statistics: how well the shared unknowns are known.
+        converged: whether they are the least misfit and determined by data and priors.
+        outcome: how it ended, in a word.
+        message: in sentences.
+        iterations: steps of the search.
+        cost: half the sum of squares, in squared standard deviations, priors among them.
+        rows: every measured number beside the model's.
+        cases: their first rows in words.
+        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size).
+        inputs: stacked inputs of each case, of motions at their start, shape (cases, size of the inputs).
+        unstable: cases whose equilibrium is unstable.
+        left_out: cases that took no part.
+        at_bounds: names of the numbers that are at a bound.
+        warnings: sentences on what looks wrong.
+        starts: how many starts there were, and how many ended here.
+        step: of the motions that were measured, s; None where nothing was measured over time.
+        step_error: largest error that these steps leave in a residual, in standard deviations; None likewise.
+        error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
+            solution: distance over the length, angle in rad, 1 where it is not known; None where there are none.
+        error_case: the case in which it is largest; None likewise.
+    """
+
+    model: Model
+    layout: UnknownLayout
+    shared: FloatArray
+    own: FloatArray
+    statistics: Statistics
+    converged: bool
+    outcome: str
+    message: str
+    iterations: int
+    cost: float
+    rows: tuple[Row, ...]
+    cases: tuple[str, ...]
+    unknowns_x: FloatArray
+    inputs: FloatArray
+    unstable: tuple[str, ...]
+    left_out: tuple[LeftOut, ...]
+    at_bounds: tuple[str, ...]
+    warnings: tuple[str, ...]
+    starts: tuple[int, int]
+    step: float | None = None
+    step_error: float | None = None
+    error_estimate: float | None = None
+    error_case: str | None = None
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning."""
+        accuracy = self.model.scene.accuracy
+        if self.error_estimate is None or not accuracy.binds:
+            return None
+        return self.error_estimate <= accuracy.tolerance
+
+    @cached_property
+    def parameters(self) -> dict[str, FloatArray]:
+        """Values of the parameters by name, as ``solve(…, parameters=…)`` takes them."""
+        values = self.layout.found_parameters(self.shared)
+        defaults = {entry.name: entry.shape for entry in self.model.parameters.entries}
+        return {name: value.reshape(defaults[name], order="F") for name, value in values.items()}
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the numbers that all cases share."""
+        return self.layout.shared_labels
+
+    @property
+    def sigma(self) -> FloatArray:
+        """Standard deviations, shape (n,); NaN where not determined."""
+        return self.statistics.sigma
+
+    @property
+    def intervals(self) -> FloatArray:
+        """Intervals that hold the true values in 95 % of all experiments, shape (n, 2); NaN where not determined."""
+        half = self.statistics.quantile * self.sigma
+        return np.column_stack([self.shared - half, self.shared + half])
+
+    def rms(self, *, held_out: bool = False, measurement: int | None = None) -> float | None:
+        """Root mean square of the residuals in standard deviations; None where there are none."""
+        chosen = [
+            row.residual for row in self.rows if row.held_out is held_out and measurement in (None, row.measurement)
+        ]
+        return float(np.sqrt(np.mean(np.square(chosen)))) if chosen else None
+
+    @property
+    def distances(self) -> tuple[MarkerDistances, ...]:
+        """How far the model is from each marker, in the order of the measurements and along the rods."""
+        apart: dict[tuple[int, float | None], dict[tuple[int, str], dict[int, float]]] = {}
+        for row in self.rows:
+            record = self.model.scene.measurements[row.measurement]
+            if row.held_out or row.entry >= QUANTITIES[record.quantity].coordinates:
+                continue
+            of_marker = apart.setdefault((row.measurement, row.at), {})
+            of_marker.setdefault((row.case, row.where), {})[row.entry] = row.modelled - row.measured
+        markers = []
+        for (measurement, at), by_row in sorted(apart.items(), key=lambda item: (item[0][0], item[0][1] or 0.0)):
+            whole = [[parts[axis] for axis in range(3)] for parts in by_row.values() if len(parts) == 3]
+            if whole:
+                differences = np.array(whole)
+                sizes = np.linalg.norm(differences, axis=1)
+                rms = float(np.sqrt(np.mean(sizes**2)))
+                mean = differences.mean(axis=0)
+                markers.append(MarkerDistances(measurement, at, len(whole), rms, float(sizes.max()), mean))
+        return tuple(markers)
+
+    @property
+    def outliers(self) -> tuple[Row, ...]:
+        """Numbers that are far from the model, the farthest first.
+
+        Where most residuals are larger than stated, they are measured by their median: what sticks out counts.
+        """
+        sizes = [abs(row.residual) for row in self.rows if not row.held_out]
+        spread = max(1.0, float(np.median(sizes)) / NORMAL_MEDIAN) if sizes else 1.0
+        rows = [row for row in self.rows if not row.held_out and abs(row.residual) > OUTLIER * spread]
+        return tuple(sorted(rows, key=lambda row: -abs(row.residual)))
+
+    @property
+    def ended_early(self) -> bool:
+        """Whether the search ended before the misfit was least: its numbers are better than those of the start."""
+        return self.outcome in EARLY
+
+    def fitted_scene(self, scene: Scene | None = None, *, early: bool = False) -> Scene:
+        """The scene with its identified numbers; unknowns of single cases keep the scene's values.
+
+        Args:
+            scene: the scene that was identified; by default that of the model, with its inputs and parameters.
+            early: whether numbers of a search that ended early will do.
+
+        Raises:
+            SceneError: nothing was found, or the scene refuses it.
+        """
+        if not self.converged and not (early and self.ended_early):
+            raise SceneError(Problem("unknowns", "were not found", self.message))
+        return with_found(scene or self.model.scene, self.model, self.layout, self.shared)
+
+    def value(self, name: str) -> float | npt.NDArray[np.float64]:
+        """The value found of an unknown that all cases share, by its name.
+
+        Raises:
+            KeyError: there is no such unknown.
+        """
+        values = {**self.layout.found_parameters(self.shared), **self.layout.found_inputs(self.shared)}
+        if name not in values:
+            raise KeyError(f"{name!r} is not an unknown that all cases share; they are {', '.join(values) or 'none'}")
+        found = values[name]
+        return float(found[0]) if found.size == 1 else found

@@ -1,0 +1,378 @@
+"""From tables to cases: the measurements of each equilibrium, or of each motion.
+
+A case is one equilibrium. Each row of one file is a case; measurements of the same file share them. Rows whose inputs
+are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column ``case`` joins
+rows, of several files too. Rows with times belong to a motion: rows with equal inputs are one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.data_file import DataFile, read_table, table_of
+from cosserat_casadi.identification.measured_quantities import QUANTITIES
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.scene.number_table import shortened
+
+Flags = npt.NDArray[np.bool_]
+
+Data = Mapping[str, Mapping[str, npt.ArrayLike]]
+"""Columns by measurement, by its name or its file."""
+
+SAME_TIME = 1e-9
+"""Distance of a time from the motion, over the duration, that is rounding of a column's scale and shift."""
+
+
+@dataclass(frozen=True)
+class Datum:
+    """One row of a measurement.
+
+    Attributes:
+        where: the row in words.
+        at: abscissa of its section, or number of its mode; NaN where the quantity has neither.
+        values: in SI units, shape (entries,); NaN where not measured.
+        time: in the motion of its case, s; NaN where that is an equilibrium.
+    """
+
+    where: str
+    at: float
+    values: FloatArray
+    time: float = math.nan
+
+
+@dataclass
+class Case:
+    """The measurements of one equilibrium, or of one motion.
+
+    Attributes:
+        where: its first row in words.
+        inputs: stacked inputs, shape (size of the inputs,); unknown ones have the scene's values.
+        moves: whether it is a motion.
+        data: rows by the number of their measurement.
+        held_out: whether a row says that the case is to be predicted and not fitted.
+    """
+
+    where: str
+    inputs: FloatArray
+    moves: bool = False
+    data: dict[int, list[Datum]] = field(default_factory=dict)
+    held_out: bool = False
+
+
+@dataclass
+class _Row:
+    """A row of a measurement before it has its case.
+
+    Attributes:
+        measurement: its number.
+        where: the row in words.
+        place: its table and its line there: what measurements of one file share.
+        label: its cell in the column that joins rows to cases; None without one.
+        set_inputs: values by index in the stacked inputs.
+        datum: the measurement; None where the row only holds the conditions of others.
+        moves: whether it is a row of a motion.
+        held_out: whether it says that its case is held out.
+    """
+
+    measurement: int
+    where: str
+    place: tuple[str, int]
+    label: str | None
+    set_inputs: dict[int, float]
+    datum: Datum | None
+    moves: bool
+    held_out: bool
+
+
+def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
+    """The cases of a scene's measurements.
+
+    Args:
+        scene: with measurements and unknowns.
+        layout: inputs of its model.
+        data: columns that stand for files, by the name or the file of a measurement.
+
+    Raises:
+        SceneError: with every fault of the tables.
+    """
+    tables, problems = _tables(scene, data)
+    per_row = any(unknown.per_row for unknown in scene.unknowns)
+    duration = 0.0 if scene.simulation is None else scene.simulation.duration
+    rows: list[_Row] = []
+    for number, measurement in enumerate(scene.measurements):
+        if number in tables:
+            reader = _Reader(number, measurement, tables[number], layout, duration)
+            rows += reader.rows()
+            problems += shortened(reader.problems, tables[number].source)
+    if problems:
+        raise SceneError(*problems)
+    return _joined(rows, layout, per_row)
+
+
+def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile], list[Problem]]:
+    """The table of each measurement by its number, and the problems of other names and files."""
+    given = dict(data or {})
+    names = [name for measurement in scene.measurements for name in (measurement.title, measurement.file)]
+    problems = [Problem(name, "is no measurement of this scene") for name in given if name not in names]
+    tables: dict[int, DataFile] = {}
+    files: dict[str, DataFile | None] = {}
+    for number, measurement in enumerate(scene.measurements):
+        name = measurement.title if measurement.title in given else measurement.file
+        if name not in files:
+            files[name] = None
+            try:
+                files[name] = table_of(name, given[name]) if name in given else read_table(Path(name))
+            except SceneError as error:
+                problems += error.problems
+        table = files[name]
+        if table is not None:
+            tables[number] = table
+    return tables, problems
+
+
+@dataclass
+class _Reader:
+    """Reads the rows of one measurement.
+
+    Attributes:
+        number: of the measurement.
+        measurement: its record.
+        table: its rows.
+        layout: inputs of the model.
+        duration: time that is simulated, s.
+        problems: problems of its rows.
+    """
+
+    number: int
+    measurement: scenes.MeasurementRecord
+    table: DataFile
+    layout: InputLayout
+    duration: float
+    problems: list[Problem] = field(default_factory=list)
+
+    def rows(self) -> list[_Row]:
+        """The rows of the measurement; a row without a number still holds conditions of its case."""
+        measurement, table = self.measurement, self.table
+        columns = [column for column in measurement.columns if column]
+        columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
+        columns += [*measurement.where, *measurement.held_out]
+        place = self._place
+        if isinstance(place, str):
+            columns.append(place)
+        time = self._time
+        if time is not None and time.column is not None:
+            columns.append(time.column)
+        if measurement.case is not None:
+            columns.append(measurement.case)
+        self.problems += table.missing(columns)
+        if self.problems:
+            return []
+        chosen = [row for row in range(len(table)) if table.holds_all(measurement.where, row)]
+        values = self._values(chosen)
+        measured = np.any(np.isfinite(values), axis=1)
+        if not np.any(measured):
+            remedy = "look at its columns, and at where"
+            self.problems.append(Problem(table.source, f"{measurement.title}: nothing was measured in any row", remedy))
+        self._check_labels(chosen)
+        inputs = self._inputs(chosen, measured)
+        abscissae = self._abscissae(chosen, measured)
+        times = self._times(chosen, measured)
+        rows = []
+        for i, row in enumerate(chosen):
+            where = table.where(row)
+            set_inputs = {index: float(column[i]) for index, column in inputs.items() if np.isfinite(column[i])}
+            datum = Datum(where, float(abscissae[i]), values[i], float(times[i])) if measured[i] else None
+            case = measurement.case
+            label = None if case is None else table.columns[case][row].strip()
+            line = (table.source, table.lines[row])
+            held_out = bool(measurement.held_out) and table.holds_all(measurement.held_out, row)
+            rows.append(_Row(self.number, where, line, label, set_inputs, datum, time is not None, held_out))
+        return rows
+
+    @property
+    def _place(self) -> str | float | None:
+        """The abscissa of the section or the number of the mode, or the column that has it; None without either."""
+        place: str | float | None = getattr(self.measurement, "at", getattr(self.measurement, "mode", None))
+        return place
+
+    @property
+    def _time(self) -> scenes.InputColumn | None:
+        """Where the times of the rows are; None where each case is an equilibrium."""
+        time: scenes.InputColumn | None = getattr(self.measurement, "time", None)
+        return time
+
+    def _check_labels(self, rows: Sequence[int]) -> None:
+        """Every row says which case it belongs to: rows with empty cells there have nothing in common."""
+        column = self.measurement.case
+        if column is None:
+            return
+        for row in rows:
+            if not self.table.columns[column][row].strip():
+                problem = f"{column} is empty, but says which case the row belongs to"
+                self.problems.append(Problem(self.table.where(row), problem, "name the case"))
+
+    def _values(self, rows: Sequence[int]) -> FloatArray:
+        """Cells of the quantity in SI units, shape (rows, entries); NaN where not measured."""
+        measurement = self.measurement
+        count = len(measurement.columns)
+        scale = np.broadcast_to(np.asarray(measurement.scale), count)
+        shift = np.broadcast_to(np.asarray(measurement.shift), count)
+        values = np.full((len(rows), count), np.nan)
+        for k, column in enumerate(measurement.columns):
+            if column:
+                numbers, problems = self.table.numbers(column, rows)
+                self.problems += problems
+                values[:, k] = scale[k] * numbers + shift[k]
+        for i, problem, remedy in QUANTITIES[measurement.quantity].faults(values):
+            self.problems.append(Problem(self.table.where(rows[i]), problem, remedy))
+        return values
+
+    def _abscissae(self, rows: Sequence[int], measured: Flags) -> FloatArray:
+        """Abscissa of the section or number of the mode of each row; NaN where the quantity has neither."""
+        place = self._place
+        if not isinstance(place, str):
+            return np.full(len(rows), np.nan if place is None else place)
+        values, problems = self.table.numbers(place, rows)
+        self.problems += problems
+        told = {problem.where for problem in problems}
+        of_modes = hasattr(self.measurement, "mode")
+        for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if self.table.where(row) in told:
+                continue
+            fits = 0.0 <= value <= 1.0
+            what = "an abscissa from 0 to 1"
+            remedy = "divide the distance along the rod by its length"
+            if of_modes:
+                fits = value >= 1.0 and value == round(value)
+                what = "the number of a mode: 1, 2, …"
+                remedy = "count those that swing, by frequency"
+            if is_measured and not fits:
+                got = "an empty cell" if np.isnan(value) else f"{value:g}"
+                self.problems.append(Problem(self.table.where(row), f"{place} must be {what}, got {got}", remedy))
+        return values
+
+    def _times(self, rows: Sequence[int], measured: Flags) -> FloatArray:
+        """Time of each row in its motion, s; NaN where its case is an equilibrium."""
+        time = self._time
+        if time is None:
+            return np.full(len(rows), np.nan)
+        values = np.full(len(rows), time.shift)
+        problems: list[Problem] = []
+        if time.column is not None:
+            numbers, problems = self.table.numbers(time.column, rows)
+            self.problems += problems
+            values = values + time.scale * numbers
+        told = {problem.where for problem in problems}
+        # Scale and shift round: 700 ms are 0.7000000000000001 s.
+        within = np.clip(values, 0.0, self.duration)
+        values = np.where(np.abs(values - within) <= SAME_TIME * self.duration, within, values)
+        for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if self.table.where(row) in told:
+                continue
+            if is_measured and not 0.0 <= value <= self.duration:
+                got = "an empty cell" if np.isnan(value) else f"{value:g} s"
+                problem = f"the time must be from 0 to the duration of the simulation, {self.duration:g} s, got {got}"
+                self.problems.append(Problem(self.table.where(row), problem, "shift it, or simulate for longer"))
+        return values
+
+    def _inputs(self, rows: Sequence[int], measured: Flags) -> dict[int, FloatArray]:
+        """Inputs that columns set, each of shape (rows,), by index in the stacked inputs; of empty cells NaN."""
+        indices = column_indices(self.layout)
+        values = {}
+        for name, entry in self.measurement.set_inputs.items():
+            where = f"{self.measurement.title}: inputs"
+            if name not in indices:
+                parts = [column for column in indices if column.startswith(f"{name}.")]
+                problem = "has several numbers" if parts else "is no input"
+                self.problems.append(Problem(where, f"{name} {problem}", f"one of {', '.join(parts or indices)}"))
+                continue
+            column = np.full(len(rows), entry.shift)
+            if entry.column is not None:
+                numbers, problems = self.table.numbers(entry.column, rows)
+                self.problems += problems
+                told = {problem.where for problem in problems}
+                column = column + entry.scale * numbers
+                for row, number, is_measured in zip(rows, numbers, measured, strict=True):
+                    if is_measured and np.isnan(number) and self.table.where(row) not in told:
+                        problem = f"{entry.column} is empty, but sets {name}"
+                        self.problems.append(Problem(self.table.where(row), problem, "give it, or leave the row out"))
+            values[indices[name]] = column
+        return values
+
+
+def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Case]:
+    """Rows of one equilibrium as one case.
+
+    Args:
+        rows: of all measurements.
+        layout: inputs of the model.
+        per_row: whether inputs are unknown anew in each row.
+
+    Raises:
+        SceneError: rows of one case set an input to different values.
+    """
+    joining = _Joining({index: name for name, index in column_indices(layout).items()})
+    # What one measurement of a file says of the inputs of a line holds for all measurements of that file.
+    by_place = joining.settled(rows, [row.place for row in rows])
+    measured = [row for row in rows if row.datum is not None]
+    keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]
+    by_case = joining.settled(measured, keys)
+    if joining.problems:
+        raise SceneError(*shortened(joining.problems, "measurements"))
+    cases: dict[Hashable, Case] = {}
+    for row, key in zip(measured, keys, strict=True):
+        case = cases.setdefault(key, Case(row.where, layout.pack(), row.moves))
+        case.held_out = case.held_out or row.held_out
+        for index, (value, _) in {**by_case[key], **by_place[row.place]}.items():
+            case.inputs[index] = value
+        if row.datum is not None:
+            case.data.setdefault(row.measurement, []).append(row.datum)
+    return list(cases.values())
+
+
+def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayout, per_row: bool) -> Hashable:
+    """Key that the rows of one case have in common."""
+    if row.label is not None:
+        return "case", row.label, row.moves
+    if per_row and not row.moves:
+        return "row", row.place
+    stacked = layout.pack()
+    for index, (value, _) in settled.items():
+        stacked[index] = value
+    return "inputs", row.moves, *stacked.tolist()
+
+
+@dataclass
+class _Joining:
+    """Joins what rows say of the inputs.
+
+    Attributes:
+        names: of the stacked inputs, by index.
+        problems: rows that contradict each other.
+    """
+
+    names: Mapping[int, str]
+    problems: list[Problem] = field(default_factory=list)
+
+    def settled(self, rows: Sequence[_Row], keys: Sequence[Hashable]) -> dict[Hashable, dict[int, tuple[float, str]]]:
+        """Value of each input that rows of one key set, and the row that did, by key and index."""
+        known: dict[Hashable, dict[int, tuple[float, str]]] = {}
+        for row, key in zip(rows, keys, strict=True):
+            settled = known.setdefault(key, {})
+            for index, value in row.set_inputs.items():
+                first, where = settled.setdefault(index, (value, row.where))
+                if first != value:
+                    name = self.names[index]
+                    problem = f"sets {name} to {value:g}, but {where} sets it to {first:g} in the same case"
+                    self.problems.append(Problem(row.where, problem))
+        return known

@@ -1,0 +1,195 @@
+"""Identification of a model's unknowns from its measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.case_motions import StartInputs, check_motions
+from cosserat_casadi.identification.fit_discretisation import with_discretisation
+from cosserat_casadi.identification.fit_problem import SEED, Progress, Task
+from cosserat_casadi.identification.fit_unknowns import UnknownLayout, refuse_row_parameters, unknown_layout
+from cosserat_casadi.identification.identification_result import Identification
+from cosserat_casadi.identification.measured_cases import Case, Data, read_cases
+from cosserat_casadi.identification.measured_modes import check_vibrations
+from cosserat_casadi.identification.model_error import with_model_error
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.numerics.progress import Report
+from cosserat_casadi.numerics.robust_loss import Loss
+from cosserat_casadi.spelling import counted
+
+RECHOSEN = 2
+"""Times that a discretisation is chosen again at the identified numbers."""
+
+
+def identify(
+    model: Model,
+    data: Data | None = None,
+    *,
+    hold_out: float | None = None,
+    starts: int | None = None,
+    report: Report | None = None,
+    progress: Progress | None = None,
+) -> Identification:
+    """Identify the unknowns of a model's scene from measurements.
+
+    Args:
+        model: of a scene with measurements and unknowns, which are its parameters and inputs:
+            ``build(scene.with_unknowns())``.
+        data: columns by measurement, by its name or its file, that stand for the file.
+        hold_out: share of the cases that is not fitted but predicted; by default that of the scene.
+        starts: places from which the search begins; by default that of the scene.
+        report: called with the work under way.
+        progress: told the steps of the search.
+
+    Raises:
+        SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
+    """
+    refuse_obstacles(model.scene, "an identification")
+    refuse_row_parameters(model.scene)
+    scene = model.scene
+    options = scene.identification
+    layout = unknown_layout(model)
+    check_measured(model)
+    cases = read_cases(scene, model.inputs, data)
+    fitted, held_out = _split(cases, options.hold_out if hold_out is None else hold_out)
+    _refuse_few_data(layout, fitted, scene)
+    task = Task(
+        model,
+        layout,
+        Loss(options.loss, options.loss_width),
+        options,
+        options.starts if starts is None else starts,
+        report or _untold,
+        progress,
+    )
+    found = task.run(fitted, held_out)
+    task.report("judging the error of the model")
+    return with_model_error(found, {case.where: case for case in fitted})
+
+
+def _untold(stage: str) -> None:
+    """Take no note of a stage that nobody asked for."""
+
+
+def identify_scene(
+    scene: scenes.Scene,
+    data: Data | None = None,
+    *,
+    hold_out: float | None = None,
+    starts: int | None = None,
+    report: Report | None = None,
+    progress: Progress | None = None,
+) -> Identification:
+    """Identify the unknowns of a scene from measurements, on modes and nodes that meet its tolerance.
+
+    They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at the identified ones,
+        which may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them. Where
+        the scene writes no tolerance and poses alone were measured, a tenth of the least of their deviations is enough.
+
+    Args:
+        scene: with measurements and unknowns.
+        data: as in :func:`identify`.
+        hold_out: as there.
+        starts: as there.
+        report: as there.
+        progress: as there.
+
+    Raises:
+        SceneError: as in :func:`identify`.
+    """
+    refuse_obstacles(scene, "an identification")
+    refuse_row_parameters(scene)
+    completed = scene.with_unknowns()
+    draft = build(completed)
+    # All that is refused is refused before time is spent on a discretisation.
+    unknown_layout(draft)
+    check_measured(draft)
+    cases = read_cases(completed, draft.inputs, data)
+    tell = report or _untold
+    tell("choosing the discretisation")
+    choice = with_discretisation(completed, draft, cases, tell)
+    found = identify(build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    for _ in range(RECHOSEN):
+        if scene.accuracy.fixed or not found.converged:
+            break
+        tell("judging the discretisation")
+        try:
+            fitted = found.fitted_scene(completed)
+        except SceneError:
+            # What was found is told all the same; whoever wants the scene is told why there is none.
+            break
+        judged = with_discretisation(fitted, draft, _with_found_inputs(cases, found), tell)
+        if judged.scene.accuracy == choice.scene.accuracy:
+            break
+        choice = replace(judged, scene=completed.model_copy(update={"accuracy": judged.scene.accuracy}))
+        found = identify(build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    return replace(found, warnings=(*choice.warnings, *found.warnings))
+
+
+def _with_found_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
+    """The cases that took part, with the inputs that were found for them."""
+    by_name = {case.where: case for case in cases}
+    added = StartInputs(found.model).added
+    chosen = []
+    for where, inputs in zip(found.cases, found.inputs, strict=True):
+        case = by_name[where]
+        chosen.append(replace(case, inputs=inputs - added if case.moves else inputs))
+    return chosen
+
+
+def check_measured(model: Model) -> None:
+    """Refuse a scene in which nothing was measured, or what cannot be had of it.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    scene = model.scene
+    if not scene.measurements:
+        raise SceneError(Problem("measurements", "missing", "say what was measured"))
+    if scene.measured_over_time:
+        check_motions(model)
+    check_vibrations(model)
+
+
+def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:
+    """Cases that are fitted, and held-out cases: the ones that rows name, and a share of the others."""
+    if not 0.0 <= share < 1.0:
+        raise SceneError(Problem("--hold-out", f"must be >= 0 and < 1, got {share:g}"))
+    others = [i for i, case in enumerate(cases) if not case.held_out]
+    if not others:
+        raise SceneError(Problem("measurements", "held_out holds out all cases", "leave at least one"))
+    count = round(share * len(others))
+    if share > 0.0 and count in (0, len(others)):
+        problem = f"holds out {count} of {len(others)} cases"
+        raise SceneError(Problem("--hold-out", problem, "hold out at least one, and leave at least one"))
+    drawn = np.random.default_rng(SEED).permutation(len(others))[count:]
+    kept = {others[i] for i in drawn.tolist()}
+    fitted = [case for i, case in enumerate(cases) if i in kept]
+    return fitted, [case for i, case in enumerate(cases) if i not in kept]
+
+
+def _refuse_few_data(layout: UnknownLayout, cases: Sequence[Case], scene: scenes.Scene) -> None:
+    """Refuse fewer data than unknowns: whatever they are, they can be met.
+
+    Raises:
+        SceneError: there are fewer.
+    """
+    data = 0
+    for case in cases:
+        for number, rows in case.data.items():
+            differences = len(scene.measurements[number].differences)
+            data += sum(int(np.isfinite(row.values[:differences]).sum()) for row in rows)
+    shared, own = len(layout.shared_labels), len(layout.own_labels)
+    priors = int(np.count_nonzero(layout.shared_limits.weight))
+    priors += len(cases) * int(np.count_nonzero(layout.own_limits.weight))
+    unknowns = shared + own * len(cases)
+    if data + priors < unknowns:
+        wanted = f"{counted(unknowns, 'unknown')} in {counted(len(cases), 'case')}"
+        problem = f"{wanted} are too many for {counted(data + priors, 'number')}"
+        raise SceneError(Problem("unknowns", problem, "leave some out, give priors, or measure more"))

@@ -1,0 +1,434 @@
+"""Constraints, floating frames and cables in the equations of a scene, and the Jacobian of the whole.
+
+The balance of a frame is the derivative of the Lagrangian with respect to its pose: −F ℓ for the position, and for the
+quaternion −Tᵀ M with δθ = T δQ, both in units of the frame's EI/ℓ. A quaternion has a length that no mechanics sees:
+the derivative (Q·Q − 1) Q of ¼ (Q·Q − 1)² is added, orthogonal to the rest, and makes it one. So no rotation is
+singular. The Jacobian is symmetric but for units wherever the loads have a potential and the constraints are closed.
+
+The Jacobian follows by the chain rule. Every constraint gives derivatives with three motions [δθ; δr]: of its section,
+of the base of its rod, of the frame on its other side. Sections move with the strains (rod/tangent.py), frames with
+their unknowns. With u = (strains q, multipliers m, deviations d of frames, tensions τ) the blocks are
+
+               q                    m                  d                        τ
+    rod        tangent              −δᵀ W              turn of dead loads,      ∂L/∂q / ℓ
+                                                       W that turns,
+                                                       loads seen from bodies
+    constraint c_section δ          0                  c_base B, c_frame B      0
+    frame      reaction of the      reactions          all that turns with it   0
+               rods it carries
+    cable      by ∂L/∂q             0                  0                        by τ
+
+where δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame
+with d. Docs/theory.md, section 8.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.section_constraint import PoseVariations
+from cosserat_casadi.maths.rotation import hat
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.block_matrix import BlockMatrix
+from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
+from cosserat_casadi.model.body_obstacle_loads import BorneLoad, borne_loads
+from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
+from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
+from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
+from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, spring
+from cosserat_casadi.model.scene_constraints import ASSEMBLED, PlacedConstraint
+from cosserat_casadi.model.system import System
+from cosserat_casadi.model.unknowns import Unknowns
+from cosserat_casadi.rod.reaction import Reaction
+
+
+def _turn_rows() -> ca.Function:
+    """(Q, M) ↦ rows of a frame's quaternion, (Q·Q − 1) Q − Tᵀ M, and their derivative with Q at fixed M.
+
+    M is the moment on the frame in units of its EI/ℓ.
+    """
+    quaternion = ca.SX.sym("quaternion", 4)
+    moment = ca.SX.sym("moment", 3)
+    # Along Q what makes its norm one, orthogonal to it what the moment does: both vanish, or neither does.
+    norm_row = (ca.sumsqr(quaternion) - 1) * quaternion
+    rows = norm_row - turn_matrix(quaternion).T @ moment
+    results = ca.cse([rows, ca.jacobian(rows, quaternion)])
+    return ca.Function("turn_rows", [quaternion, moment], results)
+
+
+TURN_ROWS = _turn_rows()
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Rods of a system with their constraints and the floating frames.
+
+    Attributes:
+        system: the rods and the arguments of the equations.
+    """
+
+    system: System
+
+    @property
+    def discrete(self) -> DiscreteScene:
+        """The scene with its constant matrices."""
+        return self.system.discrete
+
+    @property
+    def unknowns(self) -> Unknowns:
+        """The blocks of x."""
+        return self.discrete.unknowns
+
+    @property
+    def load_factor(self) -> LoadFactor:
+        """λ that the equations are written at."""
+        return self.system.arguments.load_factor
+
+    @property
+    def frames(self) -> dict[FrameName, FloatingFrame]:
+        """The floating frames."""
+        return self.discrete.frames
+
+    @property
+    def frame_poses(self) -> dict[FrameName, FramePose]:
+        """World poses of the floating frames."""
+        return self.system.frame_poses
+
+    @property
+    def constraints(self) -> list[PlacedConstraint]:
+        """The constraints."""
+        return self.discrete.constraints
+
+    # Residual
+
+    @cached_property
+    def constraint_rows(self) -> list[Matrix]:
+        """Residual of every constraint, at the load factor."""
+        rows = []
+        for placed in self.constraints:
+            gap = placed.constraint.residual(self.system.poses(placed))
+            multipliers = self.system.multipliers(placed)
+            rows.append(row_at(gap, multipliers, placed.compliance, self.load_factor))
+        return rows
+
+    @cached_property
+    def balance_rows(self) -> list[Matrix]:
+        """Balance of every floating frame, 7×1, without unit, at the load factor."""
+        rows = []
+        for name, frame in self.frames.items():
+            wrench = self._wrenches[name]
+            moment = wrench[:3] / frame.unit
+            force_row = -frame.length / frame.unit * wrench[3:]
+            turn_row = TURN_ROWS(self.frame_poses[name].quaternion, moment)[0]
+            balance = ca.vertcat(force_row, turn_row)
+            deviation = self.system.deviation(name)
+            rows.append(row_at(balance, deviation, ASSEMBLED, self.load_factor))
+        return rows
+
+    @cached_property
+    def cable_rows(self) -> list[Matrix]:
+        """Residual of every cable of given length, at the load factor."""
+        rows = []
+        for cable in self.discrete.cables:
+            equation = self.system.actuators.cable_lengths[cable.tendon.name]
+            rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
+        return rows
+
+    # Jacobian
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """∂ residual / ∂x of the whole scene, sparse by blocks."""
+        ends = [entries.stop for entries in self.unknowns.slices.values()]
+        blocks = BlockMatrix(ends)
+        for rod, tangent in self.system.tangents.items():
+            strains = self.unknowns.strain(rod)
+            blocks.add(strains, strains, tangent.jacobian)
+        for placed in self.constraints:
+            self._add_constraint(blocks, placed)
+            self._add_constraint_wrench(blocks, placed)
+        for floating in self.discrete.unloaded.floating_rods:
+            self._add_turned_loads(blocks, floating.name)
+        for borne in self._borne_loads:
+            self._add_borne_load(blocks, borne)
+        for name in self.frames:
+            self._add_balance(blocks, name)
+        for cable in self.discrete.cables:
+            self._add_cable(blocks, cable)
+        self._add_springs(blocks)
+        return blocks.matrix()
+
+    def _section_motion(self, placed: PlacedConstraint) -> Matrix:
+        """δ: motion [δθ; δr] of a held section with the strains of its rod, 6×n, base axes."""
+        tangent = self.system.tangents[placed.rod]
+        return ca.vertcat(tangent.rotation_of(placed.node), tangent.position(placed.node))
+
+    def _of_floating(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[FrameName, Matrix]]:
+        """Derivatives with the motions of those frames of a constraint that float: its rod's base, its other side."""
+        base = self.discrete.unloaded.floating_base(placed.rod)
+        derivatives = []
+        if base is not None:
+            derivatives.append((base, variations.base))
+        if placed.frame is not None:
+            derivatives.append((placed.frame, variations.frame))
+        return derivatives
+
+    # Rows of constraints
+
+    def _add_constraint(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
+        """Rows of a constraint: c_section δ, c_base B, c_frame B."""
+        rows = self.discrete.multipliers(placed)
+        strains = self.unknowns.strain(placed.rod)
+        variations = placed.constraint.residual_variation(self.system.poses(placed))
+        by_strain = variations.section @ self._section_motion(placed)
+        blocks.add(rows, strains, column_at(by_strain, self.load_factor))
+        for name, derivative in self._of_floating(placed, variations):
+            deviation = self.discrete.deviation(name)
+            by_deviation = derivative @ self.frame_poses[name].motion
+            blocks.add(rows, deviation, column_at(by_deviation, self.load_factor))
+
+    # Columns of the rods
+
+    def _add_constraint_wrench(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
+        """Blocks of the multipliers in their rod's residual, −δᵀ W / (EI/ℓ), and of W that turns with its frame."""
+        constraint = placed.constraint
+        poses = self.system.poses(placed)
+        strains = self.unknowns.strain(placed.rod)
+        # The virtual work of a wrench on the section is δᵀ times it; the residual of a rod is in units of its EI/ℓ.
+        work = self._section_motion(placed).T / -constraint.unit
+        multipliers = self.discrete.multipliers(placed)
+        blocks.add(strains, multipliers, work @ constraint.wrench_basis(poses))
+        if not constraint.held.turn_with_pose:
+            return
+        variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
+        for name, derivative in self._of_floating(placed, variations):
+            deviation = self.discrete.deviation(name)
+            blocks.add(strains, deviation, work @ derivative @ self.frame_poses[name].motion)
+
+    def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
+        """Blocks of a moving base in the residual of its rod: dead loads turn back, pose-dependent ones change."""
+        name = FrameName("rod", rod)
+        frame_pose = self.frame_poses[name]
+        base_R_world = frame_pose.pose.rotation.T
+        reaction = self._reactions[rod]
+        motion = frame_pose.motion
+        strains = self.unknowns.strain(rod)
+        deviation = self.discrete.deviation(name)
+        by_turn, _, _ = reaction.with_turn
+        blocks.add(strains, deviation, by_turn @ base_R_world @ motion[:3, :])
+        # A shift of the base changes nothing where no load depends on the pose.
+        if reaction.with_shift is not None:
+            by_shift, _, _ = reaction.with_shift
+            blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
+
+    def _add_borne_load(self, blocks: BlockMatrix, borne: BorneLoad) -> None:
+        """Block of the motion of a body in the residual of a rod that is pressed by an obstacle on the body."""
+        strains = self.unknowns.strain(borne.rod)
+        deviation = self.discrete.deviation(borne.body)
+        blocks.add(strains, deviation, borne.residual_with_body @ self.frame_poses[borne.body].motion)
+
+    # Rows of floating frames
+
+    @cached_property
+    def _borne_loads(self) -> list[BorneLoad]:
+        """Loads on rods whose opposite bodies bear, at the load factor."""
+        return list(borne_loads(self.system))
+
+    @cached_property
+    def _wrenches(self) -> dict[FrameName, Matrix]:
+        """Wrench [moment about the origin; force] on every floating frame, 6×1, world axes, N m and N."""
+        wrenches: dict[FrameName, Matrix] = {name: ca.DM.zeros(6, 1) for name in self.frames}
+        for placed in self.constraints:
+            if placed.frame is None:
+                continue
+            poses = self.system.poses(placed)
+            reaction = placed.constraint.reaction(poses, self.system.multipliers(placed))
+            wrenches[placed.frame] = wrenches[placed.frame] + reaction
+        for name in self.frames:
+            if name.kind == "rod":
+                wrenches[name] = wrenches[name] + self._rod_reaction(name)
+            for load in self._body_loads[name]:
+                wrenches[name] = wrenches[name] + load.wrench
+        for borne in self._borne_loads:
+            wrenches[borne.body] = wrenches[borne.body] + borne.wrench
+        return wrenches
+
+    def _rod_reaction(self, name: FrameName) -> Matrix:
+        """Wrench of a rod on its own floating base, world axes."""
+        statics = self.system.rods[name.name].statics
+        world_R_base = self.frame_poses[name].pose.rotation
+        moment = world_R_base @ statics.base_moment
+        force = world_R_base @ statics.base_force
+        return -ca.vertcat(moment, force)
+
+    @cached_property
+    def _reactions(self) -> dict[str, Reaction]:
+        """Variations of the base wrenches of rods whose bases float."""
+        reactions = {}
+        for rod in self.discrete.unloaded.floating_rods:
+            tangent = self.system.tangents[rod.name]
+            reactions[rod.name] = Reaction(tangent, self.system.dead_wrenches(rod.name))
+        return reactions
+
+    def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
+        """Rows of a frame's balance, from the variations of the wrench on it."""
+        frame = self.frames[name]
+        quaternion = self.frame_poses[name].quaternion
+        rows = self.discrete.deviation(name)
+        turn = turn_matrix(quaternion)
+        # From a variation of the wrench [moment; force] to that of the rows [−F ℓ; −Tᵀ M], in units of EI/ℓ.
+        by_force = ca.horzcat(ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3))
+        by_moment = ca.horzcat(-turn.T / frame.unit, ca.DM(4, 3))
+        to_rows = ca.vertcat(by_force, by_moment)
+        for columns, variation in self._wrench_variations(name):
+            blocks.add(rows, columns, column_at(to_rows @ variation, self.load_factor))
+        # T and the norm of Q change with Q itself, at fixed moment.
+        moment = self._wrenches[name][:3] / frame.unit
+        by_quaternion = TURN_ROWS(quaternion, moment)[1]
+        at_fixed_wrench = ca.diagcat(ca.DM(3, 3), by_quaternion)
+        blocks.add(rows, rows, column_at(at_fixed_wrench, self.load_factor))
+
+    def _wrench_variations(self, name: FrameName) -> list[tuple[slice, Matrix]]:
+        """Variation of the wrench on a frame with each block of unknowns that changes it, 6×k, world axes."""
+        variations: list[tuple[slice, Matrix]] = []
+        # Derivatives with the motions of frames are summed first: B is applied once to each frame.
+        by_motion: dict[FrameName, Matrix] = defaultdict(lambda: ca.DM(6, 6))
+        for placed in self.constraints:
+            if placed.frame == name:
+                variations += self._reaction_variations(placed, by_motion)
+        if name.kind == "rod":
+            variations += self._rod_reaction_variations(name, by_motion)
+        for load in self._body_loads[name]:
+            by_motion[name] = by_motion[name] + load.variation
+        for borne in self._borne_loads:
+            for moved, derivative in borne.with_motions(name):
+                by_motion[moved] = by_motion[moved] + derivative
+            if borne.body == name:
+                variations.append((self.unknowns.strain(borne.rod), borne.wrench_with_strain))
+        for moved, derivative in by_motion.items():
+            by_deviation = derivative @ self.frame_poses[moved].motion
+            variations.append((self.discrete.deviation(moved), by_deviation))
+        return variations
+
+    def _reaction_variations(
+        self, placed: PlacedConstraint, by_motion: dict[FrameName, Matrix]
+    ) -> list[tuple[slice, Matrix]]:
+        """Variation of a constraint's reaction with multipliers and strains; that with frames goes into by_motion."""
+        constraint = placed.constraint
+        poses = self.system.poses(placed)
+        by_multipliers, by_poses = constraint.reaction_variation(poses, self.system.multipliers(placed))
+        variations = [(self.discrete.multipliers(placed), by_multipliers)]
+        for moved, derivative in self._of_floating(placed, by_poses):
+            by_motion[moved] = by_motion[moved] + derivative
+        # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
+        if constraint.held.slides:
+            strains = self.unknowns.strain(placed.rod)
+            by_strain = by_poses.section @ self._section_motion(placed)
+            variations.append((strains, by_strain))
+        return variations
+
+    def _rod_reaction_variations(
+        self, name: FrameName, by_motion: dict[FrameName, Matrix]
+    ) -> list[tuple[slice, Matrix]]:
+        """Variation of the wrench of a rod on its floating base with strains and multipliers; frames into by_motion."""
+        rod = name.name
+        reaction = self._reactions[rod]
+        rotation = self.frame_poses[name].pose.rotation
+        to_world = ca.diagcat(rotation, rotation)
+        by_strain = ca.vertcat(reaction.moment_with_strain, reaction.force_with_strain)
+        variations = [(self.unknowns.strain(rod), -to_world @ by_strain)]
+        by_turn, by_shift = self._base_motion(rod)
+        in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
+        by_motion[name] = by_motion[name] - to_world @ in_base_axes
+        constraints = self.discrete.constraints_on(rod)
+        passed_on = [self._passed_on(placed, to_world, by_motion) for placed in constraints]
+        return [*variations, *passed_on]
+
+    def _base_motion(self, rod: str) -> tuple[Matrix, Matrix]:
+        """Derivative of the base wrench [moment; force] with a turn and with a shift of the base, base axes, 6×3."""
+        statics = self.system.rods[rod].statics
+        reaction = self._reactions[rod]
+        _, force, moment = reaction.with_turn
+        # In the axes of the base, dead loads turn back; the base wrench itself turns with the base.
+        by_turn = ca.vertcat(moment - hat(statics.base_moment), force - hat(statics.base_force))
+        if reaction.with_shift is None:
+            return by_turn, ca.DM(6, 3)
+        _, force, moment = reaction.with_shift
+        return by_turn, ca.vertcat(moment, force)
+
+    def _passed_on(
+        self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
+    ) -> tuple[slice, Matrix]:
+        """Wrench that the multipliers of a constraint on a carried rod pass on to the rod's base, 6×k, world axes."""
+        constraint = placed.constraint
+        poses = self.system.poses(placed)
+        # The force of the section has its arm about the base: moment + r × force.
+        moment_rows = ca.horzcat(ca.DM.eye(3), hat(poses.section.position))
+        force_rows = ca.horzcat(ca.DM(3, 3), ca.DM.eye(3))
+        to_base = to_world @ ca.vertcat(moment_rows, force_rows)
+        if constraint.held.turn_with_pose:
+            variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
+            for moved, derivative in self._of_floating(placed, variations):
+                by_motion[moved] = by_motion[moved] + to_base @ derivative
+        return self.discrete.multipliers(placed), to_base @ constraint.wrench_basis(poses)
+
+    # Loads on bodies
+
+    @cached_property
+    def _body_loads(self) -> dict[FrameName, list[BodyLoad]]:
+        """Loads on the bodies at the load factor; none on the bases of rods."""
+        return {name: list(self._loads_on(name, frame.body)) for name, frame in self.frames.items()}
+
+    def _loads_on(self, name: FrameName, body: scenes.Body | None) -> Iterator[BodyLoad]:
+        if body is None:
+            return
+        pose = self.frame_poses[name].pose
+        loads = BodyLoads(self.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
+        for load in loads.all():
+            yield load.scaled(self.load_factor)
+        inertia = self.system.body_inertias.get(name)
+        if inertia is not None:
+            yield BodyLoad(
+                position=body.centre_of_mass,
+                arm=inertia.arm,
+                force=inertia.force,
+                moment=inertia.moment,
+                follower=False,
+                aligns=False,
+            )
+
+    # Cables of given length
+
+    def _add_cable(self, blocks: BlockMatrix, cable: CableOfLength) -> None:
+        """Row of a cable of given length, and its tension's column in the residual of its rod."""
+        equation = self.system.actuators.cable_lengths[cable.tendon.name]
+        strains = self.unknowns.strain(equation.rod)
+        tension = self.discrete.tension(cable)
+        blocks.add(strains, tension, equation.pull)
+        blocks.add(tension, strains, column_at(equation.strain_columns, self.load_factor))
+        blocks.add(tension, tension, column_at(equation.tension_column, self.load_factor))
+
+    # From the unloaded scene to the scene
+
+    def _add_springs(self, blocks: BlockMatrix) -> None:
+        """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
+        for entries, compliance in self._compliances():
+            size = entries.stop - entries.start
+            block = spring(size, compliance, self.load_factor)
+            if block is not None:
+                blocks.add(entries, entries, block)
+
+    def _compliances(self) -> Iterator[tuple[slice, Compliance]]:
+        """The blocks of unknowns that a spring acts on, with its compliance (model/homotopy.py)."""
+        for placed in self.constraints:
+            yield self.discrete.multipliers(placed), placed.compliance
+        for name in self.frames:
+            yield self.discrete.deviation(name), ASSEMBLED
+        for cable in self.discrete.cables:
+            yield self.discrete.tension(cable), cable.compliance

@@ -1,0 +1,153 @@
+"""Where the elements of rods end: where a load, an actuator or a carried rod makes a jump.
+
+A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
+of the scene's own numbers, so that the order of the places along a rod must stay as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
+from cosserat_casadi.model.registry import EFFECTS
+
+NARROWEST = 1e-6
+"""Width of an element relative to the rod below which its ends are taken to meet."""
+
+
+CLOSEST = 1e-13
+"""Distance of two places relative to the rod below which rounding makes the equations between them singular.
+
+At 1e-12 a rod with a load at each is still solved to its tolerance.
+"""
+
+
+def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
+    """Abscissae of a rod at which an element must end, in the order of the scene; several may be the same."""
+    places: list[Scalar] = []
+    for record in scene.causes:
+        member = EFFECTS[record.kind]
+        if member.acts_on(record, rod):
+            places.extend(member.breaks(record))
+    # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
+    places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
+    return places
+
+
+def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
+    """Abscissae at which a rod is cut: its ends, the places on it, and where contact asks for elements."""
+    asked_for = tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
+    (record,) = [record for record in scene.rods if record.name == rod]
+    return joined_ends(asked_for, layer_ends(scene, record))
+
+
+def check_places(rod: str, ends: Sequence[float]) -> None:
+    """Refuse places on a rod that are so near each other that there is no element between them.
+
+    Args:
+        rod: name of the rod.
+        ends: where its elements end, ascending.
+
+    Raises:
+        SceneError: two are closer than CLOSEST.
+    """
+    for before, after in pairwise(ends):
+        if after - before < CLOSEST:
+            problem = f"its elements would end at {before!r} and at {after!r}, too near each other to compute with"
+            remedy = "give what meets on the rod the same abscissa X, or move one"
+            raise SceneError(Problem(rod, problem, remedy))
+
+
+def moved_ends(
+    nominal: scenes.Scene, scene: scenes.Scene, rod: str, breaks: tuple[float, ...]
+) -> tuple[Scalar, ...] | None:
+    """Where the elements of a rod end in a scene with other numbers, or expressions; None where they have not moved.
+
+    Args:
+        nominal: the scene that the elements were made for.
+        scene: the same with other numbers.
+        rod: name of the rod.
+        breaks: where its elements end in the nominal scene.
+    """
+    moved: dict[float, Scalar] = {}
+    for before, after in zip(places_on(nominal, rod), places_on(scene, rod), strict=True):
+        assert not is_symbolic(before)
+        if is_symbolic(after) or after != before:
+            moved[float(before)] = after
+    if not moved:
+        return None
+    return tuple(moved.get(end, end) for end in breaks)
+
+
+def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator[Problem]:
+    """Why a parameter cannot move its places.
+
+    Args:
+        name: of the parameter.
+        nominal: the scene with its own numbers.
+        scene: the same with symbols for those of this parameter alone.
+    """
+    for rod in nominal.rods:
+        before = places_on(nominal, rod.name)
+        for place, written in zip(before, places_on(scene, rod.name), strict=True):
+            if not is_symbolic(written):
+                continue
+            if place in (0.0, 1.0):
+                problem = f"is at the end X = {place:g} of {rod.name!r}, which does not move along it"
+                yield Problem(name, problem, "give a place inside the rod, which is the default")
+            elif before.count(place) > 1:
+                problem = f"is at X = {place:g} of {rod.name!r}, where something else is that does not move with it"
+                yield Problem(name, problem, "give the two different places: an element lies between them")
+
+
+@dataclass(frozen=True)
+class MovingEnds:
+    """The element ends of a rod as a function of the parameters p.
+
+    Attributes:
+        rod: name of the rod.
+        names: the parameters that move them.
+        ends: p ↦ abscissae, shape (E + 1,).
+    """
+
+    rod: str
+    names: tuple[str, ...]
+    ends: ca.Function
+
+    def faults(self, p: FloatArray) -> Iterator[Problem]:
+        """Problems of the element ends that values of the parameters give."""
+        ends = self.ends(p).full()[:, 0]
+        if np.all(np.diff(ends) >= NARROWEST):
+            return
+        places = ", ".join(f"{end:g}" for end in ends)
+        problem = f"the elements of {self.rod!r} would end at X = {places}: places must keep their order along the rod"
+        yield Problem(", ".join(self.names), problem, "build a scene with these places for another order")
+
+
+def moving_ends(
+    nominal: scenes.Scene, scene: scenes.Scene, symbol: ca.MX, names: dict[str, tuple[str, ...]]
+) -> tuple[MovingEnds, ...]:
+    """The element ends of those rods on which parameters move any.
+
+    Args:
+        nominal: the scene with its own numbers.
+        scene: the same with entries of the symbol.
+        symbol: p.
+        names: parameters that move places, by rods.
+    """
+    moving = []
+    for rod, own in names.items():
+        ends = moved_ends(nominal, scene, rod, element_ends(nominal, rod))
+        assert ends is not None
+        function = ca.Function("ends", [symbol], [as_vector(ends)])
+        moving.append(MovingEnds(rod, own, function))
+    return tuple(moving)

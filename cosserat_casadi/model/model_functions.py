@@ -1,0 +1,434 @@
+"""The named functions of a model: one method each, which is all there is of a function.
+
+Every method gives the expressions of its results; the decorator says the rest. See model/function_table.py.
+All functions are exact for the discrete model and can be differentiated again.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.actuator_assembly import rod_actuation
+from cosserat_casadi.model.contact_depth import contact_depths
+from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.function_table import (
+    PARAMETERS,
+    Expressions,
+    Output,
+    Owner,
+    owned_functions,
+    scene_function,
+)
+from cosserat_casadi.model.interpolation import interpolation_weights
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads
+from cosserat_casadi.model.path_stretch import path_stretches
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.scene_equations import SceneEquations
+from cosserat_casadi.model.system import Arguments, System, ratio_of
+from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
+from cosserat_casadi.model.watched import watched
+from cosserat_casadi.rod import kinematics
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.transport import largest_turn
+
+RESOLVED_TURN = 2.0
+"""Turn of an interval between nodes, rad, beyond which no polynomial through the nodes follows the rod.
+
+Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magnus series up to a turn of π.
+"""
+
+RESOLVED_NORM = 1e-2
+"""Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
+
+PATH = ("x", "inputs", "load_factor")
+"""Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
+
+CORRECTED = ("x", "correction", "missing", "inputs")
+"""Arguments of the functions that judge an answer x by modes and intervals that it lacks."""
+
+POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
+
+
+def _pose_derivatives(discrete: DiscreteScene, _: str) -> tuple[Output, ...]:
+    """Derivatives of a pose with all that it depends on: with parameters in a scene that names some."""
+    derivatives = (Output("d_pose_d_x", derivative_by="x"), Output("d_pose_d_inputs", derivative_by="inputs"))
+    if discrete.parameters.size:
+        derivatives += (Output("d_pose_d_parameters", derivative_by=PARAMETERS),)
+    return derivatives
+
+
+def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
+    """Effort and conjugate of an actuator by their own names, and the derivative of the conjugate."""
+    member = next(EFFECTS[actuator.kind] for actuator in discrete.scene.actuators if actuator.name == name)
+    effort = Output(member.effort, member.effort_unit)
+    conjugate = Output(member.conjugate, member.conjugate_unit)
+    return effort, conjugate, Output(f"d_{conjugate.name}_d_x", derivative_by="x")
+
+
+class ModelFunctions:
+    """The named functions of a model.
+
+    Attributes:
+        discrete: the scene with its constant matrices.
+    """
+
+    discrete: DiscreteScene
+
+    @scene_function(Output("residual"), differentiable=True)
+    def residual(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
+        return [SceneEquations(written.system).residual]
+
+    @scene_function(Output("jacobian"), Output("residual"))
+    def jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
+        equations = SceneEquations(written.system)
+        return [equations.jacobian, equations.residual]
+
+    @scene_function(Output("input_jacobian"))
+    def input_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
+        residual = SceneEquations(written.system).residual
+        return [ca.jacobian(residual, written["inputs"])]
+
+    @scene_function(Output("parameter_jacobian"))
+    def parameter_jacobian(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs, p) ↦ derivative of the residual with respect to the parameters; None without parameters."""
+        if not written.discrete.parameters.size:
+            return None
+        residual = SceneEquations(written.system).residual
+        return [ca.jacobian(residual, written["p"])]
+
+    @scene_function(Output("residual"), arguments=PATH, kernel="residual")
+    def path_residual(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
+        return [SceneEquations(written.system).residual]
+
+    @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
+    def path_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
+        return [SceneEquations(written.system).jacobian]
+
+    @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
+    def path_rate(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
+        moving = ca.vertcat(written["inputs"], written["load_factor"])
+        speed = ca.vertcat(written["inputs_rate"], written["load_factor_rate"])
+        # One symbol for all that moves, so that one derivative in one direction is taken.
+        joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
+        arguments = Arguments(written["x"], joined[:-1], joined[-1])
+        equations = SceneEquations(System(written.discrete, arguments))
+        rate = ca.jtimes(equations.residual, joined, speed)
+        return [ca.substitute(rate, joined, moving)]
+
+    @scene_function(Output("tangent"), arguments=("inputs",), kernel="tangent")
+    def path_tangent(self, written: Expressions) -> list[Matrix]:
+        """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
+        if written.discrete.parameters.size:
+            return [parametric_response(written)]
+        return [unloaded_response(self.discrete, self.path_jacobian, self.path_rate, written["inputs"])]
+
+    @scene_function(Output("resolution_index"), kernel="resolution_index")
+    def resolution_index(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual.
+
+        Where rods are deeper inside obstacles than their widths it is their depth in widths, if that is more.
+        """
+        return [resolution_index(written)]
+
+    @scene_function(Output("path_stretch"), kernel="path_stretch")
+    def path_stretch(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ length per length of the rod that each tendon's path has left where it has least.
+
+        One number for each tendon whose path can change; at zero the rod has pressed it to nothing, below it is turned
+        inside out. None without such tendons.
+        """
+        stretches = path_stretches(written.system)
+        return [ca.vertcat(*stretches.values())] if stretches else None
+
+    @scene_function(Output("depth"))
+    def contact_depth(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ how deep nodes and bodies are inside obstacles, in widths; None without smooth contact."""
+        depths = contact_depths(written.system)
+        return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
+
+    @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance")
+    def richer_balance(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ what the balance with modes and intervals added lacks at an answer.
+
+        Elastic steps of the unknowns and of the coordinates of the missing modes, and the residual in the unknowns, one
+        below the other, at x + correction and the missing coordinates; docs/theory.md, section 10.
+        """
+        richer, system = _enriched(written)
+        residual, lacking = richer.split(SceneEquations(system).residual)
+        step, missing_step = richer.split(richer.elastic_step(lacking))
+        return [ca.densify(ca.vertcat(step, missing_step, residual))]
+
+    @scene_function(Output("positions"), Output("quaternions"), Output("cables"))
+    def watched(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ what must be right to the tolerance: positions over lengths, quaternions, relative lengths.
+
+        Of sections and bodies, 3×k and 4×k, and of cables, 1×c; see model/watched.py.
+        """
+        poses = watched(written.system)
+        return [ca.densify(ca.MX(poses.positions)), ca.densify(ca.MX(poses.quaternions)), poses.cables]
+
+    @scene_function(Output("changes"), arguments=CORRECTED, kernel="richer_changes")
+    def richer_changes(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ changes of watched poses and lengths by a correction on the richer model.
+
+        Displacements over the length, rotation angles (rad), and lengthenings of cables over the length, one column.
+        """
+        _, system = _enriched(written)
+        return [watched(system).changes_from(watched(written.system))]
+
+    @owned_functions(
+        Owner.ROD,
+        (Output("generalised_force", "EI/L"), Output("base_force", "N"), Output("base_moment", "N m")),
+        arguments=("q", "base_position", "base_quaternion", "inputs"),
+        kernel="igm",
+        header="Inverse Geometric Model of rod {owner}: strain coordinates and base pose, with the loads, to the "
+        "generalised force, and the force and the moment about the base of the clamp on the rod, world frame.",
+    )
+    def igm(self, written: Expressions) -> list[Matrix]:
+        """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
+
+        Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
+        forces in units of EI/ℓ. Wrenches of constraints are unknowns of the scene, not loads, and are left out; so is
+        what obstacles on bodies press with, which hangs on the poses of these.
+        """
+        return _inverse_geometric_model(written)
+
+    @owned_functions(
+        Owner.ROD,
+        POSE,
+        kernel="tip",
+        kernel_outputs=2,
+        header="Tip of rod {owner}, world frame.",
+        differentiable=True,
+    )
+    def tip(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame.
+
+        Columns: position 3×1, quaternion w, x, y, z 4×1; rotation world_R_tip 3×3. All are CasADi matrices.
+        """
+        tip = _tip_in_world(written)
+        return [tip.position, tip.quaternion, tip.rotation]
+
+    @owned_functions(
+        Owner.ROD,
+        _pose_derivatives,
+        kernel="tip_jacobian",
+        header="Derivatives of position and quaternion of the tip of rod {owner}, stacked.",
+    )
+    def tip_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
+
+        In a scene with parameters (x, inputs, p), and with p too.
+        """
+        return _tip_derivatives(written)
+
+    @owned_functions(
+        Owner.ROD,
+        POSE[:2],
+        arguments=("x", "inputs", "X"),
+        kernel="shape",
+        header="Section of rod {owner} at the abscissa X, 0 at the base and 1 at the tip, world frame.",
+        differentiable=True,
+    )
+    def shape(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame: the interpolant itself.
+
+        The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and
+        exact derivatives with respect to X too. X is one number; position is 3×1 and the quaternion w, x, y, z 4×1.
+        For k abscissae, ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
+        """
+        rod_shape = written.system.rods[written.owner].shape
+        weights = interpolation_weights(written.discrete, written.owner, written["X"])
+        quaternion = rod_shape.quaternion @ weights
+        unit_quaternion = quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        section = _in_world(written.system.base(written.owner), Pose(rod_shape.position @ weights, unit_quaternion))
+        return [section.position, section.quaternion]
+
+    @owned_functions(
+        Owner.ROD,
+        (
+            Output("position", "m"),
+            Output("quaternion"),
+            Output("internal_wrench"),
+            Output("base_force", "N"),
+            Output("base_moment", "N m"),
+        ),
+    )
+    def fields(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ position, quaternion and internal wrench at the nodes, and the base wrench.
+
+        World frame but for the internal wrench [moment; force], N m and N, which is in the section's.
+        """
+        rod = written.system.rods[written.owner]
+        base = written.system.base(written.owner)
+        count = written.discrete.rods[written.owner].grid.size
+        rotation = quaternion_to_matrix(base.quaternion)
+        quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+        return [
+            ca.repmat(base.position, 1, count) + rotation @ rod.shape.position,
+            quaternion_product(quaternions, ca.densify(rod.shape.quaternion)),
+            rod.statics.internal_wrench(),
+            rotation @ rod.statics.base_force,
+            rotation @ rod.statics.base_moment,
+        ]
+
+    @owned_functions(
+        Owner.ACTUATOR,
+        _actuator_outputs,
+        kernel="actuator",
+        header="Actuator {owner}: its effort, the conjugate that the effort does work on, and the derivative of the "
+        "conjugate, which is the generalised force of a unit of effort but for the unit EI/L and the sign.",
+        differentiable=True,
+    )
+    def actuator(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ effort of an actuator, its conjugate, and the derivative of the conjugate with x, 1×size.
+
+        Tension and length of a tendon, pressure and volume of a chamber.
+        The derivative is what a unit of effort does.
+        """
+        return [ca.densify(ca.MX(value)) for value in written.system.actuators.state(written.owner)]
+
+    @owned_functions(
+        Owner.BODY,
+        POSE,
+        kernel="body",
+        kernel_outputs=2,
+        header="Body {owner}, world frame.",
+        differentiable=True,
+    )
+    def body(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
+        frame = written.system.frame(FrameName("body", written.owner))
+        return [frame.position, frame.quaternion, frame.rotation]
+
+    @owned_functions(
+        Owner.BODY,
+        _pose_derivatives,
+        kernel="body_jacobian",
+        header="Derivatives of position and quaternion of the body {owner}, stacked.",
+    )
+    def body_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs.
+
+        In a scene with parameters (x, inputs, p), and with p too.
+        """
+        frame = written.system.frame(FrameName("body", written.owner))
+        pose = ca.vertcat(frame.position, frame.quaternion)
+        return [ca.densify(ca.jacobian(pose, symbol)) for symbol in written.symbols.values()]
+
+    @scene_function(Output("energy", "J"))
+    def energy(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ elastic energy of all rods, J."""
+        return [written.system.energy()]
+
+    @scene_function(Output("potential", "J"))
+    def potential(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
+        potential = written.system.potential()
+        return None if potential is None else [potential]
+
+
+def _enriched(written: Expressions) -> tuple[Richer, System]:
+    """The scene with modes and intervals added, and its equations at the corrected answer."""
+    richer = written.discrete.richer
+    unknowns = richer.joined(written["x"] + written["correction"], written["missing"])
+    return richer, System(richer.discrete, Arguments(unknowns, written["inputs"]))
+
+
+def resolution_index(written: Expressions) -> Matrix:
+    """Largest turn of an interval over what can be resolved; in the literal system the error of the tip's |Q|."""
+    indices: list[Matrix] = [ca.MX(0.0)]
+    for name, rod in written.discrete.rods.items():
+        q = written["x"][written.discrete.unknowns.strain(name)]
+        ratio = ratio_of(written.discrete, name, written.arguments)
+        if rod.discretisation.transport == "permuted":
+            # Its quaternion keeps its norm only as far as the nodes resolve the rod.
+            quaternion = kinematics.shape(rod, q, ratio).quaternion[:, -1]
+            error = ca.fabs(ca.norm_2(quaternion) - 1)
+            indices.append(error / RESOLVED_NORM)
+        elif rod.properties.turning_axes:
+            indices.append(largest_turn(rod, q, ratio) / RESOLVED_TURN)
+    indices += contact_depths(written.system)
+    return ca.mmax(ca.vertcat(*indices))
+
+
+def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
+    """Generalised force of loads and actuators, and base wrench in world axes, of one rod without the others."""
+    rod = written.discrete.rods[written.owner]
+    arguments = Arguments(written["q"], written["inputs"])
+    rotation = quaternion_to_matrix(written["base_quaternion"])
+    ratio = ratio_of(written.discrete, written.owner, arguments)
+    rod_shape = kinematics.shape(rod, written["q"], ratio)
+    base = RodBase(written["base_position"], rotation.T)
+    loads = RodLoads(written.discrete, written.owner, base, written["inputs"], ratio).all()
+    efforts = rod_actuation(written.discrete, written.owner, written["inputs"])
+    model = InverseGeometricModel(Statics(rod_shape, loads), tuple(efforts))
+    force = model.generalised_force
+    if model.actuation_force is not None:
+        force = force + model.actuation_force
+    base_force = rotation @ model.statics.base_force
+    base_moment = rotation @ model.statics.base_moment
+    return [force, base_force, base_moment]
+
+
+def _in_world(base: Pose, section: Pose) -> Pose:
+    """World pose of a section given in the base of its rod."""
+    symbolic_base = Pose(ca.MX(base.position), ca.MX(base.quaternion))
+    return symbolic_base.then(section)
+
+
+def _tip_in_world(written: Expressions) -> Pose:
+    return _in_world(written.system.base(written.owner), written.system.tip(written.owner))
+
+
+def _tip_derivatives(written: Expressions) -> list[Matrix]:
+    """From the variations of the rod's fields where its base rests: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q."""
+    discrete = written.discrete
+    tip = _tip_in_world(written)
+    pose = ca.vertcat(tip.position, tip.quaternion)
+    floats = discrete.unloaded.floating_base(written.owner) is not None
+    literal = discrete.rods[written.owner].discretisation.transport == "permuted"
+    # A floating base moves with unknowns of its own, and the literal system has no variations.
+    if floats or literal:
+        by_unknowns = ca.jacobian(pose, written["x"])
+    else:
+        by_unknowns = _by_strains(written)
+    by_inputs = ca.DM.zeros(7, discrete.layout.size)
+    if discrete.layout.geometry:
+        by_inputs = ca.densify(ca.jacobian(pose, written["inputs"]))
+    derivatives = [ca.densify(by_unknowns), by_inputs]
+    if discrete.parameters.size:
+        derivatives.append(ca.densify(ca.jacobian(pose, written[PARAMETERS])))
+    return derivatives
+
+
+def _by_strains(written: Expressions) -> Matrix:
+    """Derivative of a tip's position and quaternion with x, 7×size: zero but for the strains of its rod."""
+    system = written.system
+    tangent = system.tangents[written.owner]
+    tip = system.tip(written.owner)
+    base = system.base(written.owner)
+    count = written.discrete.rods[written.owner].size
+    quaternions = ca.repmat(ca.densify(tip.quaternion), 1, count)
+    # One column a strain coordinate: δQ = ½ (0, δθ) ⊗ Q in the base, then turned into the world.
+    spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
+    turned = quaternion_product(spin, quaternions) / 2
+    base_quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+    turned_in_world = quaternion_product(base_quaternions, turned)
+    moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
+    by_own_strains = ca.vertcat(moved_in_world, turned_in_world)
+    strains = written.discrete.unknowns.strain(written.owner)
+    before = ca.DM(7, strains.start)
+    after = ca.DM(7, written.discrete.size - strains.stop)
+    return ca.horzcat(before, by_own_strains, after)

@@ -1,0 +1,116 @@
+"""Cost of a model, and the cost of each of its loads, in scalar operations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.operations import Count, count, counts
+
+PriceProgress = Callable[[str, int, int], None]
+"""A function that takes the part being counted, the number of counts that are done, and their total."""
+
+
+@dataclass(frozen=True)
+class Price:
+    """Scalar operations of a model's functions.
+
+    Attributes:
+        residual: of the residual.
+        jacobian: of the residual and its Jacobian together.
+        igm: of the Inverse Geometric Models of all rods.
+    """
+
+    residual: Count
+    jacobian: Count
+    igm: Count
+
+
+def price(model: Model) -> Price:
+    """Operations of a model's functions."""
+    return Price(
+        residual=count(model.residual),
+        jacobian=count(model.jacobian),
+        igm=_sum(counts(list(model.igm.values()))),
+    )
+
+
+def _sum(of_rods: list[Count]) -> Count:
+    number = sum(of_rod.number for of_rod in of_rods)
+    exact = all(of_rod.exact for of_rod in of_rods)
+    return Count(number, exact)
+
+
+@dataclass(frozen=True)
+class MotionPrice:
+    """Scalar operations of the equations of motion.
+
+    Attributes:
+        inverse_dynamics: of the residual.
+        jacobian: of the residual with its derivatives with positions, velocities and accelerations.
+    """
+
+    inverse_dynamics: Count
+    jacobian: Count
+
+
+def price_of_motion(model: Model) -> MotionPrice:
+    """Operations of a model's equations of motion."""
+    return MotionPrice(
+        inverse_dynamics=count(model.inverse_dynamics),
+        jacobian=count(model.dynamics_jacobian),
+    )
+
+
+def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None) -> dict[str, Count]:
+    """Operations that each load, actuator and obstacle with a width adds to the residual, by name.
+
+    The price is the residual with the effect less the residual without it; of an obstacle with a width, also without
+    the elements that it asks for.
+
+    Args:
+        scene: with all effects.
+        progress: told which effect is left out, how many were, and of how many.
+    """
+    scene = scene.baked()
+    without = {cause.name: without_load for cause in scene.causes}
+    without |= {obstacle.name: without_obstacle for obstacle in scene.obstacles if obstacle.is_smooth}
+    residuals = [build(scene).residual]
+    for done, (name, bare) in enumerate(without.items()):
+        if progress is not None:
+            progress(f"Counting the operations of {name}", done, len(without))
+        residuals.append(build(bare(scene, name)).residual)
+    whole, *others = counts(residuals)
+    return {name: whole - other for name, other in zip(without, others, strict=True)}
+
+
+def is_damped(scene: scenes.Scene) -> bool:
+    """Whether a rod of the scene or the contact with an obstacle is damped."""
+    rods = any(rod.damping is not None for rod in scene.rods)
+    return rods or any(obstacle.damping > 0.0 for obstacle in scene.obstacles)
+
+
+def without_damping(scene: scenes.Scene) -> scenes.Scene:
+    """The scene without the damping of its rods and of contact, and without the parameters that were of it."""
+    rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
+    obstacles = tuple(obstacle.model_copy(update={"damping": 0.0}) for obstacle in scene.obstacles)
+    # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
+    named = zip(scene.parameters, scene.parameter_names(), strict=True)
+    parameters = tuple(entry for entry, name in named if name.split(".")[1] != "damping")
+    return scene.model_copy(update={"rods": rods, "obstacles": obstacles, "parameters": parameters})
+
+
+def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
+    """The scene without one of its loads or actuators, and without the inputs that were its."""
+    loads = tuple(load for load in scene.loads if load.name != name)
+    actuators = tuple(actuator for actuator in scene.actuators if actuator.name != name)
+    inputs = tuple(entry.name for entry in scene.free_inputs() if entry.owner != name)
+    return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": inputs})
+
+
+def without_obstacle(scene: scenes.Scene, name: str) -> scenes.Scene:
+    """The scene without one of its obstacles."""
+    obstacles = tuple(obstacle for obstacle in scene.obstacles if obstacle.name != name)
+    return scene.model_copy(update={"obstacles": obstacles})

@@ -1,0 +1,110 @@
+"""Modes that the data of a scene ask for, before anything is solved.
+
+A cable that winds round a rod, an unloaded curvature or a spread load of high degree put waves into the stress.
+Legendre coefficients of a wave are nil up to about the degree of its frequency, a helix of n turns in an element
+excites those around πn: with fewer modes nothing shows in the last coefficients, however large the error is. The data
+are therefore projected on polynomials, element by element, and no level below the degree at which their coefficients
+have decayed can be a reference solution (docs/theory.md, section 10).
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.numbers import as_vector, known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.strain import DiscreteRod
+
+DECAYED = 0.1
+"""Share of the largest coefficient, but for the constant; all coefficients beyond a signal's degree are below it."""
+
+FAINT = 1e-3
+"""Share of the largest coefficient of all below which a coefficient is not part of a signal."""
+
+BEYOND = 2
+"""Modes beyond a signal's degree, whose decay tells how fast the rest converges."""
+
+PROJECTIONS = (12, 24, 48, 96, 192)
+"""Modes of the projections of an actuator, tried one after the other until two agree."""
+
+
+def signal_modes(scene: scenes.Scene) -> int:
+    """Modes per strain component and element from which on a level can see what the scene puts along its rods."""
+    degrees = [0]
+    for record in scene.rods:
+        rod = rod_properties(record)
+        breaks = element_ends(scene, record.name)
+        for actuator in scene.actuators:
+            if EFFECTS[actuator.kind].acts_on(actuator, record.name):
+                degree = _actuator_degree(actuator, rod, breaks)
+                degrees.append(degree)
+        degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in rod.intrinsic]
+    for load in scene.loads:
+        if isinstance(load, scenes.DistributedWrench):
+            components = (*load.force, *load.moment)
+            degrees += [_series_degree(component) for component in components]
+    return max(degrees) + BEYOND
+
+
+def _actuator_degree(actuator: scenes.Actuator, rod: RodProperties, breaks: tuple[float, ...]) -> int:
+    """Degree at which the actuation stress along the unloaded rod has decayed in every element."""
+    degree = -1
+    for modes in PROJECTIONS:
+        coarser = degree
+        degree = _last_degree(_projection(actuator, rod, breaks, modes))
+        # On too few nodes waves pass for longer ones: a finer projection tells.
+        if degree == coarser:
+            break
+    return degree
+
+
+def _last_degree(sizes: FloatArray) -> int:
+    """Last degree before the coefficients have decayed, from their sizes by degree; 0 of a constant."""
+    varying = sizes[1:].max(initial=0.0)
+    bound = max(DECAYED * varying, FAINT * sizes.max())
+    present = np.flatnonzero(sizes[1:] > bound)
+    if len(present) == 0:
+        return 0
+    return int(present[-1]) + 1
+
+
+def _projection(
+    actuator: scenes.Actuator,
+    rod: RodProperties,
+    breaks: tuple[float, ...],
+    modes: int,
+) -> FloatArray:
+    """Largest strain by a unit effort in the polynomials of each degree, over components and elements, shape (modes,).
+
+    The gradient of length or volume is the projection of the actuation stress, ∂L/∂q = ℓ ∫ Φᵀ Λ_ad dX.
+    """
+    counts = (modes,) * len(rod.admitted)
+    discretisation = Discretisation(counts, 2 * modes, breaks, "magnus4")
+    discrete_rod = DiscreteRod(rod, discretisation)
+    # What an actuator works on follows from strains alone: the rotations of the sections are not integrated.
+    unturned = ca.repmat(ca.DM([1, 0, 0, 0]), 1, discrete_rod.grid.elements * discretisation.nodes + 1)
+    unloaded = Shape(discrete_rod, ca.DM.zeros(discrete_rod.size), unturned, None)
+    quantity = EFFECTS[actuator.kind].quantity(actuator, discrete_rod.grid)
+    gradient = ca.DM(ca.densify(quantity.on(unloaded).gradient)).full()[:, 0]
+    # In coordinates of unit stiffness all strains count alike, whatever the slenderness.
+    units = np.sqrt(np.diag(known(discrete_rod.stiffness)))
+    sizes = np.zeros(modes)
+    for component, columns in discrete_rod.columns.items():
+        degrees = discrete_rod.degrees(component)
+        np.maximum.at(sizes, degrees, np.abs(gradient[columns] / units[columns]))
+    return sizes
+
+
+def _series_degree(component: npt.ArrayLike) -> int:
+    """Degree at which the Legendre coefficients of a signal have decayed."""
+    coefficients = np.atleast_1d(np.asarray(component, dtype=float))
+    return _last_degree(np.abs(coefficients))

@@ -1,0 +1,343 @@
+"""The constraints of a scene: supports, bases of carried rods and joints, each between a section and a frame.
+
+This module settles what does not depend on the unknowns, from the poses of the unloaded scene: the pose that closes
+each constraint, and the directions that it holds. Docs/theory.md, section 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import (
+    CLAMPED,
+    NORMAL,
+    in_plane,
+    keeps_plane,
+    stays_in_plane,
+    upright,
+)
+from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
+from cosserat_casadi.constraints.supports import SUPPORT_KINDS
+from cosserat_casadi.constraints.tip_holder import TipHolder, place_of
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, as_vector, is_symbolic, known
+from cosserat_casadi.maths.pose import NumericPose, Pose, written_pose
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
+from cosserat_casadi.model.homotopy import Compliance
+from cosserat_casadi.model.scene_rods import base_pose, unit_quaternion, written_base_pose
+
+SUPPORT_WEIGHT = 2.0
+"""Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
+
+FORCE_WEIGHT = 0.1
+"""Step weight of other multipliers and of tensions: one unit bends a rod by about 0.1 rad; Euler's load is π² EI/ℓ²."""
+
+STILL = Compliance(power=1)
+"""A support of a rod that starts in the world yields in proportion."""
+
+ASSEMBLED = Compliance(power=3)
+"""Compliance of constraints that close an assembly: springs that hold rods that do not fit have to be stiff early.
+"""
+
+
+SAME_AXIS = 1e-14
+"""Distance of two unit vectors that are one but for rounding."""
+
+
+@dataclass(frozen=True)
+class PlacedConstraint:
+    """A constraint of a scene.
+
+    Attributes:
+        constraint: its mechanics.
+        rod: name of the rod whose section it holds.
+        node: node of that section.
+        frame: the floating frame on the other side; None for the world.
+        where: path of the scene's table.
+        what: the two sides in words.
+        compliance: how it yields on the way to the scene.
+        step_weight: how much a unit of its multipliers counts in the length of a continuation step.
+    """
+
+    constraint: SectionConstraint
+    rod: str
+    node: int
+    frame: FrameName | None
+    where: str
+    what: str
+    compliance: Compliance = ASSEMBLED
+    step_weight: float = FORCE_WEIGHT
+
+    @property
+    def size(self) -> int:
+        """Number of multipliers."""
+        return self.constraint.size
+
+    @property
+    def closes_assembly(self) -> bool:
+        """Whether it holds rods to each other or a carried rod to the world, not a rod that starts in the world."""
+        return self.compliance is ASSEMBLED
+
+
+def written_constraints(
+    placed: list[PlacedConstraint], nominal: scenes.Scene, scene: scenes.Scene
+) -> list[PlacedConstraint]:
+    """Constraints of a scene with other numbers, or expressions, in the places that the scene gives.
+
+    They hold the directions that those of the nominal scene hold, in its scaling.
+
+    Args:
+        placed: the constraints of the nominal scene.
+        nominal: that scene.
+        scene: the same with other numbers.
+    """
+    before = _given_places(nominal)
+    after = _given_places(scene)
+    # The section of a carrier moves along it; all others are tips.
+    carriers = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
+    axes_before = _axes(nominal)
+    axes = _axes(scene)
+    constraints = []
+    for entry in placed:
+        pose = after[entry.where]
+        start = before[entry.where]
+        assert isinstance(start, NumericPose)
+        # Of the two signs of a quaternion, the one that the nominal pose has.
+        closing = entry.constraint.pose
+        assert isinstance(closing, NumericPose)
+        sign = float(np.sign(closing.quaternion @ start.quaternion))
+        if isinstance(pose, Pose):
+            pose = Pose(pose.position, sign * pose.quaternion)
+        else:
+            pose = NumericPose(pose.position, sign * pose.quaternion)
+        at = carriers.get(entry.where, entry.constraint.at)
+        turn = None
+        if entry.where in axes_before:
+            turn = _turn_of_axis(start, axes_before[entry.where], pose, axes[entry.where])
+        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, pose=pose, turn=turn)))
+    return constraints
+
+
+def _axes(scene: scenes.Scene) -> dict[str, Numbers]:
+    """Axes of supports and joints in the world and in their bodies, by the paths of their tables."""
+    axes = {}
+    for where, holder, record in _holders(scene):
+        axis = holder.axis(record)
+        if axis is not None:
+            axes[where] = as_vector(axis)
+    return axes
+
+
+def _holders(scene: scenes.Scene) -> Iterator[tuple[str, TipHolder[Any], Any]]:
+    """Path of the table, mechanics and record of each support and joint."""
+    for i, support in enumerate(scene.supports):
+        yield f"supports[{i}]", SUPPORT_KINDS[support.kind], support
+    for i, joint in enumerate(scene.joints):
+        yield f"joints[{i}]", JOINT_KINDS[joint.kind], joint
+
+
+def _turn_of_axis(start: NumericPose, before: Numbers, pose: NumericPose | Pose, after: Numbers) -> Matrix | None:
+    """Shortest rotation from the line of an axis to another, both seen from their places, as a quaternion.
+
+    None where it is none. Neither the length of an axis nor its sign matters.
+    """
+    old = ca.DM(start.rotation.T @ known(before))
+    unit_old = old / ca.norm_2(old)
+    new: Matrix = as_matrix(pose.rotation).T @ as_matrix(after)
+    if is_symbolic(new) and not ca.symvar(new):
+        new = ca.evalf(new)
+    unit_new = new / ca.norm_2(new)
+    # Of the two directions of the line, the nearer one: no turn is more than a right angle.
+    nearer = ca.if_else(ca.dot(unit_old, unit_new) < 0, -unit_new, unit_new)
+    if not is_symbolic(nearer) and float(ca.norm_2(nearer - unit_old)) < SAME_AXIS:
+        return None
+    double = ca.vertcat(1 + ca.dot(unit_old, nearer), ca.cross(unit_old, nearer))
+    turn: Matrix = double / ca.norm_2(double)
+    return turn
+
+
+def decisive_axes(unloaded: UnloadedScene) -> set[int]:
+    """Joints whose axis or orientation decides which directions others hold: several on planar rods of one plane."""
+    joints = unloaded.scene.joints
+    return {i for i, joint in enumerate(joints) if len(list(_coplanar(unloaded, joint))) > 1}
+
+
+def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
+    """Poses that close the constraints of a scene as it gives them, by the paths of their tables."""
+    places: dict[str, NumericPose | Pose] = {}
+    for where, _, record in _holders(scene):
+        quaternion = record.orientation or (1.0, 0.0, 0.0, 0.0)
+        places[where] = written_pose(as_vector(record.position), unit_quaternion(quaternion))
+    for i, rod in enumerate(scene.rods):
+        if rod.base.rod is not None:
+            # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+            places[f"rods[{i}].base"] = written_pose(*written_base_pose(rod)).inverse
+    return places
+
+
+def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
+    """The constraints of a scene in the order of their multipliers.
+
+    Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods.
+    """
+    supports = [_support(unloaded, i) for i in range(len(unloaded.scene.supports))]
+    # A support of a rod that starts in the world couples no rods: it stands next to the strains in x.
+    still = [placed for placed in supports if not placed.closes_assembly]
+    carried = [placed for placed in supports if placed.closes_assembly]
+    bases = [_base(unloaded, rod) for rod in unloaded.carried]
+    joints = [_joint(unloaded, i) for i in range(len(unloaded.scene.joints))]
+    return [*still, *bases, *joints, *carried]
+
+
+@dataclass(frozen=True)
+class _Section:
+    """A section of a rod of the unloaded scene.
+
+    Attributes:
+        unloaded: the scene.
+        rod: name of the rod.
+        at: abscissa.
+    """
+
+    unloaded: UnloadedScene
+    rod: str
+    at: float = 1.0
+
+    def held_to(
+        self, target: NumericPose, directions: HeldDirections, frame: FrameName | None, words: tuple[str, str]
+    ) -> PlacedConstraint:
+        """The constraint that holds the section to a pose in a frame; ``words``: its path and its two sides."""
+        discrete_rod = self.unloaded.rods[self.rod]
+        where, what = words
+        return PlacedConstraint(
+            constraint=SectionConstraint(
+                discrete_rod.properties, discrete_rod.energy_unit, self.at, directions, target
+            ),
+            rod=self.rod,
+            node=discrete_rod.grid.node_at(self.at),
+            frame=frame,
+            where=where,
+            what=what,
+        )
+
+    def nearer_sign(self, target: NumericPose, frame: FrameName | None) -> NumericPose:
+        """A pose in a frame with that sign of its quaternion that is nearer to the section.
+
+        Q and −Q are one rotation; from the farther one the section would be turned by more than half a turn.
+        """
+        world_target = target
+        if frame is not None:
+            world_target = self.unloaded.frames[frame].start.then(target)
+        quaternion = self.unloaded.section(self.rod, self.at).quaternion
+        if world_target.quaternion @ quaternion >= 0:
+            return target
+        return NumericPose(target.position, -target.quaternion)
+
+
+def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """The tip of a rod at a pose in the world."""
+    support = unloaded.scene.supports[index]
+    rod = support.rod
+    words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
+    tip = _Section(unloaded, rod)
+    target = place_of(support)
+    directions = SUPPORT_KINDS[support.kind].held(support, target.rotation)
+    floats = unloaded.floating_base(rod) is not None
+    stays = _supported_in_plane(unloaded, support, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
+    if stays:
+        # Directions that turn with the pose are given in its axes, others in those of the base.
+        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_pose else NORMAL
+        directions = in_plane(directions, normal)
+    if floats:
+        return tip.held_to(tip.nearer_sign(target, None), directions, None, words)
+    # The scene's own sign of the quaternion says by which way round the tip is to be turned.
+    placed = tip.held_to(target, directions, None, words)
+    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
+
+
+def _supported_in_plane(unloaded: UnloadedScene, support: scenes.Support, target: NumericPose) -> bool:
+    """Whether a carried rod stays in one plane that its support lies in."""
+    plane = unloaded.plane(support.rod)
+    if plane is None:
+        return False
+    length = unloaded.records[support.rod].length
+    return same_plane(plane, target, length, tilted=support.orientation is None)
+
+
+def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
+    """The base of a rod on a section of another."""
+    carrier = rod.base.rod
+    assert carrier is not None
+    frame = FrameName("rod", rod.name)
+    index = list(unloaded.records).index(rod.name)
+    words = (f"rods[{index}].base", f"the base of {rod.name!r} on {carrier!r}")
+    section = _Section(unloaded, carrier, rod.base.at)
+    # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+    section_in_base = NumericPose(*base_pose(rod)).inverse
+    target = section.nearer_sign(section_in_base, frame)
+    return section.held_to(target, CLAMPED, frame, words)
+
+
+def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """The tip of a rod at a body."""
+    joint = unloaded.scene.joints[index]
+    frame = FrameName("body", joint.body)
+    words = (f"joints[{index}]", f"the tip of {joint.rod!r} at {joint.body!r}")
+    tip = _Section(unloaded, joint.rod)
+    target = tip.nearer_sign(place_of(joint), frame)
+    directions = _joint_directions(unloaded, joint)
+    return tip.held_to(target, directions, frame, words)
+
+
+def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
+    """Directions that a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
+
+    Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
+    """
+    directions: HeldDirections = JOINT_KINDS[joint.kind].directions(joint)
+    coplanar = list(_coplanar(unloaded, joint))
+    if len(coplanar) < 2:
+        return directions
+    if coplanar[0] != joint:
+        return in_plane(directions)
+    return upright(directions)
+
+
+def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
+    """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
+    plane = unloaded.plane(joint.rod)
+    if plane is None or not _moves_in_plane(joint):
+        return
+    for candidate in unloaded.scene.joints:
+        if candidate.body != joint.body or not _moves_in_plane(candidate):
+            continue
+        if _shares_plane(unloaded, joint, plane, candidate):
+            yield candidate
+
+
+def _moves_in_plane(joint: scenes.Joint) -> bool:
+    """Whether a joint leaves its body in the x–z plane of the tip: a hinge about its normal, a slide along it."""
+    return keeps_plane(JOINT_KINDS[joint.kind].directions(joint))
+
+
+def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPose, candidate: scenes.Joint) -> bool:
+    """Whether two joints hold a body in one plane, in the world and in the body alike."""
+    second = unloaded.plane(candidate.rod)
+    length = unloaded.records[joint.rod].length
+    if second is None or not same_plane(plane, second, length):
+        return False
+    first_joint = place_of(joint)
+    second_joint = place_of(candidate)
+    # Normals may be opposite, if they are so in the world and in the body alike.
+    in_world = float(plane.rotation[:, 1] @ second.rotation[:, 1])
+    in_body = float(first_joint.rotation[:, 1] @ second_joint.rotation[:, 1])
+    if in_world * in_body <= 0:
+        return False
+    return same_plane(first_joint, second_joint, length)

@@ -1,0 +1,56 @@
+"""The equations of a scene, zero in equilibrium, and their exact Jacobian.
+
+The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
+
+    rods          K q + Q_ad = 0, the report's (2.20), under loads and multipliers
+    constraints   their residual = 0
+    frames        balance of every floating frame = 0
+    cables        length, or slack = 0
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.assembly_equations import Assembly
+from cosserat_casadi.model.system import System
+
+
+@dataclass(frozen=True)
+class SceneEquations:
+    """The equations of a scene in given arguments.
+
+    Attributes:
+        system: rods, frames and constraints in these arguments.
+    """
+
+    system: System
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """Equations of floating frames, constraints and cables of given length."""
+        return Assembly(self.system)
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """Residuals of rods, constraints, floating frames and cables of given length, without unit, size×1."""
+        rod_rows = [igm.residual for igm in self.system.rods.values()]
+        assembly = self.assembly
+        return ca.vertcat(*rod_rows, *assembly.constraint_rows, *assembly.balance_rows, *assembly.cable_rows)
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
+        discrete = self.system.discrete
+        # The literal linear system of the report has no variations of its own (theory, 4): it is differentiated.
+        if any(rod.discretisation.transport == "permuted" for rod in discrete.rods.values()):
+            return ca.jacobian(self.residual, self.system.arguments.x)
+        if discrete.constraints or discrete.cables or discrete.frames:
+            return self.assembly.jacobian
+        # Rods that nothing couples do not meet in any row.
+        tangents = self.system.tangents.values()
+        return ca.diagcat(*[tangent.jacobian for tangent in tangents])

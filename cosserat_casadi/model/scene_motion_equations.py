@@ -1,0 +1,138 @@
+"""The equations of motion of a scene, F(x, v, a) = 0, and their exact derivatives: docs/theory.md, section 11.
+
+They are the equations of the scene at rest under one more load, the inertia of rods and bodies, and the viscous stress
+of the rods. So the derivative with x at fixed inertia is the Jacobian of statics, and this module adds little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.block_matrix import BlockMatrix
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.scene_equations import SceneEquations
+from cosserat_casadi.model.system import System
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.motion_load import motion_matrices
+from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
+from cosserat_casadi.rod.motion_tangent import MotionTangent
+
+
+@dataclass(frozen=True)
+class SceneMotionEquations:
+    """The equations of motion of a scene in given arguments.
+
+    Attributes:
+        system: rods, frames and constraints in arguments that have a motion.
+    """
+
+    system: System
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """Residuals of rods, constraints, floating frames and cables in motion, without unit, size×1."""
+        unknowns = self.system.discrete.unknowns
+        added: list[Matrix] = []
+        for block in unknowns.blocks:
+            rows: Matrix = ca.DM(block.size, 1)
+            if block.kind is BlockKind.STRAIN and block.owner in self.system.viscosities:
+                rows = self.system.viscosities[block.owner].force
+            added.append(rows)
+        for name, frame_motion in self.system.frame_motions.items():
+            number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
+            added[number] = frame_motion.norm_rows
+        return SceneEquations(self.system).residual + ca.vertcat(*added)
+
+    @cached_property
+    def matrices(self) -> MotionMatrices:
+        """∂F/∂x, ∂F/∂v and ∂F/∂a, size×size each, sparse by blocks."""
+        stiffness = self._blocks()
+        damping = self._blocks()
+        mass = self._blocks()
+        for rod in self._rods_with_rates:
+            for rows, columns, part in self._rod_blocks(rod):
+                stiffness.add(rows, columns, part.stiffness)
+                damping.add(rows, columns, part.damping)
+                mass.add(rows, columns, part.mass)
+        for name, inertia in self.system.body_inertias.items():
+            frame = self.system.discrete.frames[name]
+            entries = self.system.discrete.deviation(name)
+            jet = self.system.frame_motions[name].motion_jet()
+            part = inertia.matrices.along(jet)
+            stiffness.add(entries, entries, part.stiffness / frame.unit)
+            damping.add(entries, entries, part.damping / frame.unit)
+            mass.add(entries, entries, part.mass / frame.unit)
+        for name, frame_motion in self.system.frame_motions.items():
+            entries = self.system.discrete.deviation(name)
+            stiffness.add(entries, entries, frame_motion.norm_matrices.stiffness)
+            damping.add(entries, entries, frame_motion.norm_matrices.damping)
+            mass.add(entries, entries, frame_motion.norm_matrices.mass)
+        for rod, viscosity in self.system.viscosities.items():
+            entries = self.system.discrete.unknowns.strain(rod)
+            stiffness.add(entries, entries, viscosity.stiffness)
+            damping.add(entries, entries, viscosity.damping)
+        return MotionMatrices(
+            stiffness=SceneEquations(self.system).jacobian + stiffness.matrix(),
+            damping=damping.matrix(),
+            mass=mass.matrix(),
+        )
+
+    @property
+    def _rods_with_rates(self) -> list[str]:
+        """Rods whose equations depend on the rates of their fields: by their mass, or by a load."""
+        rods = []
+        for name in self.system.motions:
+            loads = self.system.rods[name].statics.pose_loads
+            if name in self.system.inertias or any(load.load.kernel.rates for load in loads):
+                rods.append(name)
+        return rods
+
+    def _blocks(self) -> BlockMatrix:
+        ends = [entries.stop for entries in self.system.discrete.unknowns.slices.values()]
+        return BlockMatrix(ends)
+
+    def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
+        """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a floating base."""
+        discrete = self.system.discrete
+        base = discrete.unloaded.floating_base(rod)
+        unit = discrete.rods[rod].energy_unit
+        floating = base is not None
+        tangent = MotionTangent(self.system.tangents[rod], self.system.inertia_of(rod), floating=floating, unit=unit)
+        matrices = motion_matrices(tangent, self.system.rods[rod].statics.pose_loads)
+        strains = discrete.unknowns.strain(rod)
+        if base is None:
+            return [(strains, strains, matrices)]
+        whole = matrices.along(self._to_unknowns(rod, base))
+        deviation = discrete.deviation(base)
+        count = discrete.rods[rod].size
+        ranges = {"strain": slice(0, count), "base": slice(count, None)}
+        places = {"strain": strains, "base": deviation}
+        # Rows of a frame have a unit of their own.
+        factors = {"strain": 1.0, "base": unit / discrete.frames[base].unit}
+        blocks = []
+        for row, rows in places.items():
+            for column, columns in places.items():
+                factor = factors[row]
+                part = MotionMatrices(
+                    stiffness=factor * whole.stiffness[ranges[row], ranges[column]],
+                    damping=factor * whole.damping[ranges[row], ranges[column]],
+                    mass=factor * whole.mass[ranges[row], ranges[column]],
+                )
+                blocks.append((rows, columns, part))
+        return blocks
+
+    def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
+        """From the unknowns of a rod and of its base to strains and the motion of the base in its axes, with rates."""
+        base_R_world = self.system.frame(base).rotation.T
+        moved = self.system.frame_motions[base].motion_jet(base_R_world)
+        count = self.system.discrete.rods[rod].size
+        still = ca.DM(count, count)
+        return Jet(
+            value=ca.diagcat(ca.DM.eye(count), moved.value),
+            rate=ca.diagcat(still, moved.rate),
+            acceleration=ca.diagcat(still, moved.acceleration),
+        )

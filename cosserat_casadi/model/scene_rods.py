@@ -1,0 +1,257 @@
+"""A rod of the scene as the record the mechanics reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_vector,
+    is_symbolic,
+    known,
+    repeated,
+    side_by_side,
+)
+from cosserat_casadi.maths.rotation import quaternion_from_tangent
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.sections import SHAPES, sizes_of
+from cosserat_casadi.rod.properties import STRAINS, Field, RodProperties
+from cosserat_casadi.rod.section import SectionShape
+from cosserat_casadi.rod.section import hooke as hooke_tensor
+
+SMALLEST_FORCE = 1e-150
+"""Least EI/ℓ² that can be computed with, N: its square is still a number."""
+
+LARGEST_FORCE = 1e150
+"""Largest EI/ℓ² that can be computed with, N."""
+
+
+def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> RodProperties:
+    """Stiffness, damping, inertia and unloaded strain of a rod of the scene.
+
+    Args:
+        rod: the rod, whose numbers may be expressions of parameters.
+        nominal: the rod with the scene's own numbers, which scales the equations; None where ``rod`` is that.
+
+    Raises:
+        SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
+    """
+    hooke = _hooke(rod)
+    properties = RodProperties(
+        name=rod.name,
+        length=rod.length if nominal is None else nominal.length,
+        admitted=rod.admitted,
+        basis=rod.basis,
+        hooke=hooke,
+        intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
+        linear_density=_linear_density(rod),
+        rotary_inertia=_rotary_inertia(rod),
+        damping=_damping(rod, hooke),
+        area=_area(rod),
+        diameter=_diameter(rod),
+        plane_sections=rod.rotary_inertia is None,
+        ratio=None if nominal is None else _ratio(rod.length, nominal.length),
+        nominal=nominal,
+    )
+    if nominal is None:
+        _refuse_out_of_range(properties)
+    return properties
+
+
+def _refuse_out_of_range(properties: RodProperties) -> None:
+    """Refuse a rod whose EI/ℓ² overflows or vanishes: forces are measured by it."""
+    # Division by the length twice: its square alone may underflow.
+    with np.errstate(all="ignore"):
+        force = np.float64(properties.bending_stiffness) / properties.length / properties.length
+    if SMALLEST_FORCE <= force <= LARGEST_FORCE:
+        return
+    problem = (
+        f"its length of {properties.length:g} m and its stiffness EI give EI/ℓ² = {force:g} N, "
+        "which is too large or too small to compute with"
+    )
+    raise SceneError(Problem(properties.name, problem, "give lengths in m, moduli in Pa, stiffnesses in N m² and N"))
+
+
+def _ratio(length: Scalar, nominal: float) -> Matrix | None:
+    """Length of a rod relative to the one that scales its equations; None where it is that one."""
+    if not is_symbolic(length) and length == nominal:
+        return None
+    return ca.MX(length) / nominal
+
+
+def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
+    """World position (3,) and quaternion (4,) of the rod's base."""
+    position = np.asarray(rod.base.position, dtype=float)
+    if rod.base.tangent is not None:
+        return position, quaternion_from_tangent(rod.base.tangent)
+    return position, np.asarray(rod.base.quaternion, dtype=float)
+
+
+def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
+    """World position (3,) and quaternion (4,) of the rod's base, whose numbers may be expressions of parameters."""
+    position = as_vector(rod.base.position)
+    if rod.base.tangent is not None:
+        return position, quaternion_from_tangent(rod.base.tangent)
+    return position, unit_quaternion(rod.base.quaternion)
+
+
+def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
+    """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
+    quaternion = as_vector(entries)
+    if is_symbolic(quaternion):
+        unit: Matrix = quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        return unit
+    return quaternion
+
+
+def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
+    if isinstance(component, tuple) and any_symbolic(component):
+        return component
+    if is_symbolic(component):
+        return (component,)
+    values = np.atleast_1d(np.asarray(component, dtype=float))
+    return tuple(float(v) for v in values)
+
+
+def _linear(value: Scalar | Sequence[Scalar]) -> Field:
+    """A size along the rod: constant, or linear from base to tip."""
+    if isinstance(value, int | float):
+        return lambda X: np.full(X.shape[0], float(value))
+    if is_symbolic(value):
+        # One stands for all abscissae.
+        expression: Numbers = value
+        return lambda X: expression
+    assert isinstance(value, tuple)
+    base, tip = value
+    linear: Field = lambda X: base + (tip - base) * X  # noqa: E731
+    return linear
+
+
+def _shared(field: Field, *sizes: Any) -> Field:
+    """A field of sections that are all alike, if no size varies: where it is an expression, one stands for all."""
+    if any(isinstance(size, tuple) for size in sizes):
+        return field
+
+    def at(X: Numbers) -> Numbers:
+        anywhere = field(X[:1])
+        return anywhere if is_symbolic(anywhere) else field(X)
+
+    return at
+
+
+def _hooke(rod: scenes.Rod) -> Field:
+    if rod.stiffness is not None:
+        # One that is not given is not admitted, and not read.
+        return _direct(rod.stiffness, np.nan)
+    assert rod.material is not None
+    assert rod.section is not None
+    youngs_modulus = rod.material.youngs_modulus
+    shear = shear_modulus(rod.material)
+    correction = rod.section.shear_correction
+    return _of_sections(rod.section, lambda shape: hooke_tensor(shape, youngs_modulus, shear, correction))
+
+
+def shear_modulus(material: scenes.Material) -> Scalar:
+    """G of an isotropic material: its shear modulus, or E / (2 (1 + ν)) from Poisson's ratio."""
+    if material.shear_modulus is not None:
+        return material.shear_modulus
+    assert material.poisson_ratio is not None
+    return material.youngs_modulus / (2 * (1 + material.poisson_ratio))
+
+
+def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
+    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6).
+
+    Args:
+        given: coefficients by strain.
+        left_out: value of coefficients that the scene does not give.
+    """
+    fields = [getattr(given, name) for name in STRAINS]
+    linear = [_linear(left_out if field is None else field) for field in fields]
+    return _shared(lambda X: side_by_side([_along(f, X) for f in linear]), *fields)
+
+
+def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numbers]) -> Field:
+    """A quantity of the areas and second moments of the sections, as a field."""
+    shape = SHAPES[record.shape]
+    vary = any(isinstance(size, tuple) for size in sizes_of(record).values())
+
+    def at(X: Numbers) -> Numbers:
+        if not vary:
+            # All sections are alike: where the quantity is an expression, one row stands for all.
+            anywhere = quantity(shape.shape(sizes_along(record, X[:1])))
+            if is_symbolic(anywhere):
+                return anywhere
+        return quantity(shape.shape(sizes_along(record, X)))
+
+    return at
+
+
+def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
+    """Sizes of a section at abscissae, shape (k,) each, m, by their keys."""
+    return {key: _along(_linear(size), X) for key, size in sizes_of(record).items()}
+
+
+def _along(field: Field, X: Numbers) -> Numbers:
+    """Values of a field at every abscissa."""
+    return repeated(field(X), X.shape[0])
+
+
+def _linear_density(rod: scenes.Rod) -> Field | None:
+    if rod.linear_density is not None:
+        given = _linear(rod.linear_density)
+        return _shared(lambda X: _along(given, X), rod.linear_density)
+    if rod.material is None or rod.section is None or rod.material.density is None:
+        return None
+    density = rod.material.density
+    return _of_sections(rod.section, lambda shape: density * shape.area)
+
+
+def _rotary_inertia(rod: scenes.Rod) -> Field | None:
+    """Moments of inertia per length (k, 3): the scene's, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
+    if rod.rotary_inertia is not None:
+        given = as_vector(rod.rotary_inertia)
+        if is_symbolic(given):
+            return lambda X: given.T
+        return lambda X: np.tile(known(given), (X.shape[0], 1))
+    if rod.material is None or rod.section is None or rod.material.density is None:
+        return None
+    density = rod.material.density
+    return _of_sections(rod.section, lambda shape: density * shape.second_moments)
+
+
+def _area(rod: scenes.Rod) -> Field | None:
+    """Area of the sections (k,); None of a rod that is given by its stiffness."""
+    if rod.section is None:
+        return None
+    section = rod.section
+    return lambda X: SHAPES[section.shape].shape(sizes_along(section, X)).area
+
+
+def _diameter(rod: scenes.Rod) -> Field | None:
+    """Outer diameter of round sections (k,); None of others."""
+    if rod.section is None or rod.section.radius_key is None:
+        return None
+    radius = _linear(getattr(rod.section, rod.section.radius_key))
+    return lambda X: 2 * _along(radius, X)
+
+
+def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
+    """Diagonal of the Kelvin–Voigt tensor (k, 6): τ H, or the coefficients of the scene."""
+    if rod.damping is None:
+        return None
+    time = rod.damping.retardation_time
+    if time is not None:
+        sizes = [] if rod.section is None else list(sizes_of(rod.section).values())
+        if rod.stiffness is not None:
+            sizes = [getattr(rod.stiffness, name) for name in STRAINS]
+        return _shared(lambda X: time * hooke(X), *sizes)
+    return _direct(rod.damping, 0.0)

@@ -1,0 +1,278 @@
+"""One stage of an optimal-control problem in motion: a step of a collocation method as equations, not solved.
+
+The optimiser holds the equations of motion at the instants at which the step collocates. Its variables are, of each
+stage, the state, and for each of these instants the accelerations and the algebraic entries. With them the next state
+is linear, by the same tables as in :mod:`cosserat_casadi.numerics.step`: what an optimiser finds is, to the tolerance
+of its equations, a motion of the simulator with steps of that size.
+
+Time is measured in stages: with h the duration of a stage, velocities are h dx/dt and accelerations h² d²x/dt². All
+variables then are changes of x within a stage, and the tables have entries of order one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.motion.motion_checks import immovable
+from cosserat_casadi.numerics.collocation import Collocation, radau
+
+STAGES = 2
+"""Instants of a stage where nothing is said: Radau IIA of order 3."""
+
+
+@dataclass(frozen=True)
+class Instants:
+    """Coordinates of a model at the instants of a stage, each of shape (size,) for each instant, in SI units."""
+
+    x: list[Matrix]
+    v: list[Matrix]
+    a: list[Matrix]
+
+
+@dataclass(frozen=True)
+class StageEquations:
+    """The equations of motion at all instants of a stage.
+
+    Arguments beyond the third have their names in a call: a rate and the parameters in each other's place would pass
+    wherever they are of one size.
+
+    Attributes:
+        function: (state, unknowns, inputs, inputs_rate), with parameters (state, unknowns, inputs, p, inputs_rate),
+            ↦ residual, without unit.
+    """
+
+    function: ca.Function
+
+    def __call__(
+        self, state: Matrix, unknowns: Matrix, inputs: Matrix, *, inputs_rate: Matrix, p: Matrix | None = None
+    ) -> Matrix:
+        """Residual at all instants, shape (unknowns_size,), without unit; zero in a motion.
+
+        Args:
+            state: at the beginning of the stage, shape (state_size,).
+            unknowns: of the stage, shape (unknowns_size,).
+            inputs: stacked inputs at its beginning.
+            inputs_rate: their rates in it, units per second.
+            p: stacked parameters, of a stage that takes them.
+
+        Raises:
+            ValueError: parameters are given to a stage that takes none, or are missing.
+        """
+        takes_parameters = PARAMETERS in self.function.name_in()
+        if takes_parameters and p is None:
+            raise ValueError("this stage takes parameters: give them as p")
+        if not takes_parameters and p is not None:
+            raise ValueError("this stage takes no parameters: leave p out, or make it with parameters=True")
+        parameters = [p] if takes_parameters else []
+        residual: Matrix = self.function(state, unknowns, inputs, *parameters, inputs_rate)
+        return residual
+
+
+@dataclass(frozen=True)
+class MotionStage:
+    """A model over one stage.
+
+    Its *state* are the differential unknowns and their changes per stage, (x, h v), without unit. Its *unknowns* are,
+    for one instant after the other, a vector in the order of x: h² a of the differential entries, the values of
+    the algebraic ones. Inputs change linearly within the stage. Where the model has parameters they are an argument
+    p behind the inputs.
+
+    Attributes:
+        model: the model.
+        duration: h, s.
+        method: the collocation method.
+    """
+
+    model: Model
+    duration: float
+    method: Collocation
+
+    @property
+    def differential(self) -> npt.NDArray[np.bool_]:
+        """Which entries of x have accelerations, shape (model.size,)."""
+        return self.model.discrete.unknowns.differential
+
+    @property
+    def state_size(self) -> int:
+        """Number of entries of a state."""
+        return 2 * int(np.count_nonzero(self.differential))
+
+    @property
+    def unknowns_size(self) -> int:
+        """Number of unknowns of a stage, and of its equations."""
+        return self.method.stages * self.model.size
+
+    def state(self, x: FloatArray, v: FloatArray | None = None) -> FloatArray:
+        """The state of a motion at one time, shape (state_size,).
+
+        Args:
+            x: unknowns of the model, shape (model.size,).
+            v: their rates, 1/s; at rest by default.
+        """
+        rates = np.zeros(self.model.size) if v is None else v
+        return np.concatenate([x[self.differential], self.duration * rates[self.differential]])
+
+    def still(self, x: FloatArray) -> FloatArray:
+        """Unknowns of a stage in which nothing accelerates: to start from, shape (unknowns_size,).
+
+        Args:
+            x: unknowns of the model, of which the algebraic ones are taken, shape (model.size,).
+        """
+        return np.tile(np.where(self.differential, 0.0, x), self.method.stages)
+
+    def x(self, state: Matrix) -> Matrix:
+        """Unknowns of the model in a state, shape (model.size,); zero for the algebraic ones, which no pose reads."""
+        return self.places @ state[: self.state_size // 2]
+
+    def v(self, state: Matrix) -> Matrix:
+        """Their rates, 1/s, shape (model.size,)."""
+        return self.places @ state[self.state_size // 2 :] / self.duration
+
+    @cached_property
+    def transition(self) -> ca.DM:
+        """By what the next state depends on the state, sparse, shape (state_size, state_size)."""
+        one = ca.DM.eye(self.state_size // 2)
+        return ca.blockcat([[one, one], [ca.DM(*one.shape), one]])
+
+    @cached_property
+    def drive(self) -> ca.DM:
+        """By what the next state depends on the unknowns of the stage, sparse, shape (state_size, unknowns_size)."""
+        positions = [weight * self.places.T for weight in self.method.position_weights.tolist()]
+        velocities = [weight * self.places.T for weight in self.method.weights.tolist()]
+        matrix: ca.DM = ca.vertcat(ca.horzcat(*positions), ca.horzcat(*velocities))
+        return matrix
+
+    @cached_property
+    def next_state(self) -> ca.Function:
+        """(state, unknowns) ↦ next state: linear."""
+        state = ca.MX.sym("state", self.state_size)
+        unknowns = ca.MX.sym("unknowns", self.unknowns_size)
+        following = self.transition @ state + self.drive @ unknowns
+        return ca.Function("next_state", [state, unknowns], [following], ["state", "unknowns"], ["next_state"])
+
+    @cached_property
+    def equations(self) -> StageEquations:
+        """The equations of motion at all instants: (state, unknowns, inputs, inputs_rate=…, p=…) ↦ residual."""
+        return StageEquations(self.equations_by(self.model.inverse_dynamics, "equations"))
+
+    def equations_by(self, inverse_dynamics: ca.Function, name: str) -> ca.Function:
+        """The function of :attr:`equations`, by a function that evaluates the equations of motion at an instant.
+
+        Args:
+            inverse_dynamics: with the arguments and the result of that of the model.
+            name: of the function.
+        """
+        arguments = self.symbols
+        state, unknowns, inputs, *p, rate = arguments
+        moving = self.instants(state, unknowns)
+        rows = []
+        for i in range(self.method.stages):
+            now = self.inputs_at(i, inputs, rate)
+            still = ca.DM(self.model.inputs.size, 1)
+            rows.append(inverse_dynamics(moving.x[i], moving.v[i], moving.a[i], now, *p, rate, still))
+        return ca.Function(name, arguments, [ca.vertcat(*rows)], list(self.sizes), ["residual"])
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Entries of the arguments of the equations by name."""
+        parameters = self.model.parameters.size
+        return {
+            "state": self.state_size,
+            "unknowns": self.unknowns_size,
+            "inputs": self.model.inputs.size,
+            **({PARAMETERS: parameters} if parameters else {}),
+            "inputs_rate": self.model.inputs.size,
+        }
+
+    @property
+    def symbols(self) -> list[ca.MX]:
+        """New symbols for the arguments of the equations."""
+        return [ca.MX.sym(word, size) for word, size in self.sizes.items()]
+
+    def inputs_at(self, i: int, inputs: Matrix, rate: Matrix) -> Matrix:
+        """Inputs at the i-th instant."""
+        return inputs + float(self.method.nodes[i]) * self.duration * rate
+
+    def instants(self, state: Matrix, unknowns: Matrix) -> Instants:
+        """Unknowns of the model, their rates and accelerations at all instants.
+
+        Args:
+            state: shape (state_size,).
+            unknowns: of the stage, shape (unknowns_size,).
+        """
+        half = self.state_size // 2
+        start = self.places @ state[:half]
+        travel = self.places @ state[half:]
+        accelerated = ca.DM(self.differential.astype(float))
+        own = [unknowns[j * self.model.size : (j + 1) * self.model.size] for j in range(self.method.stages)]
+        accelerations = [accelerated * each for each in own]
+        positions = []
+        velocities = []
+        for i in range(self.method.stages):
+            x = start + float(self.method.nodes[i]) * travel + (1.0 - accelerated) * own[i]
+            v = travel
+            for j in range(self.method.stages):
+                x += float(self.method.matrix_squared[i, j]) * accelerations[j]
+                v += float(self.method.matrix[i, j]) * accelerations[j]
+            positions.append(x)
+            velocities.append(v / self.duration)
+        return Instants(positions, velocities, [each / self.duration**2 for each in accelerations])
+
+    @cached_property
+    def places(self) -> ca.DM:
+        """Differential entries to their places in x, sparse, shape (model.size, state_size / 2)."""
+        return differential_places(self.model)
+
+
+def differential_places(model: Model) -> ca.DM:
+    """Matrix that puts the differential entries of x to their places, sparse, shape (model.size, differential ones)."""
+    return _places(model.discrete.unknowns.differential)
+
+
+def algebraic_places(model: Model) -> ca.DM:
+    """Matrix that puts the algebraic entries of x to their places, sparse, shape (model.size, algebraic ones)."""
+    return _places(~model.discrete.unknowns.differential)
+
+
+def _places(chosen: npt.NDArray[np.bool_]) -> ca.DM:
+    rows = np.flatnonzero(chosen).tolist()
+    pattern = ca.Sparsity.triplet(len(chosen), len(rows), rows, list(range(len(rows))))
+    return ca.DM(pattern, 1.0)
+
+
+def motion_stage(
+    model: Model, duration: float, method: Collocation | None = None, *, parameters: bool = False
+) -> MotionStage:
+    """One stage of an optimal-control problem in which a model moves.
+
+    Args:
+        model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
+            have the values of the scene, or those of ``model.at(…)``, unless they are asked for.
+        duration: of the stage, s.
+        method: by default Radau IIA with two stages, ``radau(2)``.
+        parameters: whether the parameters of the scene, if it names some, are an argument of the equations.
+
+    Raises:
+        SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints.
+    """
+    refuse_obstacles(model.scene, "an optimal-control problem")
+    chosen = method or radau(STAGES)
+    problems = immovable(model)
+    if not 0.0 < duration < np.inf:
+        problems.append(Problem("duration", f"{duration} s is no positive time", "give the length of a stage"))
+    if not chosen.stiffly_accurate and not np.all(model.discrete.unknowns.differential):
+        what = f"{chosen.name} does not converge for supports, joints, carried rods and cables of given length"
+        problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
+    if problems:
+        raise SceneError(*problems)
+    return MotionStage(model if parameters else model.at(), duration, chosen)

@@ -1,0 +1,203 @@
+"""Contacts in force during a stretch of a motion: their unknown forces in the equations of motion.
+
+A contact is a body, or the stretch of a rod about the section where its gap to an obstacle is least. That least gap is
+a function of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_gap import FAR, FLATTEST, Facing, SectionGap
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.numerics.motion_equations import MotionEquations
+
+
+class MovingContact(NamedTuple):
+    """A contact.
+
+    Attributes:
+        facing: index, in the list of pairs that may touch, of the pair of this rod and this obstacle.
+        place: abscissa X of the section that touches, where the contact was last looked at.
+        slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along,
+            or a body.
+        height: gap, over the length, that it keeps: a share of what counts as touching.
+    """
+
+    facing: int
+    place: float
+    slides: bool
+    height: float = 0.0
+
+
+Touches = tuple[MovingContact, ...]
+"""The contacts of a stretch of a motion, with the places where it begins."""
+
+
+@dataclass(frozen=True)
+class ContactsAtState:
+    """The contacts at one state.
+
+    Attributes:
+        places: abscissae, one for each.
+        gaps: their gaps, over the length of their rods.
+        gradients: derivatives of the gaps with the unknowns, shape (n,) each.
+    """
+
+    places: list[float]
+    gaps: list[SectionGap]
+    gradients: list[FloatArray]
+
+
+class Followed(NamedTuple):
+    """Where contacts are that were followed to a state.
+
+    Attributes:
+        places: abscissae, one for each.
+        gaps: their gaps there, over the length of their rods.
+        gone: which of them are elsewhere than where they were, see :meth:`Follower.gone`.
+    """
+
+    places: list[float]
+    gaps: list[SectionGap]
+    gone: list[bool]
+
+
+class Follower:
+    """Follows the places of contacts along a motion: each is looked for next to its last place.
+
+    Args:
+        facings: rods and obstacles that may touch.
+        touches: the contacts.
+
+    Attributes:
+        facings: what touches, of each contact.
+        touches: the contacts.
+        places: where they were last followed to.
+    """
+
+    def __init__(self, facings: Sequence[Facing], touches: Touches) -> None:
+        self.facings = [facings[touch.facing] for touch in touches]
+        self.touches = touches
+        self.places = [touch.place for touch in touches]
+
+    def follow(self, x: FloatArray, inputs: FloatArray) -> Followed:
+        """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.
+
+        One that is gone is still looked for where it was.
+        """
+        places, gaps = self.gaps(x, inputs)
+        gone = self.gone(x, inputs, places)
+        kept = zip(places, self.places, gone, strict=True)
+        self.places = [old if is_gone else new for new, old, is_gone in kept]
+        return Followed(places, gaps, gone)
+
+    def gone(self, x: FloatArray, inputs: FloatArray, places: Sequence[float]) -> list[bool]:
+        """Which contacts have jumped: they are elsewhere, and where they were the gap has lost its bend.
+
+        One that slides fast may have come as far between two looks at it, with a bend all the way.
+
+        Args:
+            x: unknowns, shape (n,).
+            inputs: stacked inputs, shape (m,).
+            places: of the contacts there.
+        """
+        found = []
+        for facing, old, new in zip(self.facings, self.places, places, strict=True):
+            is_far = abs(new - old) > FAR
+            found.append(is_far and facing.at(facing.nodes(x, inputs), old).bend <= FLATTEST)
+        return found
+
+    def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[SectionGap]]:
+        """Places and gaps of the contacts."""
+        gaps = []
+        places = []
+        for touch, facing, near in zip(self.touches, self.facings, self.places, strict=True):
+            nodes = facing.nodes(x, inputs)
+            place = facing.place(nodes, near) if touch.slides else near
+            places.append(place)
+            gaps.append(facing.at(nodes, place))
+        return places, gaps
+
+    def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:
+        """The contacts, with gradients."""
+        places, gaps = self.gaps(x, inputs)
+        gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
+        return ContactsAtState(places, gaps, gradients)
+
+    def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².
+
+        Args:
+            x: unknowns, shape (n,).
+            v: their rates, likewise, 1/s.
+            inputs: the stacked inputs, their rates and their accelerations, shape (k,) each.
+        """
+        _, gaps = self.gaps(x, inputs[0])
+        both = [
+            facing.rates(x, v, inputs, gap, slides=touch.slides)
+            for facing, touch, gap in zip(self.facings, self.touches, gaps, strict=True)
+        ]
+        first, second = np.array(both).reshape(-1, 2).T
+        return first, second
+
+
+def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
+    """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
+
+    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it. In whatever assembly
+    they are, gaps depend on the strains and on the base of their rod alone, or on the pose of their body: it does to
+    these balances, which are in units of the same energy, what its gap gains from these unknowns.
+
+    Args:
+        plain: those of the model.
+        follower: the contacts.
+        piece: of the inputs.
+    """
+    size = plain.size
+    touches = follower.touches
+    count = len(touches)
+
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        state = follower.state(x[:size], piece.at(t).value)
+        rows = plain.residual(t, x[:size], v[:size], a[:size])
+        for force, gradient in zip(x[size:], state.gradients, strict=True):
+            rows = rows - force * gradient
+        open_by = [gap.value - touch.height for gap, touch in zip(state.gaps, touches, strict=True)]
+        return np.concatenate([rows, open_by])
+
+    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        stiffness, damping, mass = (_bordered(part, count) for part in plain.jacobians(t, x[:size], v[:size], a[:size]))
+        inputs = piece.at(t).value
+        state = follower.state(x[:size], inputs)
+        for number, touch in enumerate(touches):
+            row = size + number
+            facing = follower.facings[number]
+            gap = state.gaps[number]
+            curvature = facing.hessian(x[:size], inputs, gap, slides=touch.slides)
+            stiffness[:size, :size] -= x[row] * curvature
+            stiffness[:size, row] = -state.gradients[number]
+            stiffness[row, :size] = state.gradients[number]
+        return stiffness, damping, mass
+
+    def rates_of_last(t: float, x: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return follower.rates(x[:size], v[:size], piece.at(t))
+
+    differential = np.concatenate([plain.differential, np.zeros(count, dtype=bool)])
+    return replace(
+        plain,
+        differential=differential,
+        residual=residual,
+        jacobians=jacobians,
+        rates_of_last=rates_of_last,
+    )
+
+
+def _bordered(matrix: FloatArray, count: int) -> FloatArray:
+    """A square matrix with rows and columns of zeros added."""
+    return np.pad(matrix, (0, count))

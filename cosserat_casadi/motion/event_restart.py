@@ -1,0 +1,79 @@
+"""How a motion goes on where its equations change: what cables and contacts have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.numerics.consistent_start import ConsistentStart
+from cosserat_casadi.numerics.guards import Guards
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+Phases = TypeVar("Phases")
+"""State of the switches for a while: the cables that are taut, or the contacts."""
+
+HeldPhases = TypeVar("HeldPhases", covariant=True)
+"""The same, of what only holds and does not take it."""
+
+
+@dataclass(frozen=True)
+class ContactEvent:
+    """A change of contact in a motion.
+
+    Attributes:
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down".
+        time: s.
+        owner: name of the rod, or of the body, that touches.
+        obstacle: name of the obstacle.
+        place: abscissa X of the section; 0 of a body.
+        energy: kinetic energy that the impact took, J; zero of the others.
+        impulse: of the obstacle on the rod, along its normal there, N s; zero of the others.
+        of_body: whether it is a body that touches.
+    """
+
+    kind: str
+    time: float
+    owner: str
+    obstacle: str
+    place: float
+    energy: float = 0.0
+    impulse: float = 0.0
+    of_body: bool = False
+
+
+@dataclass(frozen=True)
+class Restart(Generic[HeldPhases]):
+    """How a motion goes on after an event, or begins.
+
+    Attributes:
+        start: state with accelerations and tensions, or forces of contact.
+        phases: which cables are taut, or what touches.
+        lost: energy that an impact has taken, J.
+        work: that a base or another input in motion has done in it, J.
+        events: changes of contact.
+        stalled: why there is nothing to go on with; None where there is.
+    """
+
+    start: ConsistentStart
+    phases: HeldPhases
+    lost: float = 0.0
+    work: float = 0.0
+    events: tuple[ContactEvent, ...] = ()
+    stalled: str | None = None
+
+
+class Switching(Protocol[Phases]):
+    """Cables or contacts that switch between equations of motion, each of them smooth for a while."""
+
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
+        """The phases at a state."""
+
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
+        """The equations of motion in these phases, and guards that stay at zero or above while the equations hold."""
+
+    def restarted(
+        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float
+    ) -> Restart[Phases]:
+        """How a motion goes on, or begins."""

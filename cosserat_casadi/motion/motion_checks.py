@@ -1,0 +1,60 @@
+"""Scenes that cannot be simulated: refused with all their problems, before any work is done."""
+
+from __future__ import annotations
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_checks import untouchable
+from cosserat_casadi.scene.rod_records import Rod
+from cosserat_casadi.scene.simulation import Simulation
+
+
+def check_simulation(model: Model, simulation: Simulation | None) -> None:
+    """Refuse what cannot be simulated.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = []
+    if simulation is None:
+        remedy = "add a table [simulation] with duration = 1.0 (s)"
+        problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+    problems += immovable(model)
+    if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
+        what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
+        problems.append(Problem("simulation.integrator", what, "use 'radau'"))
+    if simulation is not None and model.scene.touches_exactly:
+        problems += list(untouchable(model, simulation))
+    if problems:
+        raise SceneError(*problems)
+
+
+def check_movable(model: Model) -> None:
+    """Refuse a model that has no motion.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = immovable(model)
+    if problems:
+        raise SceneError(*problems)
+
+
+def immovable(model: Model) -> list[Problem]:
+    """Problems of a model that has no motion: rods without mass, a rotation without velocities."""
+    problems = []
+    for index, rod in enumerate(model.discrete.rods.values()):
+        if rod.properties.linear_density is None:
+            problems.append(_without_mass(model.scene.rods[index], index))
+    if model.scene.accuracy.rotation == "permuted":
+        what = "'permuted', the literal linear system, has no velocities"
+        problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
+    return problems
+
+
+def _without_mass(rod: Rod, index: int) -> Problem:
+    """The problem of a rod without mass: its table lacks a density."""
+    what = f"missing: {rod.name!r} has no mass, and a motion needs one"
+    if rod.material is None:
+        return Problem(f"rods[{index}].linear_density", what, "give the mass per length, kg/m")
+    return Problem(f"rods[{index}].material.density", what, "give the density, kg/m³")

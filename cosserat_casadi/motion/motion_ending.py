@@ -1,0 +1,117 @@
+"""How a motion ended, and the sentence that a user reads of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.constraint_projection import Closing
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.motion.trajectory import MotionOutcome
+from cosserat_casadi.numerics.integration import StepOutcome
+
+NEARLY_TAUT = 1e-3
+"""Length, over the rod's, that a cable may lack or have over where it counts as about to become taut."""
+
+DEPENDENT = 1e-2
+"""Independence of the constraints below which they end a motion: it falls with the root of the time that is left."""
+
+OUTCOMES = {
+    StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
+    StepOutcome.STEP_TOO_SMALL: MotionOutcome.STEP_TOO_SMALL,
+    StepOutcome.NOT_SOLVED: MotionOutcome.NOT_SOLVED,
+    StepOutcome.NOT_FINITE: MotionOutcome.NOT_FINITE,
+    StepOutcome.SINGULAR: MotionOutcome.STEP_TOO_SMALL,
+    StepOutcome.INTERRUPTED: MotionOutcome.INTERRUPTED,
+    StepOutcome.TOO_MANY_STEPS: MotionOutcome.TOO_MANY_STEPS,
+    StepOutcome.STALLED: MotionOutcome.CONTACT_UNSETTLED,
+    StepOutcome.GUARDED: MotionOutcome.STEP_TOO_SMALL,
+}
+
+
+def outcome_of(history: History) -> MotionOutcome:
+    """How a motion ended; of steps that were not solved, with the reason that the last state shows."""
+    outcome = OUTCOMES[history.outcome]
+    if outcome not in (MotionOutcome.STEP_TOO_SMALL, MotionOutcome.NOT_SOLVED):
+        return outcome
+    if snapping_cables(history):
+        return MotionOutcome.SNAPPED
+    if independence(history) < DEPENDENT:
+        return MotionOutcome.SINGULAR_CONSTRAINT
+    return outcome
+
+
+def independence(history: History) -> float:
+    """How independent the constraints are where a motion ends, columns counted by displacements."""
+    model = history.model
+    rows = Closing(model).rows
+    jacobian, _ = model.jacobian(history.end.x, history.legs[-1].piece.at(history.end.time).value)
+    by_displacement = jacobian.full() / displacements(model)
+    return independence_of(by_displacement[np.ix_(rows, np.flatnonzero(model.discrete.unknowns.differential))])
+
+
+def independence_of(derivatives: FloatArray) -> float:
+    """How independent rows are: 0 where one follows from the others, at most 1, infinite where there are none.
+
+    The smallest singular value over the largest, each row of unit length.
+
+    Args:
+        derivatives: of constraints by coordinates, shape (m, n).
+    """
+    count, coordinates = derivatives.shape
+    if count == 0:
+        return float("inf")
+    lengths = np.linalg.norm(derivatives, axis=1)
+    if count > coordinates or not np.all(lengths > 0.0):
+        return 0.0
+    sizes = np.linalg.svd(derivatives / lengths[:, None], compute_uv=False)
+    return float(sizes[-1] / sizes[0])
+
+
+def snapping_cables(history: History) -> list[str]:
+    """Names of the cables that may go slack and are next to taut where a motion ends."""
+    model = history.model
+    end = history.at(history.end.time)
+    slack = SlackCables(model)
+    if not slack.cables:
+        return []
+    sags = slack.sags(end.x, end.inputs)
+    return [cable.tendon.name for cable, sag in zip(slack.cables, sags, strict=True) if abs(sag) <= NEARLY_TAUT]
+
+
+def message_of(history: History, outcome: MotionOutcome) -> str:
+    """The sentence of the outcome, with time and size of the step where the motion ended early."""
+    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, MotionOutcome.PATH_VANISHED):
+        return str(outcome.value)
+    if outcome is MotionOutcome.CONTACT_UNSETTLED:
+        return f"{outcome.value} {unsettled(history)}"
+    reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
+    if outcome is MotionOutcome.SNAPPED:
+        return f"{outcome.value} Reached: {reached}; the cable is {', '.join(snapping_cables(history))}."
+    return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+
+
+def unsettled(history: History) -> str:
+    """Where contact did not settle, in a sentence."""
+    restart = history.legs[-1].restart
+    if restart.stalled is not None:
+        return restart.stalled
+    last = [event for leg in history.legs for event in leg.restart.events][-1]
+    return (
+        f"At t = {history.end.time:.6g} s {last.owner!r} touches {last.obstacle!r} and lifts off over and over about "
+        f"X = {last.place:.4g}."
+    )
+
+
+def most_violent(history: History) -> str:
+    """The rod, or the body, whose accelerations displace it most where a motion ends."""
+    model = history.model
+    accelerations = np.nan_to_num(np.abs(history.end.a), nan=np.inf) * displacements(model)
+    largest = {}
+    for block, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.POSE):
+        kind = "rod " if block.kind is BlockKind.STRAIN else ""
+        largest[f"{kind}{block.owner}"] = float(accelerations[entries].max(initial=0.0))
+    return max(largest, key=lambda owner: largest[owner])

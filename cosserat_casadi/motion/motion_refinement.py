@@ -1,0 +1,415 @@
+"""Simulate a scene to a tolerance in space and time together: modes and nodes are chosen for the motion.
+
+The motion is computed on one set of modes after the other. The distance of the paths of two of them, and how it falls
+from one to the next, bound the error of the last one; a strain that does not move keeps one mode, and a strain whose
+last coefficients do not tell keeps its number of modes. The steps are as exact as the first set of modes asks, and are
+checked on the last. See docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from cosserat_casadi.accuracy.levels import SPARE_NODES, seeing_modes
+from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.simulate import (
+    MOST_TIGHTENINGS,
+    Simulator,
+    Tell,
+    TimedHistory,
+    ended_early,
+    judged,
+    motion_of,
+    not_started,
+    started,
+    tolerance_of,
+)
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_times
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.numerics.integration import StepOutcome
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.simulation import Simulation
+
+TIME_SHARE = 0.3
+"""Share of the tolerance that the steps may use up."""
+
+SPACE_SHARE = 0.7
+"""Share of the tolerance that the modes and nodes may use up."""
+
+UNKNOWN_RATIO = 0.6
+"""Share of the distance to the next set of modes that is left after it, before two distances tell."""
+
+FASTEST = 0.1
+"""Smallest such share that is believed."""
+
+SLOWEST = 0.9
+"""Largest such share: beyond it nothing converges."""
+
+MOST_RUNGS = 3
+"""Most rungs of the ladder of modes that are climbed at once."""
+
+MOST_WITHOUT_START = 4
+"""Sets of modes without a start in contact before none is told."""
+
+SAFETY = 1.5
+"""Factor on the error that is extrapolated from it."""
+
+FELT = 0.02
+"""Displacement by a coefficient, over the tolerance, from which it counts."""
+
+LAST = 3
+"""One of so many coefficients counts as one of the last."""
+
+COARSER = 3.0
+"""Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
+
+LEFT_BY_FINER = 1.4
+"""Error of the finer of the two over their distance, where errors go with the square root of tolerances or faster."""
+
+
+@dataclass(frozen=True)
+class ResolvedMotion:
+    """A motion on one set of modes.
+
+    Attributes:
+        simulator: that computed it.
+        history: the motion.
+        paths: paths of tips and bodies, which are compared with the paths of the next motion.
+        rung: place of the modes on the ladder.
+        distance: of the paths from those of the level before; infinite for the first.
+    """
+
+    simulator: Simulator
+    history: History
+    paths: Paths
+    rung: int = 0
+    distance: float = float("inf")
+
+
+@dataclass
+class _Search:
+    """The way from one set of modes to the next.
+
+    Attributes:
+        scene: with the inputs of its motions free.
+        simulation: the settings of the user.
+        start: an equilibrium to start from; None for what the simulation says.
+        tell: is told of every step.
+        tolerance: of the paths, over the length.
+        levels: the motions so far.
+        step_tolerance: of a step, over the length; nan for steps of given size.
+        time_error: error of the steps on the first level.
+    """
+
+    scene: Scene
+    simulation: Simulation
+    start: Solution | None
+    tell: Tell | None
+    tolerance: float
+    levels: list[ResolvedMotion] = field(default_factory=list)
+    step_tolerance: float = float("nan")
+    time_error: float = float("nan")
+
+    @property
+    def last(self) -> ResolvedMotion:
+        """The finest motion so far."""
+        return self.levels[-1]
+
+    @property
+    def ratio(self) -> float:
+        """Share of the error that one rung of the ladder leaves, from the last two distances."""
+        if len(self.levels) < 3 or self.levels[-2].distance == 0.0:
+            return UNKNOWN_RATIO
+        before, coarser, finer = self.levels[-3:]
+        # The distance to a far better motion is the error of the worse one.
+        climbed = coarser.rung - before.rung
+        by_all = finer.distance / coarser.distance
+        return float(np.clip(by_all ** (1.0 / climbed), FASTEST, SLOWEST))
+
+    @property
+    def space_error(self) -> float:
+        """Error of the paths that the modes of the last level leave: the rest of a geometric series."""
+        if len(self.levels) < 2:
+            return float("inf")
+        left = self.ratio ** (self.last.rung - self.levels[-2].rung)
+        return SAFETY * self.last.distance * left / (1.0 - left)
+
+    def climb(self, last: int) -> int | None:
+        """The next rung: as far up as seems to be needed; None where the last one would not do.
+
+        Args:
+            last: the highest rung.
+        """
+        rung = self.last.rung
+        if rung == last:
+            return None
+        if len(self.levels) < 3:
+            return rung + 1
+        wanted = SPACE_SHARE * self.tolerance
+        if self.space_error * self.ratio ** (last - rung) > self.tolerance:
+            return None
+        needed = np.log(wanted / self.space_error) / np.log(self.ratio)
+        # Not further than is foreseen well, and never to stay.
+        above = int(np.clip(np.floor(needed), 1, MOST_RUNGS))
+        return min(rung + above, last)
+
+
+def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: Tell | None = None) -> Motion:
+    """Motion of a scene to its tolerance, on modes, nodes and steps that are chosen for it.
+
+    Where the scene fixes modes or nodes they are used as they are, and their error is estimated; where it fixes the
+    step, likewise.
+
+    Args:
+        scene: a validated scene with a table ``[simulation]``.
+        start: an equilibrium of the scene to start from at rest; by default what the simulation says.
+        progress: told of every step.
+
+    Raises:
+        SceneError: the scene cannot be simulated.
+    """
+    moving_scene = scene.baked().with_motion_inputs()
+    coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)
+    simulation = scene.simulation
+    check_simulation(coarsest, simulation)
+    assert simulation is not None, "checked"
+    search = _Search(moving_scene, simulation, start, progress, tolerance_of(coarsest, simulation))
+    try:
+        if scene.accuracy.fixed:
+            return _with_fixed(search)
+        return _with_tolerance(search)
+    except KeyboardInterrupt:
+        # A motion that was computed to its end, if less exactly than asked, is what whoever stopped it wants to see.
+        if not search.levels:
+            raise
+        return _interrupted(search)
+
+
+def _with_fixed(search: _Search) -> Motion:
+    """The motion on the modes and nodes of the user, with an error from a few modes more."""
+    scene = search.scene
+    model = build(scene, discretise(scene), moving=True)
+    simulator = _simulator(search, model, "on the scene's own modes")
+    if not simulator.start.found:
+        return not_started(model, simulator.start)
+    timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
+    if not timed.history.completed:
+        return ended_early(simulator, timed.history)
+    level = ResolvedMotion(simulator, timed.history, simulator.paths(timed.history))
+    search.levels.append(level)
+
+    finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
+    witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
+    space_error = float("inf")
+    if witness.start.found:
+        # Its steps are controlled in any case: those of the user may be too long for more modes.
+        history = witness.controlled(_step_tolerance(search, timed))
+        if history.outcome is StepOutcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if history.completed:
+            space_error = SAFETY * path_distance(level.paths, witness.paths(history))
+    return _judged(search, level, space_error + timed.error)
+
+
+def _finer(discretisation: Discretisation) -> Discretisation:
+    modes = tuple(count + FINER_MODES for count in discretisation.modes)
+    return replace(discretisation, modes=modes, nodes=discretisation.nodes + 2 * FINER_MODES)
+
+
+def _with_tolerance(search: _Search) -> Motion:
+    """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
+    ladder = seeing_modes(search.scene)
+    rung: int | None = 0
+    without_start = 0
+    while rung is not None:
+        modes = ladder[rung]
+        chosen = _next_modes(search, modes) if search.levels else _uniform(search.scene, modes)
+        model = build(search.scene, chosen, moving=True)
+        simulator = _simulator(search, model, f"with up to {modes} modes")
+        if not simulator.start.found:
+            # Sections of a few modes may not carry a rod that lies on them: more modes have more sections.
+            without_start += 1
+            rung += 1
+            last = not simulator.start.asks_for_modes or without_start == MOST_WITHOUT_START or rung == len(ladder)
+            if not last:
+                continue
+            if search.levels:
+                # What fewer modes have moved is judged as it is.
+                break
+            return not_started(model, simulator.start)
+        without_start = 0
+        history = _on_level(search, simulator)
+        if history.outcome is StepOutcome.INTERRUPTED and search.levels:
+            raise KeyboardInterrupt
+        if not history.completed:
+            return ended_early(simulator, history)
+        found = simulator.paths(history)
+        distance = path_distance(search.last.paths, found) if search.levels else float("inf")
+        search.levels.append(ResolvedMotion(simulator, history, found, rung, distance))
+        if search.space_error <= SPACE_SHARE * search.tolerance:
+            break
+        rung = search.climb(len(ladder) - 1)
+    timed = _timed(search)
+    if timed.history.outcome is StepOutcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    if not timed.history.completed:
+        return ended_early(search.last.simulator, timed.history)
+    finest = replace(search.last, history=timed.history)
+    return _judged(search, finest, search.space_error + timed.error)
+
+
+def _on_level(search: _Search, simulator: Simulator) -> History:
+    """The motion on one level: the first one settles how exact the steps have to be."""
+    if not search.levels:
+        timed = simulator.foretold(TIME_SHARE * search.tolerance, first=search.tolerance)
+        search.step_tolerance = timed.sufficient
+        search.time_error = timed.error
+        return timed.history
+    return _like(simulator, search.last.history, search.step_tolerance)
+
+
+def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
+    """Tolerance of a step that a motion was computed with; where its steps were given, that of the paths."""
+    if np.isfinite(timed.tolerance):
+        return timed.tolerance
+    return TIME_SHARE * search.tolerance
+
+
+def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
+    """The motion with steps of a tolerance; where it is no number, with steps of the size of another motion."""
+    if np.isfinite(step_tolerance):
+        return simulator.controlled(step_tolerance)
+    # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
+    return simulator.stepped(history.statistics.largest_step)
+
+
+def _timed(search: _Search) -> TimedHistory:
+    """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
+    level = search.last
+    if not np.isfinite(search.step_tolerance):
+        return TimedHistory(level.history, search.time_error)
+    # What the modes have left over of their share is the steps' to use.
+    allowed = max(TIME_SHARE * search.tolerance, search.tolerance - search.space_error)
+    return exact_in_time(level, search.step_tolerance, allowed)
+
+
+def exact_in_time(level: ResolvedMotion, step_tolerance: float, allowed: float) -> TimedHistory:
+    """The motion of a level with steps that are told to be exact enough, and their error.
+
+    Args:
+        level: the motion.
+        step_tolerance: tolerance of a step, over the length, that it was computed with.
+        allowed: error of the paths over the length.
+    """
+    told = told_by_coarser(level, step_tolerance)
+    for _ in range(MOST_TIGHTENINGS):
+        if not told.history.completed or told.error <= allowed:
+            break
+        told = _tighter(level.simulator, told)
+    return told
+
+
+def _tighter(simulator: Simulator, told: TimedHistory) -> TimedHistory:
+    """The same motion with more exact steps, and their error by the distance from it."""
+    tolerance = told.tolerance / COARSER
+    history = simulator.controlled(tolerance)
+    error = LEFT_BY_FINER * path_distance(simulator.paths(told.history), simulator.paths(history))
+    return TimedHistory(history, error, tolerance, tolerance)
+
+
+def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistory:
+    """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
+
+    Args:
+        level: the motion.
+        step_tolerance: tolerance of a step, over the length, that it was computed with.
+    """
+    simulator = level.simulator
+    coarse = simulator.controlled(COARSER * step_tolerance)
+    if coarse.outcome is StepOutcome.INTERRUPTED:
+        return TimedHistory(coarse, float("nan"))
+    error = float("inf")
+    if coarse.completed:
+        error = LEFT_BY_FINER * path_distance(simulator.paths(coarse), level.paths)
+    return TimedHistory(level.history, error, step_tolerance, step_tolerance)
+
+
+def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
+    began = started(model, search.simulation, search.start)
+    return Simulator(model, search.simulation, began, stage, search.tell)
+
+
+def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
+    """So many modes of every strain."""
+    return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
+
+
+def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
+    """Modes of the next level: as many as it has, but of strains that do not need them."""
+    chosen = {}
+    felt = _felt(search.last, search.simulation.duration)
+    for name, discretisation in _uniform(search.scene, modes).items():
+        counts = []
+        coarse = search.last.simulator.model.discretisation[name]
+        for strain, count in enumerate(discretisation.modes):
+            moved = felt[name][strain]
+            kept = coarse.modes[strain]
+            # The coefficients of a polynomial of each element, by their degree.
+            last = moved[-max(1, len(moved) // LAST) :]
+            if moved.max() < FELT * search.tolerance:
+                counts.append(1)
+            elif last.max() < FELT * search.tolerance:
+                counts.append(kept)
+            else:
+                counts.append(count)
+        chosen[name] = replace(discretisation, modes=tuple(counts))
+    return chosen
+
+
+def _felt(level: ResolvedMotion, duration: float) -> dict[str, list[FloatArray]]:
+    """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
+    model = level.simulator.model
+    times = watched_times(level.history, duration)
+    x, _ = level.history.rough_positions(times)
+    moved = np.abs(x).max(axis=0) * level.simulator.displacements
+    felt = {}
+    for name, rod in model.discrete.rods.items():
+        of_rod = moved[model.discrete.unknowns.strain(name)]
+        by_degree = []
+        for columns in rod.columns.values():
+            by_element = of_rod[columns].reshape(rod.grid.elements, -1)
+            by_degree.append(by_element.max(axis=0))
+        felt[name] = by_degree
+    return felt
+
+
+def _judged(search: _Search, level: ResolvedMotion, error: float) -> Motion:
+    """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
+    bound = search.tolerance
+    if search.scene.accuracy.fixed or search.simulation.step is not None:
+        bound = LARGEST_SHAPE_ERROR
+    return judged(level.simulator, level.history, error, bound)
+
+
+def _interrupted(search: _Search) -> Motion:
+    """The finest motion that was computed to its end when the search was stopped."""
+    level = search.last
+    error = search.space_error + max(search.time_error, TIME_SHARE * search.tolerance)
+    message = (
+        f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: its estimated error is "
+        f"{error:.2g} of the length."
+    )
+    if not np.isfinite(error):
+        error = float("nan")
+        message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
+    return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)

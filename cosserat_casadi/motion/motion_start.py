@@ -1,0 +1,126 @@
+"""How a motion begins: at rest, in an equilibrium or in the unloaded shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
+from cosserat_casadi.equilibrium.metrics import prolong
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_guards import ContactPhase
+from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.start_in_contact import resting
+
+UNLOADED = "At rest in the unloaded shape."
+EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
+HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
+GIVEN = "At rest in the equilibrium that was given."
+TOUCHES = (
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain the "
+    "search for such an equilibrium, with forces at sections, did not settle. Give "
+    'another number of accuracy.modes, mostly a larger one, start = "unloaded", or other inputs at t = 0.'
+)
+GIVEN_TOUCHES = (
+    "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain the search "
+    "for such an equilibrium, with forces at sections, did not settle. Give "
+    "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
+)
+FREE_TOUCHES = (
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
+    'let go in contact is no start: give start = "unloaded", or other inputs at t = 0.'
+)
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a motion begins.
+
+    Attributes:
+        x: unknowns, shape (size,); multipliers and tensions are a guess.
+        sentence: what the user is told; of a start that failed, why.
+        found: whether there is a state to start from.
+        phases: what touches; None where that is looked for.
+        asks_for_modes: whether none is found on these modes, and other modes may have one.
+    """
+
+    x: FloatArray
+    sentence: str
+    found: bool = True
+    phases: ContactPhase | None = None
+    asks_for_modes: bool = False
+
+
+def unloaded_start(model: Model) -> Start:
+    """At rest in the unloaded shape."""
+    return Start(model.unloaded(), UNLOADED)
+
+
+def equilibrium_start(model: Model, inputs: FloatArray) -> Start:
+    """At rest in the equilibrium of the inputs, free bases held where the scene puts them.
+
+    Args:
+        model: of the scene in motion.
+        inputs: at the start, shape (model.inputs.size,).
+    """
+    held = _held(model)
+    sentence = EQUILIBRIUM if held.size == model.size else HELD
+    return _started(model, solve(held, held.pack(model.inputs.unpack(inputs)), estimate_error=False), sentence)
+
+
+def given_start(model: Model, solution: Solution) -> Start:
+    """At rest in an equilibrium of the same scene, at the inputs that it was solved for.
+
+    Args:
+        model: of the scene in motion.
+        solution: on any discretisation with the same elements; free bases were held.
+    """
+    held = _held(model)
+    names = set(held.inputs.names)
+    given = solution.model.inputs.unpack(solution.inputs)
+    values = {name: value for name, value in given.items() if name in names}
+    # Unknowns would name no contacts: a solution does, and they are tried first.
+    guess = solution if model.scene.touches_exactly else prolong(solution, held)
+    return _started(model, solve(held, values, start=guess, estimate_error=False), GIVEN)
+
+
+def _held(model: Model) -> Model:
+    """The model of statics on the same discretisation: free bases are clamped, and are not unknowns."""
+    return model.changed(scenes.Scene.held)
+
+
+def _started(model: Model, solution: Solution, sentence: str) -> Start:
+    """The start in an equilibrium of the held scene."""
+    x = model.unloaded()
+    if not solution.converged:
+        return Start(x, solution.message, found=False)
+    if model.scene.touches_exactly and solution.contacts:
+        if _held(model).size != model.size:
+            return Start(x, FREE_TOUCHES, found=False)
+        return _touching(model, solution, sentence)
+    # Bases that are free begin where the scene puts them, where their unknowns are zero.
+    unknowns = solution.model.discrete.unknowns
+    for key, entries in unknowns.slices.items():
+        x[model.discrete.unknowns.slices[key]] = solution.x[entries]
+    return Start(np.asarray(x), sentence)
+
+
+def _touching(model: Model, solution: Solution, sentence: str) -> Start:
+    """The start in an equilibrium in contact: that of the motion's own modes, next to it."""
+    names = set(model.inputs.names)
+    # The forces of contacts are inputs of the solution's model.
+    given = solution.model.inputs.unpack(solution.inputs)
+    inputs = model.pack({name: value for name, value in given.items() if name in names})
+    guess = projected(solution, model)[: model.size]
+    found = resting(ExactContacts(model), guess, inputs, solution.contacts)
+    if found is None:
+        modes = max(max(own.modes) for own in model.discretisation.values())
+        refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
+        return Start(model.unloaded(), refused.format(modes=modes), found=False, asks_for_modes=True)
+    x, arrangement = found
+    return Start(x, sentence, phases=arrangement)

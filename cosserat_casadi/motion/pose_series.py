@@ -1,0 +1,129 @@
+"""Poses of sections and bodies, and the states of actuators, at many unknowns at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+
+class Poses(NamedTuple):
+    """Poses over T times in the world frame; of one frame, or of k sections.
+
+    Attributes:
+        position: shape (T, 3) or (T, k, 3), m.
+        quaternion: world_Q_section, w x y z, shape (T, 4) or (T, k, 4).
+    """
+
+    position: FloatArray
+    quaternion: FloatArray
+
+
+class Frames(NamedTuple):
+    """Frames over T times in the world frame.
+
+    Attributes:
+        position: shape (T, 3), m.
+        rotation: world_R_frame, shape (T, 3, 3).
+    """
+
+    position: FloatArray
+    rotation: FloatArray
+
+
+class ActuatorStates(NamedTuple):
+    """Effort and conjugate of an actuator over T times.
+
+    Attributes:
+        effort: tension (N) or pressure (Pa), shape (T,).
+        conjugate: what the effort does work on: length (m) or volume (m³), shape (T,).
+    """
+
+    effort: FloatArray
+    conjugate: FloatArray
+
+
+def tip_poses(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Poses:
+    """Poses of a rod's tip.
+
+    Args:
+        model: the model.
+        rod: name of the rod.
+        x: unknowns at T times, shape (T, model.size).
+        inputs: stacked inputs there, shape (T, model.inputs.size).
+
+    Returns:
+        shapes (T, 3) and (T, 4).
+    """
+    position, quaternion, _ = _evaluated(model.tip[rod], x, inputs)
+    return Poses(position[:, :, 0], quaternion[:, :, 0])
+
+
+def body_poses(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Poses:
+    """Poses of a rigid body, shapes (T, 3) and (T, 4); arguments as in :func:`tip_poses`."""
+    position, quaternion, _ = _evaluated(model.body[body], x, inputs)
+    return Poses(position[:, :, 0], quaternion[:, :, 0])
+
+
+def tip_frames(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Frames:
+    """Frames of a rod's tip; arguments as in :func:`tip_poses`."""
+    position, _, rotation = _evaluated(model.tip[rod], x, inputs)
+    return Frames(position[:, :, 0], rotation)
+
+
+def body_frames(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Frames:
+    """Frames of a rigid body; arguments as in :func:`tip_poses`."""
+    position, _, rotation = _evaluated(model.body[body], x, inputs)
+    return Frames(position[:, :, 0], rotation)
+
+
+def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, inputs: FloatArray) -> Poses:
+    """Poses of k sections of a rod: the interpolant through the nodes, as of a solution.
+
+    Args:
+        model: the model.
+        rod: name of the rod.
+        X: abscissae in [0, 1], shape (k,).
+        x: unknowns at T times, shape (T, model.size).
+        inputs: stacked inputs there, shape (T, model.inputs.size).
+
+    Returns:
+        shapes (T, k, 3) and (T, k, 4).
+    """
+    # The nodes are asked for once a time, and the sections follow by one matrix: less than a call for each section.
+    nodal_position, nodal_quaternion, *_ = _evaluated(model.fields[rod], x, inputs)
+    abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+    interpolation = model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
+    position = np.einsum("kn,tin->tki", interpolation, nodal_position)
+    quaternion = np.einsum("kn,tin->tki", interpolation, nodal_quaternion)
+    # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
+    quaternion /= np.linalg.norm(quaternion, axis=2, keepdims=True)
+    return Poses(position, quaternion)
+
+
+def actuator_states(model: Model, actuator: str, x: FloatArray, inputs: FloatArray) -> ActuatorStates:
+    """Effort and conjugate of an actuator; arguments as in :func:`tip_poses`."""
+    # The third output, the rate of the conjugate with the unknowns, is for control.
+    effort, conjugate, _ = _evaluated(model.actuator[actuator], x, inputs)
+    return ActuatorStates(effort[:, 0, 0], conjugate[:, 0, 0])
+
+
+def _evaluated(function: ca.Function, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
+    """Outputs of a function of (x, inputs) at T times, each of shape (T, rows, columns)."""
+    count = len(x)
+    shapes = [function.size_out(index) for index in range(function.n_out())]
+    # CasADi maps over one time at least; a motion that never started has none.
+    if count == 0:
+        return [np.zeros((0, rows, columns)) for rows, columns in shapes]
+    stacked = function.map(count)(x.T, inputs.T)
+    outputs = []
+    for output, (rows, columns) in zip(stacked, shapes, strict=True):
+        # The results stand side by side, one block of columns a time.
+        blocks = output.full().reshape(rows, count, columns)
+        outputs.append(np.moveaxis(blocks, 1, 0))
+    return outputs

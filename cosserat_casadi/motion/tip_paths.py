@@ -1,0 +1,109 @@
+"""The paths that a tolerance of a motion binds: those of the tips of rods and of bodies, and how both turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.displacement import LEVER
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.pose_series import Frames, body_frames, tip_frames
+from cosserat_casadi.scene.constraint_records import Body
+
+WATCHED = 401
+"""Times at which paths are compared, evenly spaced."""
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Paths of tips and bodies at T times, by which two motions are compared.
+
+    A rod that only twists moves neither its tip nor any point of its axis: its tip's turn about the tangent counts too.
+
+    Attributes:
+        points: positions of tips and of points of bodies over the length, shape (T, points, 3), without unit.
+        section_axes: x and y axes of the tips' sections in world axes, shape (T, rods, 3, 2), an axis a column.
+    """
+
+    points: FloatArray
+    section_axes: FloatArray
+
+
+def watched_times(history: History, duration: float) -> FloatArray:
+    """Times at which paths are compared, as far as a motion reaches them, shape (T,), s."""
+    times = np.linspace(0.0, duration, WATCHED)
+    return times[times <= history.end.time]
+
+
+def paths(history: History, times: FloatArray) -> Paths:
+    """The paths of all tips and bodies at T times."""
+    model = history.model
+    x, inputs = history.rough_positions(times)
+    points = []
+    section_axes = []
+    for name, rod in model.discrete.rods.items():
+        tip = tip_frames(model, name, x, inputs)
+        points.append(tip.position / rod.properties.length)
+        section_axes.append(tip.rotation[:, :, :2])
+    longest = longest_rod(model)
+    for body in model.scene.bodies:
+        frames = body_frames(model, body.name, x, inputs)
+        points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest)]
+    return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
+
+
+def path_distance(first: Paths, second: Paths) -> float:
+    """Largest distance of two sets of paths at the times that both reach, over the length, without unit.
+
+    What a tip is turned about its tangent counts on an arm of LEVER lengths.
+    """
+    rows = min(len(first.points), len(second.points))
+    distances = np.linalg.norm(first.points[:rows] - second.points[:rows], axis=2)
+    rolls = _rolls(first.section_axes[:rows], second.section_axes[:rows])
+    return float(np.maximum(distances.max(initial=0.0), LEVER * np.abs(rolls).max(initial=0.0)))
+
+
+def longest_rod(model: Model) -> float:
+    """Length of the longest rod, m."""
+    return max(rod.properties.length for rod in model.discrete.rods.values())
+
+
+def _watched_arms(body: Body, longest: float) -> list[FloatArray]:
+    """Points of a body that are watched, in its axes, m: its origin, and what its inertia would have move.
+
+    These are its centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments
+    of inertia and no mass the radius is LEVER lengths of the longest rod.
+    """
+    arms = [np.zeros(3)]
+    centre = np.asarray(body.centre_of_mass, dtype=float)
+    spread = float(np.trace(body.inertia_matrix))
+    if body.mass > 0.0 and np.any(centre):
+        arms.append(centre)
+    if spread > 0.0:
+        radius = LEVER * longest
+        if body.mass > 0.0:
+            radius = float(np.sqrt(spread / (2.0 * body.mass)))
+        arms += [centre + radius * axis for axis in np.eye(3)]
+    return arms
+
+
+def _moved_with(frames: Frames, arm: FloatArray) -> FloatArray:
+    """Positions of a point of a body, shape (T, 3), m."""
+    return np.asarray(frames.position + frames.rotation @ arm)
+
+
+def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Turns about the tangent from one set of sections to another that lies close, shape (T, rods), rad.
+
+    Args:
+        first: x and y axes of sections, shape (T, rods, 3, 2).
+        second: those of the others.
+    """
+    # cos and sin of the turn, twice: what the tangents are apart enters by its square alone.
+    products = np.einsum("trja,trjb->trab", first, second)
+    aligned = products[:, :, 0, 0] + products[:, :, 1, 1]
+    turned = products[:, :, 1, 0] - products[:, :, 0, 1]
+    return np.asarray(np.arctan2(turned, aligned))

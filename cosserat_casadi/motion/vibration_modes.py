@@ -1,0 +1,417 @@
+"""Vibration modes of a scene about its equilibrium, with how well the model resolves each.
+
+The strains that a mode asks for have nothing to do with those of the equilibrium: modes per strain are raised, level
+by level, until all frequencies that are asked for agree with those of the level before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.levels import nodes_for_turn
+from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
+from cosserat_casadi.accuracy.scene_solver import TIGHT
+from cosserat_casadi.equilibrium.judge import correct, judge
+from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
+from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
+from cosserat_casadi.motion.small_motions import SmallMotions
+from cosserat_casadi.motion.stability_sentences import stability_sentences
+from cosserat_casadi.numerics.continuation import ContinuationSettings
+from cosserat_casadi.numerics.progress import Progress, Report
+
+DEFAULT_COUNT = 8
+"""Modes that are sought where the caller does not say how many."""
+
+SPARE_MODES = 4
+"""Polynomials per strain of the first level beyond the number of modes that are sought."""
+
+LEVEL_FACTOR = 1.3
+"""Factor on the polynomials from one level to the next."""
+
+MOST_MODES = 48
+"""Polynomials per strain from which on no finer level is tried."""
+
+SPARE_NODES = 4
+"""Intervals beyond the number that polynomials and the turn of a rod need: mass is an integral of squares."""
+
+ROUNDING = 1e-13
+"""Floor of every estimate."""
+
+
+class ModesOutcome(Enum):
+    """Every way a search for modes can end; the value is the sentence."""
+
+    RESOLVED = "Modes found: every frequency is known to the tolerance."
+    UNRESOLVED = (
+        "Modes of the discrete model were found, but not every frequency is known to the tolerance: "
+        "ask for fewer, or allow a larger tolerance or more modes per strain."
+    )
+    NOT_ESTIMATED = "Modes of the discrete model: how far the rods have others is not estimated."
+    NO_EQUILIBRIUM = "No modes: there is no equilibrium to move about."
+
+    @property
+    def label(self) -> str:
+        """The word of the result file."""
+        return self.name.lower()
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A small motion δx = Re(vector exp(λ t)).
+
+    Attributes:
+        eigenvalue: λ, 1/s; of a conjugate pair the one with positive imaginary part.
+        vector: δx of all unknowns, shape (size,); zero for multipliers and tensions. The largest displacement over
+            length, or rotation, of any section is 1.
+        error_estimate: of λ, relative to |λ|; None where it is not estimated.
+    """
+
+    eigenvalue: complex
+    vector: NumberArray
+    error_estimate: float | None = None
+
+    @property
+    def angular_frequency(self) -> float:
+        """|λ|, 1/s."""
+        return abs(self.eigenvalue)
+
+    @property
+    def frequency(self) -> float:
+        """|λ| / 2π, Hz."""
+        return self.angular_frequency / (2 * np.pi)
+
+    @property
+    def damping_ratio(self) -> float:
+        """−Re λ / |λ|; zero for a rigid motion."""
+        # A zero without a sign: neither a rigid motion nor one without damping decays.
+        if self.eigenvalue.real == 0.0:
+            return 0.0
+        return -self.eigenvalue.real / abs(self.eigenvalue)
+
+    @property
+    def oscillates(self) -> bool:
+        """Whether the motion swings, and does not only grow or decay."""
+        return self.eigenvalue.imag > 0.0
+
+    @property
+    def grows(self) -> bool:
+        """Whether the motion grows by more than rounding."""
+        return self.eigenvalue.real > REAL * abs(self.eigenvalue)
+
+    @property
+    def words(self) -> str:
+        """Kind of the motion in a word, for tables."""
+        if self.eigenvalue == 0.0:
+            return "rigid or neutral"
+        if self.oscillates:
+            return "flutters" if self.grows else "swings"
+        return "grows" if self.grows else "decays"
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes about an equilibrium.
+
+    Attributes:
+        solution: the equilibrium, on the model whose modes these are.
+        outcome: how the search ended.
+        stability: sentences on what becomes of small motions; where there is no equilibrium, why.
+        modes: ordered by |λ|, multiplicities repeated, conjugate pairs once.
+        spectrum: all eigenvalues of the model, in the same order; the larger ones are not those of the rods, 1/s.
+    """
+
+    solution: Solution
+    outcome: ModesOutcome
+    stability: str
+    modes: tuple[Mode, ...]
+    spectrum: ComplexArray
+
+    @property
+    def message(self) -> str:
+        """How the search ended and what becomes of small motions, for the user."""
+        return f"{self.outcome.value} {self.stability}"
+
+    @property
+    def model(self) -> Model:
+        """The model whose modes these are."""
+        return self.solution.model
+
+    @property
+    def converged(self) -> bool:
+        """Whether there are modes, known to the tolerance where that was asked for."""
+        return self.outcome in (ModesOutcome.RESOLVED, ModesOutcome.NOT_ESTIMATED)
+
+    @property
+    def angular_frequencies(self) -> FloatArray:
+        """|λ| of all modes, shape (p,), 1/s."""
+        return np.array([mode.angular_frequency for mode in self.modes])
+
+    @property
+    def eigenvalues(self) -> ComplexArray:
+        """λ of all modes, shape (p,), 1/s."""
+        return np.array([mode.eigenvalue for mode in self.modes], dtype=complex)
+
+    def shape(self, X: FloatArray, rod: str | None = None) -> RodShape:
+        """Displacements and rotations of a rod's sections in all modes.
+
+        Args:
+            X: abscissae, shape (k,).
+            rod: name of the rod; may be left out where there is one.
+        """
+        name = self.model.rod_name(rod)
+        vectors = np.stack([mode.vector for mode in self.modes], axis=1)
+        return rod_shape(self.model, name, self.solution.x, self.solution.inputs, vectors, np.asarray(X, dtype=float))
+
+
+def small_motions(
+    model: Model,
+    x: FloatArray,
+    inputs: FloatArray,
+    inputs_rate: FloatArray | None = None,
+    inputs_acceleration: FloatArray | None = None,
+    p: FloatArray | None = None,
+) -> SmallMotions:
+    """The linear equations of small motions about unknowns that do not change.
+
+    Args:
+        model: the scene.
+        x: the unknowns, shape (model.size,).
+        inputs: stacked inputs.
+        inputs_rate: their rate, as of a base that spins steadily; zero where it is left out.
+        inputs_acceleration: their acceleration, likewise.
+        p: stacked parameters; those of a model that has some.
+    """
+    rest = np.zeros(model.size)
+    held = np.zeros(model.inputs.size)
+    rate = held if inputs_rate is None else inputs_rate
+    acceleration = held if inputs_acceleration is None else inputs_acceleration
+    parameters = [] if p is None else [p]
+    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, *parameters, rate, acceleration)
+    unknowns = model.discrete.unknowns
+    return SmallMotions(
+        stiffness.full(),
+        damping.full(),
+        mass.full(),
+        unknowns.units,
+        unknowns.differential,
+        _quaternion_growth(model, x),
+    )
+
+
+def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
+    """Gradients of the norms of the floating frames' quaternions, shape (frames, size)."""
+    discrete = model.discrete
+    gradients = np.zeros((len(discrete.frames), model.size))
+    for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
+        entries = discrete.deviation(name)
+        # Of the seven unknowns of a frame the last four are what its quaternion differs by from that at the start.
+        row[entries][3:] = frame.start.quaternion + x[entries][3:]
+    return gradients
+
+
+def modes_of(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:
+    """Modes of a model about one of its equilibria; their errors are not estimated.
+
+    Args:
+        solution: the equilibrium.
+        count: how many modes of lowest |λ|; None for all that the model has.
+        report: told the stage.
+
+    Raises:
+        SceneError: nothing that may move has mass.
+    """
+    refuse_obstacles(solution.model.scene, "an analysis of modes")
+    if not solution.converged:
+        return _no_equilibrium(solution)
+    model = solution.model
+    tell = report or _untold
+    tell(f"equations of motion of {model.size} unknowns")
+    motions = small_motions(model, solution.x, solution.inputs)
+    check_mass(motions)
+    tell(f"eigenvalues of {model.size} unknowns")
+    pairs = eigenpairs(
+        motions.free_stiffness,
+        motions.free_damping,
+        motions.free_mass,
+        conservative=model.has_potential(solution.inputs),
+    )
+    # Shapes of one eigenvalue are told apart together, also where the last of them is not asked for.
+    end = end_of_cluster(pairs.values, count)
+    values = pairs.values[:end]
+    vectors = motions.displacement(pairs.vectors[:, :end])
+    shapes = normalised(model, solution.x, solution.inputs, values, vectors)
+    modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
+    # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.
+    believed = np.arange(len(pairs.values)) < ceil(len(pairs.values) / 2)
+    return Modes(
+        solution,
+        ModesOutcome.NOT_ESTIMATED,
+        stability_sentences(pairs.values, believed, solution),
+        tuple(modes[:count]),
+        pairs.values,
+    )
+
+
+def _untold(stage: str) -> None:
+    """Take no note of a stage that nobody asked for."""
+
+
+def modes_of_scene(
+    scene: scenes.Scene,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    count: int = DEFAULT_COUNT,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> Modes:
+    """Modes of a scene about its static equilibrium, each with an estimated error.
+
+    Where the scene fixes modes or nodes they are used as they are, and only the errors are estimated.
+
+    Args:
+        scene: a validated scene.
+        values: inputs by name; those not named keep the scene's values.
+        count: how many modes of lowest |λ|.
+        progress: told the share of the present stage that is done.
+        report: told the stage.
+
+    Raises:
+        ValueError: the count is not positive.
+        SceneError: a value is refused, or nothing that may move has mass.
+    """
+    refuse_obstacles(scene, "an analysis of modes")
+    if count < 1:
+        raise ValueError(f"at least one mode must be asked for, got {count}")
+    equilibrium = solve_rods(scene, values, progress=progress, report=report)
+    if not equilibrium.converged:
+        return _no_equilibrium(equilibrium)
+    if scene.accuracy.fixed:
+        return _on_fixed(equilibrium, count, report)
+    return _to_tolerance(equilibrium, count, report)
+
+
+def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes:
+    """Modes on the discretisation of an equilibrium, judged by a finer one."""
+    own = modes_of(equilibrium, count, report=report)
+    witness = modes_of(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
+    return _judged(own, witness)
+
+
+def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> Modes:
+    """Modes on the first level that agrees with the one before; on the last one where none does."""
+    scene = equilibrium.model.scene
+    # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
+    first = max(ceil(count / 2) + SPARE_MODES, signal_modes(scene), _most_modes(equilibrium))
+    coarser = modes_of(_on_level(equilibrium, first, report), count, report=report)
+    while coarser.solution.converged:
+        more = ceil((LEVEL_FACTOR - 1.0) * _most_modes(coarser.solution))
+        finer = modes_of(_finer_equilibrium(coarser.solution, more, report), count, report=report)
+        judged = _judged(finer, coarser)
+        if judged.outcome is not ModesOutcome.UNRESOLVED or _most_modes(finer.solution) >= MOST_MODES:
+            return judged
+        coarser = finer
+    return coarser
+
+
+def _finer_equilibrium(coarser: Solution, more: int, report: Report | None) -> Solution:
+    return _on_level(coarser, _most_modes(coarser) + more, report)
+
+
+def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Solution:
+    """The same equilibrium with so many polynomials for each strain and element."""
+    scene = coarser.model.scene
+    nodes = nodes_for_turn(polynomials, largest_turn(coarser)) + SPARE_NODES
+    transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
+    model = build(scene, discretise(scene, polynomials, nodes, transport))
+    if report is not None:
+        report(f"equilibrium of {model.size} unknowns, {nodes} intervals")
+    newton = ContinuationSettings().newton
+    corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
+    if corrected is None:
+        return solve(model, model.inputs.unpack(coarser.inputs), estimate_error=False)
+    solution = judge(model, coarser.inputs, corrected.x, corrected.outcome, corrected.iterations, 1.0, newton.tolerance)
+    # What is known of the coarser solution holds for the finer one all the more.
+    return replace(
+        solution,
+        error_estimate=coarser.error_estimate,
+        shape_error_estimate=coarser.shape_error_estimate,
+    )
+
+
+def _most_modes(solution: Solution) -> int:
+    """Most polynomials that a strain of any rod has."""
+    return max(max(d.modes, default=0) for d in solution.model.discretisation.values())
+
+
+def _judged(modes: Modes, witness: Modes) -> Modes:
+    """Modes with the errors that those of another discretisation give them."""
+    if not witness.solution.converged:
+        return witness
+    if not modes.solution.converged:
+        return modes
+    errors = _distances(modes.eigenvalues, witness.eigenvalues)
+    estimated = tuple(
+        replace(mode, error_estimate=float(error)) for mode, error in zip(modes.modes, errors, strict=True)
+    )
+    tolerance = modes.model.scene.accuracy.tolerance
+    outcome = ModesOutcome.UNRESOLVED
+    # Written so that an estimate which is not a number counts as too large.
+    if np.all(errors <= tolerance):
+        outcome = ModesOutcome.RESOLVED
+    stability = stability_sentences(modes.spectrum, _confirmed(modes.spectrum, witness.spectrum), modes.solution)
+    return replace(modes, outcome=outcome, stability=stability, modes=estimated)
+
+
+def _confirmed(values: ComplexArray, others: ComplexArray) -> npt.NDArray[np.bool_]:
+    """Which eigenvalues another discretisation has too, to half of their growth at least."""
+    gaps = np.abs(values[:, None] - others).min(axis=1, initial=np.inf)
+    return np.asarray(gaps <= np.abs(values.real) / 2)
+
+
+def _distances(values: ComplexArray, others: ComplexArray) -> FloatArray:
+    """Distance of each eigenvalue to its counterpart among others, relative to its size; inf where it has none."""
+    distances = np.full(len(values), np.inf)
+    left = list(others)
+    for index, value in enumerate(values):
+        if not left:
+            break
+        # Of eigenvalues that are close to each other the nearest counterparts belong together.
+        gaps = np.abs(np.array(left) - value)
+        nearest = int(np.argmin(gaps))
+        size = max(abs(value), abs(left[nearest]))
+        distances[index] = 0.0 if size == 0.0 else gaps[nearest] / size
+        del left[nearest]
+    return np.asarray(distances + ROUNDING)
+
+
+def check_mass(motions: SmallMotions) -> None:
+    """Refuse a scene that has nothing to swing.
+
+    Raises:
+        SceneError: nothing that may move has mass.
+    """
+    if not np.any(motions.free_mass):
+        fault = "nothing that may move has mass"
+        remedy = "give materials a density, rods a linear_density, or bodies a mass"
+        raise SceneError(Problem("rods", fault, remedy))
+
+
+def _no_equilibrium(solution: Solution) -> Modes:
+    outcome = ModesOutcome.NO_EQUILIBRIUM
+    return Modes(solution, outcome, solution.message, (), np.zeros(0, dtype=complex))

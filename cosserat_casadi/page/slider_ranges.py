@@ -1,0 +1,69 @@
+"""Sliders: one for each number of the inputs, over the range that modes are chosen for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cosserat_casadi.accuracy.fixing import with_accuracy
+from cosserat_casadi.accuracy.ranges import Given, input_ranges
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.input_fields import column_suffixes
+
+
+@dataclass(frozen=True)
+class Slider:
+    """One number of the inputs that a reader may move.
+
+    Attributes:
+        input: name of the input, ``owner.field``.
+        label: text beside the slider: the axis of a vector, the degree of a polynomial; may be empty.
+        unit: SI unit.
+        index: entry of the stacked inputs.
+        value: value of the scene.
+        least: left end.
+        most: right end.
+    """
+
+    input: str
+    label: str
+    unit: str
+    index: int
+    value: float
+    least: float
+    most: float
+
+
+def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
+    """A slider for each entry of the stacked inputs, in their order.
+
+    Its ends are those of the range that modes are chosen for; an entry that keeps its value there has the range that it
+    has in a scene whose modes are not chosen yet.
+
+    Args:
+        model: whose inputs are moved.
+        asked: ranges that are asked for, as of :func:`cosserat_casadi.choose`.
+    """
+    scene = model.scene
+    ranges = input_ranges(scene, asked)
+    if scene.accuracy.chosen_for:
+        open_scene = with_accuracy(scene, chosen_for=None)
+        ranges = ranges.where_still(input_ranges(open_scene, asked))
+    made = []
+    for entry, span in model.inputs:
+        for k, suffix in zip(range(span.start, span.stop), column_suffixes(*entry.shape), strict=True):
+            value = float(ranges.layout.default[k])
+            # The scene's own value lies on the slider, wherever the ends are.
+            least = min(float(ranges.lower[k]), value)
+            most = max(float(ranges.upper[k]), value)
+            label = suffix.removeprefix(".")
+            made.append(Slider(entry.name, label, entry.unit, k, value, least, most))
+    return made
+
+
+def movable(model: Model) -> list[str]:
+    """Inputs that dragging the tip moves: inputs with bounds, else the actuators' inputs, else all."""
+    bounded = {bound.input for bound in model.scene.bounds}
+    actuators = {actuator.name for actuator in model.scene.actuators}
+    of_actuators = {entry.name for entry, _ in model.inputs if entry.owner in actuators and not entry.of_rod}
+    chosen = bounded or of_actuators or set(model.inputs.names)
+    return [name for name in model.inputs.names if name in chosen]

@@ -1,0 +1,383 @@
+"""Rods in one arrangement of contacts: a curve in y = (z, λ), and the margins and eigenvalues at its points.
+
+z = (x, f, p) are the unknowns of equilibrium/contact/contact_equations.py. The margins along the curve are functions of
+the positions of the nodes, which move with the places of contact: no model is built on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
+from cosserat_casadi.equilibrium.contact.contact_judgement import FLAT
+from cosserat_casadi.equilibrium.contact.contact_search import Found, found_at
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations
+from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, ball_is_inside_between, is_inside_between
+from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
+from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, restricted, variations
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
+from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.events import DETERMINANT
+from cosserat_casadi.paths.gaps_along import GapsAlong
+
+EQUILIBRATIONS = 6
+"""Times that rows and columns are made of one size."""
+
+SINGULAR = 1e-13
+"""Singular value, relative to the largest, that is zero: a short line has some as small as the cube of its width."""
+
+
+ANGULAR = (0, 1, 2)
+"""Indices of the curvatures and the torsion among the strains."""
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of a rod.
+
+    Attributes:
+        positions: world axes, shape (M, 3), m.
+        rates: their derivatives with the coordinate that integrals run over, shape (M, 3), m.
+        quaternions: world_Q_section, shape (M, 4).
+        moments: internal moment in the sections' frames, shape (M, 3), N m.
+    """
+
+    positions: FloatArray
+    rates: FloatArray
+    quaternions: FloatArray
+    moments: FloatArray
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """One arrangement of contacts while an input grows.
+
+    Attributes:
+        equations: of its contacts; their inputs are those at load factor 0.
+        change: stacked inputs of the scene at load factor 1 less those at 0.
+        potential: whether all loads have a potential along the path.
+        settings: limits of the curve.
+        near: z where it begins, or nearly so.
+        load_factor: λ there.
+    """
+
+    equations: ContactEquations
+    change: FloatArray
+    potential: bool
+    settings: ArcSettings
+    near: FloatArray
+    load_factor: float
+
+    @property
+    def scene(self) -> scenes.Scene:
+        """The scene without contacts."""
+        return self.equations.scene
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """The contacts, where the equations start from."""
+        return self.equations.state.touches
+
+    @property
+    def tolerance(self) -> float:
+        """Depth, pull and the like, relative, up to which it is valid."""
+        return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
+
+    @cached_property
+    def following(self) -> dict[str, str]:
+        """Rods that go on where others end, by the names of these."""
+        return continuations(self.scene)
+
+    def inputs(self, load_factor: float) -> FloatArray:
+        """Stacked inputs of the scene at a load factor."""
+        return np.asarray(self.equations.given + load_factor * self.change)
+
+    @cached_property
+    def _scales(self) -> tuple[FloatArray, FloatArray]:
+        """Units of z along the curve, and what each equation is multiplied by where linear systems are solved.
+
+        A short line of contact has forces that hardly tell on the rod, and moments of the gap that hardly tell of it:
+        their columns and rows are made as large as the others (D. Ruiz, RAL-TR-2001-034).
+        """
+        nominal = self.equations.nominal
+        size = nominal.model.size
+        forces = slice(size, size + len(nominal.force_units))
+        inputs = self.inputs(self.load_factor)
+        rate = self.equations.rate(self.near, inputs, self.change)
+        load = float(np.linalg.norm(rate[:size]))
+        scale = np.ones(len(self.near))
+        # So that a strain counts as the angle by which its element turns, however wide that comes to be.
+        scale[:size] = 1.0 / self.equations.nominal_widths
+        # Otherwise a strong load on a held rod would make a long way of small steps.
+        scale[variations(nominal.model).held] = max(1.0, load)
+        matrix = np.abs(self.equations.jacobian(self.near, inputs)) * scale
+        rows = np.ones(len(matrix))
+        for _ in range(EQUILIBRATIONS):
+            rows = _inverse(np.maximum(matrix.max(axis=1), np.abs(rate)))
+            columns = _inverse((rows[:, None] * matrix)[:, forces].max(axis=0))
+            matrix[:, forces] *= columns
+            scale[forces] *= columns
+        # A force that tells counts relative to the load, as those of supports do.
+        scale[forces] = np.maximum(scale[forces], max(1.0, load))
+        return scale, rows
+
+    @property
+    def scale(self) -> FloatArray:
+        """Units of z along the curve."""
+        return self._scales[0]
+
+    @cached_property
+    def curve(self) -> Curve:
+        """Its equations in y, scaled; the start of its path is not read."""
+        equations = self.equations
+        scale, rows = self._scales
+        path = Path(
+            residual=lambda y, t: equations.residual(scale * y, self.inputs(t)),
+            jacobian=lambda y, t: equations.jacobian(scale * y, self.inputs(t)) * scale,
+            rate=lambda y, t: equations.rate(scale * y, self.inputs(t), self.change),
+            start=self.near / scale,
+        )
+        monitor = DETERMINANT
+        if self.potential:
+            monitor = Monitor(self._eigenvalues, feels_limits=True)
+        # To the last digit: of a short line a small residual leaves much of its forces open.
+        settings = replace(self.settings, aim=0.0)
+        return Curve(path, monitor, settings, rows, SINGULAR)
+
+    def z(self, point: ArcPoint) -> FloatArray:
+        """Unknowns, forces and places of a point."""
+        return self.scale * point.x
+
+    def y(self, z: FloatArray, load_factor: float) -> FloatArray:
+        """The point of the curve's space that holds z and λ."""
+        return np.append(z / self.scale, load_factor)
+
+    def state(self, z: FloatArray) -> ContactState:
+        """The contacts at the places in z."""
+        _, _, places = self.equations.parts(z)
+        return self.equations.state.at(places.tolist())
+
+    def found(self, z: FloatArray, load_factor: float) -> Found:
+        """A point of the curve solved on new elements, which answers all questions that a solution answers."""
+        return found_at(self.equations, z, self.inputs(load_factor))
+
+    def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""
+        _, forces, _ = self.equations.parts(z)
+        modes = self.equations.nominal.modes
+        return self.state(z).with_forces(forces, modes)
+
+    @cached_property
+    def _poses(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ what :class:`Nodes` holds of every rod, one column a node."""
+        written = self.equations.written
+        results: list[Matrix] = []
+        for name, shape in written.system.shapes.items():
+            base = written.system.base(name)
+            rotation = quaternion_to_matrix(base.quaternion)
+            count = shape.rod.grid.size
+            quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+            results.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
+            results.append(rotation @ shape.tangent)
+            results.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
+            results.append(written.system.rods[name].statics.internal_wrench()[:3, :])
+        return ca.Function("poses", written.arguments, results)
+
+    def _nodes(self, z: FloatArray, load_factor: float) -> dict[str, Nodes]:
+        """The nodes of every rod."""
+        outputs = self._poses(*self.equations.parts(z), self.inputs(load_factor))
+        arrays = [output.full().T for output in outputs]
+        nodes = {}
+        for number, name in enumerate(self.equations.written.system.shapes):
+            positions, rates, quaternions, moments = arrays[4 * number : 4 * number + 4]
+            nodes[name] = Nodes(positions, rates, quaternions, moments)
+        return nodes
+
+    def ends(self, rod: str, z: FloatArray) -> FloatArray:
+        """Abscissae of the ends of a rod's elements."""
+        return self.equations.ends(rod, self.equations.parts(z)[2])
+
+    def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
+        """Distances of rods from the obstacles that they must not enter, by the names of rod and obstacle."""
+        nodes = self._nodes(z, load_factor)
+        bodies = self.bodies(z, load_factor)
+        gaps = {}
+        for rod, obstacle in pairs(self.scene):
+            discrete_rod = self.equations.nominal.model.discrete.rods[rod]
+            ends = self.ends(rod, z)
+            # The rate with the abscissa, which moved elements stretch.
+            moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
+            by_element = (discrete_rod.grid.elements, -1, 3)
+            tangents = nodes[rod].rates.reshape(by_element) / moved[:, None, None]
+            positions = nodes[rod].positions
+            bends = self._bends(rod, nodes[rod], tangents, ends)
+            if obstacle.body is not None:
+                # The obstacle sees the rod from its body.
+                body = bodies[obstacle.body]
+                positions = in_axes_of(body, positions)
+                tangents = tangents @ body.rotation[0]
+                bends = bends @ body.rotation[0]
+            gaps[rod, obstacle.name] = GapsAlong(
+                rod=rod,
+                obstacle=obstacle,
+                ends=ends,
+                positions=positions.reshape(by_element),
+                tangents=tangents,
+                bends=bends,
+                radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
+                length=discrete_rod.properties.length,
+            )
+        return gaps
+
+    def _bends(self, rod: str, nodes: Nodes, tangents: FloatArray, ends: FloatArray) -> FloatArray:
+        """Second derivatives of the positions with X, shape (E, N + 1, 3), but for what lies along the tangent.
+
+        Curvature follows from the moment, which at the end of an element is known to more digits than the strain's
+        polynomial, a mean over the element. Under actuators the polynomial is taken.
+        """
+        discrete_rod = self.equations.nominal.model.discrete.rods[rod]
+        intervals = discrete_rod.grid.intervals
+        widths = np.diff(ends)[:, None, None]
+        if any(actuator.rod == rod for actuator in self.scene.actuators):
+            return np.asarray(chebyshev.differentiation_matrix(intervals) @ tangents / widths)
+        properties = discrete_rod.properties
+        local = chebyshev.nodes(intervals)
+        X = (ends[:-1, None] + np.diff(ends)[:, None] * local).ravel()
+        stiffness = np.broadcast_to(known(properties.hooke(X)), (len(X), 6))
+        curvature = np.array(known(properties.intrinsic_curvature(X)))
+        for axis in properties.admitted:
+            if axis in ANGULAR:
+                curvature[:, axis] += nodes.moments[:, axis] / stiffness[:, axis]
+        unit = nodes.quaternions / np.linalg.norm(nodes.quaternions, axis=1, keepdims=True)
+        in_world = np.einsum("kij,kj->ki", rotations(unit), curvature)
+        bends = properties.length * np.cross(in_world, tangents.reshape(-1, 3))
+        return np.asarray(bends.reshape(tangents.shape))
+
+    @cached_property
+    def _body_poses(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ positions, m, and quaternions of the bodies of the scene, one column each."""
+        written = self.equations.written
+        poses = [written.system.body(body.name) for body in self.scene.bodies]
+        positions = ca.horzcat(*[pose.position for pose in poses])
+        quaternions = ca.horzcat(*[pose.quaternion for pose in poses])
+        return ca.Function("body_poses", written.arguments, [positions, quaternions])
+
+    def bodies(self, z: FloatArray, load_factor: float) -> dict[str, SolvedPoses]:
+        """Poses of the bodies of the scene by name, each as that of one section."""
+        if not self.scene.bodies:
+            return {}
+        outputs = self._body_poses(*self.equations.parts(z), self.inputs(load_factor))
+        positions, quaternions = (output.full().T[:, None, :] for output in outputs)
+        poses = [SolvedPoses(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
+        return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
+
+    def body_gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], float]:
+        """Distances of bodies from the obstacles that they must not enter, by the names of body and obstacle."""
+        pairs_of_bodies = list(body_pairs(self.scene))
+        if not pairs_of_bodies:
+            return {}
+        bodies = self.bodies(z, load_factor)
+        gaps = {}
+        for body, obstacle in pairs_of_bodies:
+            (gap,) = ball_gaps(obstacle, ball_radius(body), bodies[body.name].position)
+            gaps[body.name, obstacle.name] = float(gap) / self._length_of(body)
+        return gaps
+
+    def _length_of(self, body: scenes.Body) -> float:
+        """Length that distances of a body are relative to, m."""
+        return self.equations.nominal.model.discrete.body_frame(body.name).length
+
+    def goes_through(self, start: ArcPoint, end: ArcPoint) -> bool:
+        """Whether a rod or a body is inside an obstacle on the straight way from one point of the curve to another."""
+        for rod, obstacle in pairs(self.scene):
+            properties = self.equations.nominal.model.discrete.rods[rod].properties
+            start_positions, end_positions = (
+                self._seen_sections(self.z(point), point.load_factor, rod, obstacle) for point in (start, end)
+            )
+            if is_inside_between(obstacle, properties, start_positions, end_positions):
+                return True
+        pairs_of_bodies = list(body_pairs(self.scene))
+        if not pairs_of_bodies:
+            return False
+        before, after = (self.bodies(self.z(point), point.load_factor) for point in (start, end))
+        return any(
+            ball_is_inside_between(
+                obstacle,
+                ball_radius(body),
+                self._length_of(body),
+                before[body.name].position,
+                after[body.name].position,
+            )
+            for body, obstacle in pairs_of_bodies
+        )
+
+    def _seen_sections(
+        self, z: FloatArray, load_factor: float, rod: str, obstacle: scenes.ObstacleRecord
+    ) -> FloatArray:
+        """Positions of the sections of a rod that are looked at, as an obstacle sees them, shape (k, 3), m."""
+        positions = self.poses(z, load_factor, SECTIONS, rod).position
+        if obstacle.body is None:
+            return positions
+        return in_axes_of(self.bodies(z, load_factor)[obstacle.body], positions)
+
+    def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> SolvedPoses:
+        """Poses of sections at abscissae X."""
+        nodes = self._nodes(z, load_factor)[rod]
+        breaks = self.equations.nominal.model.discretisation[rod].breaks
+        intervals = self.equations.nominal.model.discrete.rods[rod].grid.intervals
+        interpolation = Grid(breaks, intervals, tuple(self.ends(rod, z).tolist())).interpolation_matrix(X)
+        quaternions = interpolation @ nodes.quaternions
+        quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+        return SolvedPoses(interpolation @ nodes.positions, rotations(quaternions), quaternions)
+
+    @cached_property
+    def _variations(self) -> ConstrainedVariations:
+        return variations(self.equations.nominal.model)
+
+    def _eigenvalues(self, y: FloatArray, jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:
+        """Eigenvalues of the second variation over the motions that keep the contacts, see contact_judgement.py."""
+        z = self.scale * y[:-1]
+        size = self.equations.nominal.model.size
+        count = len(self.equations.nominal.force_units)
+        moved = self.equations.moved_strains(self.equations.parts(z)[2])
+        # Strains count per length of the rod, as where elements do not move.
+        scale, row_factors = self._scales
+        by_x = (jacobian / scale / row_factors[:, None])[:, :size] * moved
+        hessian = moved[:, None] * by_x[:size]
+        rows = by_x[size:]
+        held: list[FloatArray] = []
+        gaps = self.gaps(z, float(y[-1])) if count else {}
+        first = 0
+        for touch, ends, line in self.parts(z):
+            own = rows[first : first + len(ends) + len(touch.moving) + len(line)]
+            first += len(own)
+            if touch.is_line or not touch.moving:
+                held.extend(own)
+                continue
+            held.append(own[0])
+            _, _, bend = gaps[touch.owner, touch.obstacle].at(touch.start)
+            if bend <= FLAT:
+                held.append(own[1])
+            else:
+                hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
+        return admissible_eigenvalues(*restricted(hessian, held, self._variations))
+
+
+def _inverse(sizes: FloatArray) -> FloatArray:
+    """Factors that scale rows or columns of these sizes to one; 1 for rows or columns without entries."""
+    return np.asarray(1.0 / np.where(sizes > 0.0, sizes, 1.0))

@@ -1,0 +1,289 @@
+"""From one arrangement of contacts to the next, where a margin vanishes: who touches, lets go, lies down or slides.
+
+Each change has one arrangement on either side that share the equilibrium between them. Where both are regular there,
+the next one is met at the same load factor. A line begins without length and a place leaves the tip without distance,
+where the equations of the next arrangement are singular: it is met where that length is a little more. What ends so, a
+line that shrinks or a place that comes to the tip, is left a little before, and its end is found along what comes next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.contact_alternatives import instead_of_pulling
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arclength import ArcPoint, Hyperplane, plane_through
+from cosserat_casadi.numerics.events import Arc
+from cosserat_casadi.paths.contact_curve import Arrangement
+from cosserat_casadi.paths.margins import OPEN, OVER_JOINT, Key, Watch, margins, violated
+
+WIDER = 4.0
+"""Width, in units of the least one, with which a line or a distance from the tip begins."""
+
+PROBE = 1e-3
+"""Step along the next arrangement that says which way leads into it."""
+
+MOST_PROBES = 40
+"""Steps in search of where the next arrangement begins: longer ones and, round corners, shorter ones."""
+
+
+@dataclass(frozen=True)
+class Transition:
+    """The next arrangement of contacts after a margin has vanished.
+
+    Attributes:
+        kind: word of the event.
+        touch: the contact that changes.
+        state: the next contacts.
+        grows: the margin of the next arrangement that is zero at the change and grows beyond it.
+        opens: entries of the places that the next arrangement is met by, with factors; none where the load factor is.
+        level: value of their sum there.
+        located: whether the change lies where that margin vanishes along the next arrangement.
+    """
+
+    kind: str
+    touch: Touch
+    state: ContactState
+    grows: Key
+    opens: tuple[tuple[Touch, int, float], ...] = ()
+    level: float = 0.0
+    located: bool = False
+
+
+@dataclass(frozen=True)
+class ArrangementEntry:
+    """Where a path enters an arrangement.
+
+    Attributes:
+        change: from the one before.
+        arrangement: the next one.
+        point: the first point, whose tangent leads into the arrangement.
+        is_event: whether it is the change itself; else the last point of the arrangement before is.
+    """
+
+    change: Transition
+    arrangement: Arrangement
+    point: ArcPoint
+    is_event: bool
+
+
+def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iterator[Transition]:
+    """Transitions to other arrangements where a margin vanishes, the likeliest first.
+
+    Args:
+        arrangement: the one that ends.
+        z: its last point.
+        key: the margin.
+        X: abscissa that it belongs to.
+    """
+    state = arrangement.state(z)
+    if key.watch is Watch.GAP:
+        rod, obstacle = key.pair
+        yield _added(state, Touch.point(obstacle, rod, X))
+        return
+    if key.watch is Watch.BODY_GAP:
+        body, obstacle = key.pair
+        yield _added(state, Touch.ball(obstacle, body))
+        return
+    touch = state.touches[key.number]
+    others = [other for number, other in enumerate(state.touches) if number != key.number]
+    if key.watch is Watch.FORCE and not touch.is_line:
+        gap = Watch.BODY_GAP if touch.of_body else Watch.GAP
+        yield Transition("lift_off", touch, ContactState.of(others), Key(gap, -1, key.pair))
+    elif key.watch is Watch.CURVATURE:
+        half = WIDER * OPEN / 2
+        yield _opened("point_to_line", touch, others, replace(touch, start=X - half, end=X + half, is_line=True))
+    elif key.watch is Watch.WIDTH:
+        yield _replaced("line_to_point", touch, others, Touch.point(touch.obstacle, touch.owner, X), Watch.CURVATURE)
+    elif key.watch is Watch.TO_TIP and touch.is_line:
+        yield _replaced("slide_to_tip", touch, others, replace(touch, end=TIP), Watch.FORCE)
+    elif key.watch is Watch.TO_TIP and touch.owner in arrangement.following:
+        beyond = Touch.point(touch.obstacle, arrangement.following[touch.owner], WIDER * OVER_JOINT)
+        yield _passed_on(touch, others, beyond, Watch.TO_BASE)
+    elif key.watch is Watch.TO_BASE:
+        before = next(first for first, second in arrangement.following.items() if second == touch.owner)
+        beyond = Touch.point(touch.obstacle, before, TIP - WIDER * OVER_JOINT)
+        yield _passed_on(touch, others, beyond, Watch.TO_TIP)
+    elif key.watch is Watch.TO_TIP:
+        yield _replaced("slide_to_tip", touch, others, Touch.point(touch.obstacle, touch.owner, TIP), Watch.SLOPE)
+    elif key.watch is Watch.SLOPE:
+        inwards = TIP - WIDER * OPEN
+        yield _opened("slide_from_tip", touch, others, Touch.point(touch.obstacle, touch.owner, inwards))
+        yield _opened("point_to_line", touch, others, Touch.line(touch.obstacle, touch.owner, inwards, TIP))
+    elif key.watch is Watch.FORCE and touch.reaches_tip and key.end == len(touch.carriers) - 1:
+        yield _opened("slide_from_tip", touch, others, replace(touch, end=TIP - WIDER * OPEN))
+    else:
+        for option in instead_of_pulling(touch):
+            following = ContactState.of([*others, *option])
+            kind = "slide_from_tip" if any(other.is_line for other in option) else "line_to_point"
+            yield Transition(kind, touch, following, Key(Watch.GAP, -1, key.pair))
+
+
+def _number(state: ContactState, touch: Touch) -> int:
+    return state.touches.index(touch)
+
+
+def _added(state: ContactState, touch: Touch) -> Transition:
+    """A contact more, whose force grows from zero."""
+    following = ContactState.of([*state.touches, touch])
+    grows = Key(Watch.FORCE, _number(following, touch), (touch.owner, touch.obstacle))
+    return Transition("touch", touch, following, grows)
+
+
+def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
+    """A contact of another kind, which begins where one of its margins vanishes."""
+    following = ContactState.of([*others, new])
+    last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
+    grows = Key(watch, _number(following, new), (new.owner, new.obstacle), last)
+    return Transition(kind, old, following, grows, located=True)
+
+
+def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Transition:
+    """A point on the next rod of a chain, met a little beyond the joint."""
+    following = ContactState.of([*others, new])
+    grows = Key(watch, _number(following, new), (new.owner, new.obstacle))
+    return Transition("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
+
+
+def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Transition:
+    """A contact with one place more to be sought, met where it is a little away from the others, or from the tip."""
+    following = ContactState.of([*others, new])
+    number = _number(following, new)
+    pair = (new.owner, new.obstacle)
+    if new.is_line and not new.reaches_tip and old.kind == "point":
+        opens = ((new, 0, -1.0), (new, 1, 1.0))
+        return Transition(kind, old, following, Key(Watch.WIDTH, number, pair), opens, WIDER * OPEN)
+    # The last place that is sought, counted from the tip.
+    last = len(new.moving) - 1
+    watch = Watch.WIDTH if new.is_line and new.reaches_tip else Watch.TO_TIP
+    return Transition(kind, old, following, Key(watch, number, pair), ((new, last, 1.0),), TIP - WIDER * OPEN)
+
+
+def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> ArrangementEntry | None:
+    """The next arrangement where the path enters it; None where it is not valid there.
+
+    Args:
+        arrangement: the one that ends.
+        point: its last point.
+        change: into the next.
+    """
+    change = _split(change, load_sections(arrangement.scene))
+    if not change.state.in_order:
+        return None
+    z = arrangement.z(point)
+    equations = ContactEquations(
+        arrangement.scene, arrangement.equations.given, arrangement.equations.grids, change.state
+    )
+    found = arrangement.found(z, point.load_factor)
+    nominal = replace(equations.nominal, given=arrangement.inputs(point.load_factor))
+    x = projected(found.solution, nominal.model)
+    near = np.concatenate([x, nominal.fitting_forces(x), change.state.places])
+    following = replace(arrangement, equations=equations, near=near, load_factor=point.load_factor)
+    guess = following.y(near, point.load_factor)
+    met = _met(following, guess, _plane(following, change, point.load_factor))
+    if met is None:
+        return None
+    if change.located:
+        met = _where_it_begins(following, met, change.grows)
+    else:
+        met = _turned(following, met, change.grows)
+    if met is None or not _is_valid(following, met):
+        return None
+    start = replace(met, length=0.0)
+    return ArrangementEntry(change, following, start, change.located)
+
+
+def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
+    """The same change, with seams in lines where loads act."""
+    opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
+    return replace(change, state=change.state.split(sections), opens=opens)
+
+
+def _plane(arrangement: Arrangement, change: Transition, load_factor: float) -> Hyperplane:
+    """Where the next arrangement is met: at a load factor, or at an opening."""
+    size = len(arrangement.scale)
+    normal = np.zeros(size + 1)
+    if not change.opens:
+        normal[-1] = 1.0
+        return Hyperplane(normal, load_factor)
+    first = size - len(change.state.places)
+    for touch, number, factor in change.opens:
+        earlier = change.state.touches[: _number(change.state, touch)]
+        before = sum(len(other.moving) for other in earlier)
+        normal[first + before + number] = factor
+    return Hyperplane(normal, change.level)
+
+
+def _met(arrangement: Arrangement, guess: FloatArray, plane: Hyperplane) -> ArcPoint | None:
+    """The point of an arrangement in a plane; its tangent leads to either side."""
+    corrected = arrangement.curve.correct(guess, plane)
+    if corrected is None:
+        return None
+    return arrangement.curve.point(corrected.y, plane.normal, 0.0)
+
+
+def _value(arrangement: Arrangement, point: ArcPoint, key: Key) -> float:
+    return margins(arrangement, arrangement.z(point), point.load_factor)[key].value
+
+
+def _beside(arrangement: Arrangement, point: ArcPoint, step: float) -> ArcPoint | None:
+    """The point a short way along the tangent, or against it."""
+    predicted = point.y + step * point.tangent
+    corrected = arrangement.curve.correct(predicted, plane_through(predicted, point.tangent))
+    if corrected is None:
+        return None
+    return arrangement.curve.point(corrected.y, np.sign(step) * point.tangent, point.length + abs(step))
+
+
+def _turned(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint | None:
+    """The point with its tangent on the side on which a margin grows."""
+    ahead = _beside(arrangement, point, PROBE)
+    behind = _beside(arrangement, point, -PROBE)
+    if ahead is None or behind is None:
+        return None
+    if _value(arrangement, ahead, grows) >= _value(arrangement, behind, grows):
+        return point
+    return replace(point, tangent=-point.tangent)
+
+
+def _where_it_begins(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint | None:
+    """The point of an arrangement where a margin vanishes, near another; its tangent leads to where it grows."""
+    turned = _turned(arrangement, point, grows)
+    if turned is None:
+        return None
+    value = _value(arrangement, turned, grows)
+    # A point beyond the beginning is followed back to it.
+    back = value > 0.0
+    if back:
+        turned = replace(turned, tangent=-turned.tangent)
+    step = PROBE
+    start = turned
+    for _ in range(MOST_PROBES):
+        end = _beside(arrangement, start, step)
+        if end is None or end.tangent @ start.tangent < arrangement.settings.min_cosine:
+            step /= 2
+            continue
+        passed = (_value(arrangement, end, grows) > 0.0) != back
+        if passed:
+            zero = Arc(arrangement.curve, start, end).zero(lambda p: _value(arrangement, p, grows))
+            if zero is None:
+                return None
+            return replace(zero, tangent=-zero.tangent) if back else zero
+        start = end
+        step *= 2
+    return None
+
+
+def _is_valid(arrangement: Arrangement, point: ArcPoint) -> bool:
+    """Whether no margin is below zero a little beyond the entry."""
+    beyond = _beside(arrangement, point, PROBE)
+    if beyond is None:
+        return False
+    ahead = margins(arrangement, arrangement.z(beyond), beyond.load_factor)
+    return not list(violated(ahead, arrangement.tolerance))

@@ -1,0 +1,180 @@
+"""A path on a discretisation that is fine enough: refined until the events and the end stay where they are.
+
+See docs/theory.md, section 12, "Modes".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.levels import seeing_modes
+from cosserat_casadi.equilibrium.metrics import ROUNDING, largest_turn
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.numerics.arclength import ArcSettings
+from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.numerics.trace import PathOutcome
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+from cosserat_casadi.paths.follow import follow_path
+from cosserat_casadi.tubes.tube_path import TubePath, follow_tubes
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+
+MODES = (6, 9, 12, 16, 21, 28, 36)
+"""Modes per strain component and element, one refinement level after the other."""
+
+SPARE = 2
+"""Intervals beyond the number that the modes of an unbent rod need."""
+
+SAMPLES = 12
+"""Points of a path whose turn says how many intervals the next refinement level needs."""
+
+SMALLEST_FACTOR = 1e-12
+"""Factor of an event below which differences count absolutely."""
+
+
+def follow_scene_path(
+    scene: scenes.Scene,
+    name: str,
+    value: npt.ArrayLike,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    branch: int = 0,
+    settings: ArcSettings | None = None,
+    first: TubeSolution | None = None,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> EquilibriumPath | TubePath:
+    """Follow a path of a scene on modes and nodes, or steps, that meet its tolerance.
+
+    Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path is
+    followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
+    relative to the lengths, change by less than the tolerance; the last change is ``error_estimate``.
+
+    An input of rods grows from zero; one of concentric tubes moves on from the value that it has.
+
+    Args:
+        scene: a validated scene.
+        name: as in :func:`follow_path`, like all that follow but ``first`` and ``report``; of concentric tubes an input
+            that is one number, such as "inner.rotation" or "push.force.z".
+        value: its value at factor 1.
+        values: other inputs.
+        branch: number of the bifurcation to leave at.
+        settings: limits.
+        first: an equilibrium of the same tubes to begin at, such as one of another path.
+        progress: receives the largest factor reached.
+        report: receives the discretisation of rods, in words.
+
+    Raises:
+        SceneError: the input is unknown, a value is refused, a path of tubes is to leave at a bifurcation, or one of
+            rods to begin at an equilibrium of tubes.
+    """
+    if scene.tubes:
+        if branch:
+            problem = "is for rods: a path of tubes goes straight on"
+            raise SceneError(Problem("--branch", problem, "leave it out"))
+        return follow_tubes(scene, name, value, values, first=first, settings=settings, progress=progress)
+    if first is not None:
+        problem = "is for concentric tubes: a path of rods begins without the input"
+        raise SceneError(Problem("first", problem, "leave it out"))
+
+    def follow(model: Model) -> EquilibriumPath:
+        if report is not None:
+            discretisations = model.discretisation.values()
+            intervals = max(discretisation.nodes for discretisation in discretisations)
+            report(f"{model.size} unknowns, {intervals} intervals")
+        return follow_path(
+            model,
+            name,
+            value,
+            values,
+            branch=branch,
+            settings=settings,
+            progress=progress,
+        )
+
+    scene = scene.baked()
+    accuracy = scene.accuracy
+    fixed = accuracy.modes is not None or accuracy.nodes is not None
+    if fixed:
+        # There is nothing to refine, and so nothing to estimate an error by.
+        return follow(build(scene))
+    coarse: EquilibriumPath | None = None
+    for modes in seeing_modes(scene, MODES):
+        turn = 0.0
+        if coarse is not None:
+            turn = _largest_turn(coarse)
+        # Chebyshev interpolation resolves 2 rad in an interval.
+        nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
+        # The rotation of highest order: what changes from level to level is the modes' error alone.
+        discretisation = discretise(scene, modes, nodes, "magnus8")
+        fine = follow(build(scene, discretisation))
+        if coarse is not None:
+            change = path_distance(coarse, fine)
+            if change <= accuracy.tolerance:
+                return replace(fine, error_estimate=change + ROUNDING)
+        coarse = fine
+    if not fine.converged:
+        return fine
+    return replace(fine, outcome=PathOutcome.UNRESOLVED, message=PathOutcome.UNRESOLVED.value)
+
+
+def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
+    """Largest difference of two paths of a scene: event factors (relative), tips there and at factor 1 (over length).
+
+    Infinite where they end otherwise or have other events.
+    """
+    coarse_kinds = [event.kind for event in coarse.events]
+    fine_kinds = [event.kind for event in fine.events]
+    if coarse.outcome is not fine.outcome or coarse_kinds != fine_kinds:
+        return float("inf")
+    differences = [0.0]
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        difference = abs(coarse_event.factor - fine_event.factor)
+        scale = max(abs(fine_event.factor), SMALLEST_FACTOR)
+        differences.append(difference / scale)
+    for rod in coarse.model.discrete.rods:
+        differences += _tip_differences(coarse, fine, rod)
+    return max(differences)
+
+
+def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -> list[float]:
+    """Distances of a rod's tips at events and at factor 1, over the length."""
+    pairs = []
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        coarse_tip = coarse.event_tip(coarse_event, rod)
+        fine_tip = fine.event_tip(fine_event, rod)
+        pairs.append((coarse_tip.position, fine_tip.position))
+    # A path that ends short of factor 1 has no end to compare.
+    if coarse.converged:
+        coarse_tip = coarse.tip(rod)
+        fine_tip = fine.tip(rod)
+        pairs.append((coarse_tip.position[-1], fine_tip.position[-1]))
+    length = coarse.model.discrete.rods[rod].properties.length
+    differences = []
+    for coarse_position, fine_position in pairs:
+        distance = np.linalg.norm(coarse_position - fine_position)
+        differences.append(float(distance) / length)
+    return differences
+
+
+def _largest_turn(path: EquilibriumPath) -> float:
+    """Largest angle through which an element turns at some points of a path, rad."""
+    count = len(path.factor)
+    if not count:
+        return 0.0
+    samples = np.linspace(0, count - 1, SAMPLES)
+    # Short paths have fewer points than samples.
+    indices = np.unique(samples.astype(int))
+    turns = []
+    for index in indices:
+        solution = path.solution(int(index))
+        turns.append(largest_turn(solution))
+    return max(turns)

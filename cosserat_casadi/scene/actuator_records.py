@@ -1,0 +1,199 @@
+"""Actuators: tendons and pressure chambers, led along a rod.
+
+A kind is a record here and a class in `actuators/` that gives the quantity its effort works on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.records import Entry, Record, refusal
+from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, PowerComponent, Share, listed
+
+
+class ActuatorRecord(Entry):
+    """An actuator inside a rod, which acts between its sections."""
+
+    references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
+
+    name: Name = Field(description="name of the actuator, a letter, then letters, digits and underscores")
+    if TYPE_CHECKING:
+        kind: str  # each member declares these two itself, where they stand among its keys
+        rod: str
+
+
+ACTUATORS: Family[ActuatorRecord] = Family("actuators")
+"""Kinds of actuators."""
+
+
+def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        problem = f"must begin before it ends, got {list(value)}"
+        fault = Fault((), problem, "two abscissae X, base side first")
+        raise refusal([fault])
+    return value
+
+
+Offset = Annotated[tuple[PowerComponent, PowerComponent], listed(2, "2 components, x and y")]
+Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_base_side_first)]
+
+
+PULLS = {"in": 1.0, "out": -1.0}
+"""Directions of the last pull, with the sign of the friction in it."""
+
+
+def _direction_of_pull(value: Any) -> Any:
+    if isinstance(value, str) and value in PULLS:
+        return PULLS[value]
+    # Truth values are integers in Python.
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not -1.0 <= value <= 1.0:
+        raise refusal([Fault((), f"must be 'in' or 'out', or from -1 to 1, got {shown(value)}")])
+    return float(value)
+
+
+Pull = Annotated[
+    float,
+    BeforeValidator(_direction_of_pull),
+    WithJsonSchema(
+        {"anyOf": [{"enum": list(PULLS), "type": "string"}, {"type": "number", "minimum": -1, "maximum": 1}]}
+    ),
+]
+
+
+class Helix(Record):
+    """A tendon that winds round the rod: offset = radius (cos, sin)(2π turns X + phase)."""
+
+    example: ClassVar[str] = """\
+helix = { radius = 1.5e-3, turns = 1.0 }
+"""
+
+    radius: Positive = Field(description="distance from the centreline, m")
+    turns: Number = Field(description="turns over the whole rod, negative for a left-handed helix, without unit")
+    phase: Number = Field(0.0, description="angle at X = 0 from local x, rad")
+
+
+@ACTUATORS.register
+class Tendon(ActuatorRecord):
+    """A cable led through the sections and anchored at the end of its span."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "cable"
+kind = "tendon"
+rod = "finger"
+tension = 3.0
+offset = [1.5e-3, 0.0]
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "tension": InputField("N", 1, lower=0.0),
+        "length": InputField("m", 1, positive=True, continuous=True, nonlinear=True),
+        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True),
+    }
+
+    kind: Literal["tendon"] = Field(description="cable led along the rod")
+    rod: str = Field(description="name of the rod that it pulls")
+    tension: NotNegative | None = Field(None, description="tension, N; or length")
+    length: Positive | None = Field(
+        None, description="length of the cable along its span, m; its tension is then an unknown"
+    )
+    slack: StrictBool = Field(
+        False, description="whether a cable of given length may go slack, so that it never pushes"
+    )
+    friction: NotNegative = Field(
+        0.0,
+        description="coefficient μ of friction along the course, without unit; T(X) = T₀ exp(−μ φ), φ the angle turned",
+    )
+    pull: Pull = Field(
+        1.0,
+        description="direction of the last pull at the base: 'in' loses tension along the course, 'out' gains it; "
+        "1 and −1 are the same, without unit; between them it turns round",
+    )
+    axial_stiffness: Positive | None = Field(
+        None, description="stiffness EA of the cable, N; one of given length does not stretch where it is left out"
+    )
+    winch_stiffness: Positive | None = Field(
+        None, description="stiffness of what holds a cable of given length at its base, N/m; rigid where it is left out"
+    )
+    pretension: NotNegative = Field(
+        0.0, description="tension at which an elastic cable has the given length, N; length is that at rest without it"
+    )
+    offset: Offset | None = Field(
+        None, description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    helix: Helix | None = Field(None, description="helical course round the centreline, instead of offset")
+    span: Span = Field((0.0, 1.0), description="abscissae X where it enters the rod and where it is anchored")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """One of tension and length, one of offset and helix."""
+        yield from _one_of("tension", "length", given)
+        yield from _one_of("offset", "helix", given)
+        # Only an unknown tension can be held at zero from below.
+        if given.get("slack") is True and "length" not in given:
+            yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
+        for key in ("axial_stiffness", "winch_stiffness", "pretension"):
+            if key in given and "length" not in given:
+                yield Fault((key,), "is for a tendon of given length", "leave it out: a given tension is what it is")
+        elastic = "axial_stiffness" in given or "winch_stiffness" in given
+        if "pretension" in given and not elastic:
+            remedy = "give axial_stiffness or winch_stiffness: the tension of a rigid cable follows from its length"
+            yield Fault(("pretension",), "is for an elastic cable", remedy)
+        if "pull" in given and not given.get("friction"):
+            yield Fault(("pull",), "stands without friction", "the direction of the last pull is that of friction")
+
+    @classmethod
+    def free_fields(cls, given: Table) -> tuple[str, ...]:
+        """Fields that may be free: tension or length, whichever the table has; the direction of friction."""
+        fields = [field for field in ("tension", "length") if field in given]
+        if given.get("friction"):
+            fields.append("pull")
+        # Where neither is given the table has a fault already; both are known names.
+        if not fields:
+            return tuple(cls.inputs)
+        return tuple(fields)
+
+
+def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
+    """Faults unless exactly one of two keys is there."""
+    if first in given and second in given:
+        yield Fault((second,), f"stands beside {first}", "give one of the two")
+    if first not in given and second not in given:
+        yield Fault((first,), "missing", f"give {first} or {second}")
+
+
+@ACTUATORS.register
+class Chamber(ActuatorRecord):
+    """A pressurised channel of constant cross-section along the rod."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "bellows"
+kind = "chamber"
+rod = "finger"
+pressure = 1.0e4
+area = 2.0e-6
+offset = [0.0, 1.0e-3]
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"pressure": InputField("Pa", 1)}
+
+    kind: Literal["chamber"] = Field(description="pressurised channel along the rod")
+    rod: str = Field(description="name of the rod that it pushes")
+    pressure: Number = Field(description="pressure above that outside, Pa")
+    area: Positive = Field(description="cross-section of the channel, m²")
+    offset: Offset = Field(
+        (0.0, 0.0), description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    span: Span = Field((0.0, 1.0), description="abscissae X between which the channel runs")
+
+
+# The type checker knows the kinds that ship; a scene may hold any that is registered.
+Actuator = Annotated[Tendon | Chamber, ACTUATORS]

@@ -1,0 +1,282 @@
+"""Bodies, and what holds tips of rods: supports hold them in the world, joints at bodies.
+
+A kind of support or joint is a record here and a class in `constraints/` that says which directions it holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Discriminator, Field
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
+from cosserat_casadi.scene.records import Entry, refusal, sound
+from cosserat_casadi.scene.values import (
+    SEVERAL,
+    SINGLE,
+    Direction,
+    Name,
+    NotNegative,
+    Positive,
+    Quadruple,
+    Quaternion,
+    Triple,
+    Vector,
+    listed,
+)
+
+# Supports
+
+
+class SupportRecord(Entry):
+    """A support, which holds the tip of a rod in the world."""
+
+    references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
+
+    name: Name | None = Field(None, description="name of the support, a letter, then letters, digits and underscores")
+    rod: str = Field(description="name of the rod whose tip it holds")
+    position: Vector = Field(description="prescribed position of the tip in world axes, m")
+    if TYPE_CHECKING:
+        kind: str  # each member declares its own word, where it stands among its keys
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """The rod reaches its support: judged where both are sound and the rod starts in the world."""
+        rod = named_rod(given.get("rod"), scene)
+        support = sound(cls, given)
+        if rod is None or support is None:
+            return
+        # The base of a carried or free rod is an unknown: what its tip reaches is for the model to find out.
+        if rod.base.rod is not None or rod.base.free:
+            return
+        for fault in out_of_reach(rod, support.position, support.orientation):
+            yield Fault(fault.path, f"unreachable combination: {fault.problem}", fault.remedy)
+
+    @property
+    def orientation(self) -> Quadruple | None:
+        """The prescribed orientation of the tip, w, x, y, z; None where the tip may turn."""
+        return None
+
+
+SUPPORTS: Family[SupportRecord] = Family("supports")
+"""Kinds of supports."""
+
+
+@SUPPORTS.register
+class ClampedSupport(SupportRecord):
+    """Position and orientation of a tip are prescribed."""
+
+    example: ClassVar[str] = """\
+[[supports]]
+rod = "finger"
+kind = "clamped"
+position = [0.1, 0, 0.1]
+quaternion = [1, 0, 0, 0]
+"""
+
+    kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
+    quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
+
+    @property
+    def orientation(self) -> Quadruple:
+        """The prescribed orientation of the tip, w, x, y, z."""
+        return self.quaternion
+
+
+@SUPPORTS.register
+class PinnedSupport(SupportRecord):
+    """The position of a tip is prescribed, its moment is free."""
+
+    example: ClassVar[str] = """\
+[[supports]]
+rod = "finger"
+kind = "pinned"
+position = [0.1, 0, 0.1]
+"""
+
+    kind: Literal["pinned"] = Field(description="position of the tip prescribed, moment free")
+
+
+# The type checker knows the kinds that ship; a scene may hold any that is registered.
+Support = Annotated[ClampedSupport | PinnedSupport, SUPPORTS]
+
+
+# Bodies and joints
+
+INERTIA_SLACK = 1e-9
+"""Share of the largest entry of an inertia that is put down to rounding."""
+
+
+def _moments_or_matrix(value: Any) -> str:
+    if isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value):
+        return SEVERAL.tag
+    return SINGLE.tag
+
+
+def _of_a_body(value: Triple | tuple[Triple, Triple, Triple]) -> Triple | tuple[Triple, Triple, Triple]:
+    """Refuse an inertia that no distribution of mass has."""
+    inertia = _matrix(value)
+    scale = np.abs(inertia).max()
+    if scale == 0.0:
+        return value
+    # Relative to the largest entry, sums and differences of the largest numbers stay numbers.
+    relative = inertia / scale
+    if np.abs(relative - relative.T).max() > INERTIA_SLACK:
+        raise refusal([Fault((), "must be symmetric", "the inertia about the centre of mass, in the body's axes")])
+    # In ascending order.
+    smallest, middle, largest = np.linalg.eigvalsh(relative)
+    if smallest < -INERTIA_SLACK:
+        raise refusal([Fault((), f"must have no negative principal moment, got {smallest * scale:.6g}")])
+    # Each moment is the integral of two squared distances: two of the moments hold all three.
+    if largest > smallest + middle + INERTIA_SLACK:
+        listed_moments = ", ".join(f"{moment * scale:.6g}" for moment in (smallest, middle, largest))
+        problem = f"no body has the principal moments {listed_moments}"
+        raise refusal([Fault((), problem, "the largest is at most the sum of the other two")])
+    return value
+
+
+def _matrix(inertia: Triple | tuple[Triple, Triple, Triple]) -> FloatArray:
+    """An inertia as a matrix (3, 3), from its diagonal or its rows."""
+    given = np.asarray(inertia, dtype=float)
+    if given.ndim == 1:
+        return np.diag(given)
+    return given
+
+
+Inertia = Annotated[
+    Annotated[Vector, SINGLE] | Annotated[tuple[Vector, Vector, Vector], listed(3, "3 rows of 3 numbers"), SEVERAL],
+    Discriminator(_moments_or_matrix),
+    AfterValidator(_of_a_body),
+]
+
+
+class Body(Entry):
+    """A rigid body that rods carry."""
+
+    example: ClassVar[str] = """\
+[[bodies]]
+name = "platform"
+mass = 0.1
+"""
+
+    name: Name = Field(description="name of the body, a letter, then letters, digits and underscores")
+    mass: NotNegative = Field(0.0, description="mass, kg")
+    centre_of_mass: Vector = Field((0.0, 0.0, 0.0), description="centre of mass in the axes of the body, m")
+    inertia: Inertia = Field(
+        (0.0, 0.0, 0.0),
+        description="moments of inertia about the centre of mass in the axes of the body, kg m²; three, or the rows of "
+        "a symmetric matrix",
+    )
+
+    radius: Positive | None = Field(
+        None, description="radius of the ball about its origin that keeps from obstacles which name it, m"
+    )
+
+    @property
+    def inertia_matrix(self) -> FloatArray:
+        """Inertia about the centre of mass in the axes of the body, shape (3, 3), kg m²."""
+        return _matrix(self.inertia)
+
+
+class JointRecord(Entry):
+    """A joint, which joins the tip of a rod to a body."""
+
+    references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
+
+    name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
+    body: str = Field(description="name of the body")
+    rod: str = Field(description="name of the rod whose tip is jointed to it")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the axes of the body, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the tip section in the axes of the body, of norm 1"
+    )
+    if TYPE_CHECKING:
+        kind: str  # each member declares its own word, where it stands among its keys
+
+    @property
+    def orientation(self) -> Quadruple:
+        """Orientation of the tip in the axes of the body, w, x, y, z."""
+        return self.quaternion
+
+
+JOINTS: Family[JointRecord] = Family("joints")
+"""Kinds of joints."""
+
+
+@JOINTS.register
+class FixedJoint(JointRecord):
+    """The tip of a rod is clamped in a body."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "fixed"
+position = [0.02, 0, 0]
+"""
+
+    kind: Literal["fixed"] = Field(description="the tip is clamped in the body")
+
+
+@JOINTS.register
+class SphericalJoint(JointRecord):
+    """The tip of a rod meets a point of a body and turns freely."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "spherical"
+position = [0.02, 0, 0]
+"""
+
+    kind: Literal["spherical"] = Field(description="the tip stays at a point of the body and turns freely")
+
+
+@JOINTS.register
+class RevoluteJoint(JointRecord):
+    """The tip of a rod meets a point of a body and turns about one axis of the body."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "revolute"
+position = [0.02, 0, 0]
+axis = [0, 1, 0]
+"""
+
+    kind: Literal["revolute"] = Field(description="the tip stays at a point of the body and turns about one axis")
+    axis: Direction = Field(
+        description="axis that the tip may turn about, through the joint's position, in the axes of the body, without "
+        "unit; any length but zero"
+    )
+
+
+@JOINTS.register
+class PrismaticJoint(JointRecord):
+    """The tip of a rod slides along one axis of a body and does not turn in it."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "prismatic"
+position = [0.02, 0, 0]
+axis = [1, 0, 0]
+"""
+
+    kind: Literal["prismatic"] = Field(description="the tip slides along one axis of the body and does not turn in it")
+    axis: Direction = Field(
+        description="axis that the tip may slide along, through the joint's position, in the axes of the body, without "
+        "unit; any length but zero"
+    )
+
+
+# The type checker knows the kinds that ship; a scene may hold any that is registered.
+Joint = Annotated[FixedJoint | SphericalJoint | RevoluteJoint | PrismaticJoint, JOINTS]

@@ -1,0 +1,21 @@
+"""A scene whose contact is smooth as the one whose contact is exact: to check what the width has changed."""
+
+from __future__ import annotations
+
+from cosserat_casadi.scene.obstacle_records import SMOOTH_KEYS
+from cosserat_casadi.scene.reading import scene_from_dict
+from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.writing import scene_tables
+
+
+def with_exact_contact(scene: Scene) -> Scene:
+    """The scene whose obstacles have no width: what solves it finds the contacts themselves.
+
+    Raises:
+        SceneError: exact contact of these rods is not found.
+    """
+    tables = scene_tables(scene)
+    for obstacle in tables.get("obstacles", []):
+        for key in SMOOTH_KEYS:
+            obstacle.pop(key, None)
+    return scene_from_dict(tables)

@@ -1,0 +1,251 @@
+"""Inputs over time: tables of values, waves, and tables in separate files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.input_fields import column_suffixes
+from cosserat_casadi.scene.number_table import read_numbers, shortened
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.values import Component, NotEmpty, Number, Positive, not_increasing, numbers_of
+
+SLOPE_SLACK = 1e-9
+"""Change of slope relative to the steepest one that is put down to rounding."""
+
+TIME_COLUMN = "t"
+"""The column of a file that holds times."""
+
+
+class InputMotion(Entry):
+    """An input over time: a table of values, or a wave about the scene's value.
+
+    Several of one input add up: the sum of its tables stands for the scene's value, and waves are added to that. A file
+    is read together with the scene: the record holds its rows as times and values.
+    """
+
+    example: ClassVar[str] = """\
+[[motions]]
+input = "push.force"
+times = [0.0, 0.05, 0.6]
+values = [[0, 0, 0], [0.8, -0.5, 0.4], [0.8, -0.5, 0.4]]
+
+[[motions]]
+input = "finger.base.position"
+amplitude = [0.04, 0.03, 0.01]
+frequency = 2.0
+wave = "one_minus_cosine"
+"""
+
+    input: str = Field(description="'load.field' of the input; it need not be among those that the scene leaves free")
+    times: Annotated[tuple[Number, ...], NotEmpty()] | None = Field(
+        None, description="times of the values, increasing, s; before and after them the value is constant"
+    )
+    values: Annotated[tuple[Component, ...], NotEmpty()] | None = Field(
+        None,
+        description="value of the input at each time, in its unit: a number, or a list of its numbers; for "
+        "polynomials those of each degree in turn",
+    )
+    interpolation: Literal["linear", "cubic", "step"] = Field(
+        "linear",
+        description="between the times: 'linear', a 'cubic' spline that begins and ends at rest, or a 'step' at each "
+        "time",
+    )
+    amplitude: Component | None = Field(
+        None, description="amplitude of a wave, in the unit of the input, a number for each of its numbers"
+    )
+    frequency: Positive | None = Field(None, description="frequency of the wave, Hz")
+    phase: Number = Field(0.0, description="phase of the wave at t = 0, rad")
+    wave: Literal["sine", "one_minus_cosine"] = Field(
+        "sine",
+        description="value + amplitude sin(2π frequency t + phase), or value + amplitude (1 − cos(2π frequency t + "
+        "phase)), which begins at rest",
+    )
+    file: str | None = Field(
+        None,
+        description="CSV file with columns t and value (or value.x, value.y, value.z), relative to the scene's file; "
+        "instead of times and values",
+    )
+
+    @property
+    def is_table(self) -> bool:
+        """Whether it is a table of values and not a wave."""
+        return self.times is not None
+
+    @property
+    def knots(self) -> FloatArray:
+        """Times of the table, ascending, shape (k,), s; none of a wave."""
+        return np.asarray(self.times or (), dtype=float)
+
+    @property
+    def knot_values(self) -> FloatArray:
+        """Values of the table in the unit of the input, a row for each time, shape (k, entries)."""
+        values = np.asarray(self.values or (), dtype=float)
+        return values.reshape(len(values), -1)
+
+    @property
+    def amplitudes(self) -> FloatArray:
+        """Amplitude of the wave in the unit of the input, shape (entries,); none of a table."""
+        if self.amplitude is None:
+            return np.zeros(0)
+        return np.atleast_1d(np.asarray(self.amplitude, dtype=float))
+
+    @property
+    def entry_count(self) -> int:
+        """Count the numbers of the input at one time."""
+        if self.is_table:
+            _, count = self.knot_values.shape
+            return int(count)
+        return self.amplitudes.size
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Times at which the value itself jumps, s."""
+        if not self.is_table or self.interpolation != "step":
+            return ()
+        values = self.knot_values
+        changing = np.any(values[1:] != values[:-1], axis=1)
+        times = self.knots[1:][changing]
+        return tuple(times.tolist())
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Times at which the value is continuous and its rate jumps, s."""
+        if not self.is_table or self.interpolation != "linear":
+            return ()
+        # The format bounds no number: slopes that overflow are not compared.
+        with np.errstate(over="ignore", invalid="ignore"):
+            slopes = np.diff(self.knot_values, axis=0) / np.diff(self.knots)[:, None]
+            steepest = np.abs(slopes).max(initial=0.0)
+            # Outside of the table the value is constant.
+            rest = np.zeros((1, self.entry_count))
+            changes = np.diff(np.vstack([rest, slopes, rest]), axis=0)
+            changing = np.any(np.abs(changes) > SLOPE_SLACK * steepest, axis=1)
+        times = self.knots[changing]
+        return tuple(times.tolist())
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A table, a wave or a file; what belongs to another of the three is left out."""
+        table = [key for key in ("times", "values") if key in given]
+        wave = [key for key in ("amplitude", "frequency") if key in given]
+        file = [key for key in ("file",) if key in given]
+        ways = [keys[0] for keys in (table, wave, file) if keys]
+        if not ways:
+            yield Fault(("times",), "missing", "give times and values, amplitude and frequency, or file")
+        elif len(ways) > 1:
+            remedy = "one of table, wave and file in each [[motions]]: several of one input add up"
+            yield Fault((ways[1],), f"stands beside {ways[0]}", remedy)
+        elif wave:
+            yield from _wave_faults(given)
+        elif file:
+            yield from _file_faults(given)
+        else:
+            yield from _table_faults(given)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _file_as_table(cls, given: Any) -> Any:
+        """Put the rows of the file where a table has them; a file with faults is left to the rules."""
+        if not isinstance(given, Mapping) or not isinstance(given.get("file"), str):
+            return given
+        times, values, problems = _read(given["file"])
+        if problems or "times" in given or "values" in given:
+            return given
+        others = {key: value for key, value in given.items() if key != "file"}
+        return {**others, "times": times, "values": values}
+
+
+# Rules of one table
+
+
+def _wave_faults(given: Table) -> Iterator[Fault]:
+    for key, remedy in (("amplitude", "in the unit of the input"), ("frequency", "Hz")):
+        if key not in given:
+            yield Fault((key,), "missing", f"a wave has an amplitude and a frequency: {remedy}")
+    if "interpolation" in given:
+        yield Fault(("interpolation",), "is for a table of values", "leave it out: a wave is smooth")
+
+
+def _table_faults(given: Table) -> Iterator[Fault]:
+    yield from _without_wave(given)
+    for key, other in (("times", "values"), ("values", "times")):
+        if key not in given:
+            yield Fault((key,), "missing", f"{other} are given")
+    times = given.get("times")
+    values = given.get("values")
+    yield from not_increasing(numbers_of(times), ("times",))
+    if not isinstance(values, list):
+        return
+    if isinstance(times, list) and len(times) != len(values):
+        yield Fault(("values",), f"must have one entry for each of {len(times)} times, got {len(values)}")
+    counts = [len(entry) if isinstance(entry, list) else 1 for entry in values]
+    for i, count in enumerate(counts):
+        if count != counts[0]:
+            yield Fault(("values", i), f"must have as many numbers as the first entry, {counts[0]}, got {count}")
+            return
+
+
+def _file_faults(given: Table) -> Iterator[Fault]:
+    yield from _without_wave(given)
+    file = given["file"]
+    # What is no text has a fault of its own.
+    if not isinstance(file, str):
+        return
+    _, _, problems = _read(file)
+    for problem in problems:
+        yield Fault(("file",), f"{problem.where}: {problem.problem}", problem.remedy)
+
+
+def _without_wave(given: Table) -> Iterator[Fault]:
+    for key in ("phase", "wave"):
+        if key in given:
+            yield Fault((key,), "is for a wave", "leave it out, or give amplitude and frequency")
+
+
+# Files
+
+
+def _read(file: str) -> tuple[list[float], list[list[float]], list[Problem]]:
+    """Times and values of a CSV file, a row for each time; both are empty where there are problems."""
+    try:
+        header, numbers, lines, problems = read_numbers(Path(file))
+    except SceneError as error:
+        return [], [], list(error.problems)
+    columns = _value_columns(header)
+    missing = [column for column in (TIME_COLUMN, *columns) if column not in header]
+    unknown = [column for column in header if column not in (TIME_COLUMN, *columns)]
+    wanted = f"{TIME_COLUMN} and value, or {TIME_COLUMN} and value.x, value.y, value.z"
+    problems += [Problem(file, f"has no column {column!r}", f"columns: {wanted}") for column in missing]
+    problems += [Problem(file, f"has a column {column!r}", f"columns: {wanted}") for column in unknown]
+    if problems:
+        return [], [], shortened(problems, file)
+    times = numbers[:, header.index(TIME_COLUMN)].tolist()
+    for fault in not_increasing(times, ()):
+        row = int(fault.path[-1])
+        return [], [], [Problem(f"{file}, line {lines[row]}", f"{TIME_COLUMN} {fault.problem}")]
+    values = numbers[:, [header.index(column) for column in columns]]
+    return times, values.tolist(), []
+
+
+def _value_columns(header: Sequence[str]) -> list[str]:
+    """The columns of values that a file with this header must have, in the order of the input's numbers."""
+    given = [column for column in header if column.startswith("value")]
+    if given in ([], ["value"]):
+        return ["value"]
+    components = 3
+    if "value.w" in given:
+        components = 4
+    # A number behind the axis is the degree of a Legendre coefficient.
+    matches = [re.fullmatch(r"value\.[xyz]\.([0-9]{1,2})", column) for column in given]
+    degrees = [int(match[1]) for match in matches if match is not None]
+    highest = max(degrees, default=0)
+    return [f"value{suffix}" for suffix in column_suffixes(components, highest + 1)]

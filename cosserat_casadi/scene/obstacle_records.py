@@ -1,0 +1,335 @@
+"""Obstacles: what rods may not enter, and lumens, which they may not leave; without friction.
+
+A kind is a record here and a class in `obstacles/` that says how far a point is from its surface.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from math import inf
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.rod_records import admitted_strains, is_round
+from cosserat_casadi.scene.values import (
+    BY_LENGTH,
+    SEVERAL,
+    SINGLE,
+    Direction,
+    Name,
+    Names,
+    NotEmpty,
+    NotNegative,
+    Positive,
+    Vector,
+    numbers_of,
+)
+
+SHEARS = {3, 4}
+"""Indices of the shears among the strains."""
+
+SMOOTH_KEYS = ("width", "stiffness", "damping")
+"""Keys of an obstacle whose contact is smooth."""
+
+SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
+"""Remedy where exact contact is not found."""
+
+FEWEST_POINTS = 2
+"""Points of a lumen that make a line."""
+
+
+class ObstacleRecord(Entry):
+    """An obstacle: centre lines of rods keep away from it by the radius of their sections, and bodies by theirs.
+
+    Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
+    """
+
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "body": "bodies"}
+
+    name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
+    body: str | None = Field(
+        None,
+        description="name of the body that it is fixed to and moves with, in whose axes it is given; it stands still "
+        "in the world when left out",
+    )
+    rods: Names | None = Field(
+        None,
+        description="names of the rods that may not enter it; all rods when neither rods nor bodies are named; with "
+        "body they must be named",
+    )
+    bodies: Names | None = Field(
+        None,
+        description="names of the bodies that may not enter it, as balls of their radius about their origin; none when "
+        "left out",
+    )
+    width: Positive | None = Field(
+        None,
+        description="gap from which on it pushes, smoothly, m; when left out rods touch it exactly, which is found at "
+        "rest and in motion",
+    )
+    stiffness: Positive | None = Field(
+        None,
+        description="with width: rate of the force per length with the gap where the gap is zero, N/m²; "
+        "30 EI/(L² width²) of each rod when left out",
+    )
+    damping: NotNegative = Field(
+        0.0, description="with width: share by which it pushes more in motion, per speed of approach, s/m"
+    )
+    if TYPE_CHECKING:
+        kind: str  # each member declares its own word, where it stands among its keys
+
+    @property
+    def thickness(self) -> float:
+        """How far a rod has to go to be outside of it again, on its other side, m; infinite where it has none."""
+        return inf
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether it pushes smoothly, from a width on."""
+        return self.width is not None
+
+    def concerns(self, rod: str) -> bool:
+        """Whether the rod of this name may not enter it."""
+        if self.rods is None:
+            return self.bodies is None
+        return rod in self.rods
+
+    def concerns_body(self, body: str) -> bool:
+        """Whether the body of this name may not enter it."""
+        return self.bodies is not None and body in self.bodies
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Faults of a smooth contact's stiffness or damping without width, and of obstacles on bodies."""
+        yield from _misplaced_on_body(given)
+        if "width" in given:
+            return
+        for key in SMOOTH_KEYS[1:]:
+            if key in given:
+                problem = "is of a contact that is smooth: without width contact is exact"
+                yield Fault((key,), problem, "give width, m, or leave it out")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """Rods that are not round, bodies without radius; where contact is exact rods that shear."""
+        named = given.get("rods", [] if "bodies" in given else None)
+        exact = "width" not in given
+        if exact and any("width" in other for _, other in scene.tables("obstacles")):
+            problem = (
+                "missing: other obstacles have one, and contact is exact with all obstacles of a scene or with none"
+            )
+            yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
+        yield from _unfit_bodies(given, scene)
+        for name, (_, rod) in scene.named("rods").items():
+            if isinstance(named, list | tuple) and name not in named:
+                continue
+            yield from _not_round(name, rod)
+            if exact:
+                yield from _without_exact_contact(name, rod)
+
+
+def _misplaced_on_body(given: Table) -> Iterator[Fault]:
+    """Faults of an obstacle on a body: settings that are refused beside it."""
+    if "body" not in given:
+        return
+    if "rods" not in given:
+        # The rods that hold the body end at it, or in it: none is meant that is not named.
+        problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
+        yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
+    if "bodies" in given:
+        problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
+        yield Fault(("bodies",), problem, "leave bodies out, or leave body out")
+    if "damping" in given:
+        problem = "contact with an obstacle on a body is not damped"
+        yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
+
+
+def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
+    """Bodies that have no radius to keep."""
+    bodies = given.get("bodies")
+    if not isinstance(bodies, list | tuple):
+        return
+    known = scene.named("bodies")
+    for i, name in enumerate(bodies):
+        # A name that nothing has is refused with the other references.
+        if isinstance(name, str) and name in known and "radius" not in known[name][1]:
+            yield Fault(("bodies", i), f"the body {name!r} has no radius to keep", "give the body a radius, m")
+
+
+def _not_round(name: str, rod: Table) -> Iterator[Fault]:
+    """A section that has no radius to keep."""
+    section = rod.get("section")
+    if isinstance(section, Mapping) and not is_round(section):
+        problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
+        yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
+
+
+def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
+    """Properties of a rod with which its exact contact cannot be computed; a smooth contact needs none of this."""
+    if SHEARS & set(admitted_strains(rod.get("strain"))):
+        # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
+        # contact spreads over a stretch as short as the section is high, which is not resolved.
+        problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
+        remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
+        yield Fault((), problem, remedy)
+
+
+OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
+"""Kinds of obstacles."""
+
+
+@OBSTACLES.register
+class Plane(ObstacleRecord):
+    """All that lies behind a plane."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.1]
+normal = [0, 0, 1]
+rods = ["finger"]
+"""
+
+    kind: Literal["plane"] = Field(description="half of space")
+    point: Vector = Field(description="a point of the plane in world axes, or those of its body, m")
+    normal: Direction = Field(
+        description="direction out of the obstacle in world axes, or those of its body, without unit; its length does "
+        "not matter"
+    )
+
+
+class RoundRecord(ObstacleRecord):
+    """A ball or a bar: what a rod could pass through, and be outside again."""
+
+    radius: Positive = Field(description="its radius, m")
+
+    @property
+    def thickness(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """It is thicker than its width: else a rod in its middle would not be seen to be too deep."""
+        yield from super().conflicts(given)
+        width, radius = given.get("width"), given.get("radius")
+        if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
+            problem = f"must be < radius, {radius:g} m, got {width:g}"
+            yield Fault(("width",), problem, "take a small part of the radius")
+
+
+@OBSTACLES.register
+class Sphere(RoundRecord):
+    """A ball."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "ball"
+kind = "sphere"
+centre = [0.05, 0, 0.1]
+radius = 0.02
+rods = ["finger"]
+"""
+
+    kind: Literal["sphere"] = Field(description="ball")
+    centre: Vector = Field(description="its centre in world axes, or those of its body, m")
+
+
+@OBSTACLES.register
+class Capsule(RoundRecord):
+    """A round bar with half a ball at either end."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.03, -0.1, 0.1]
+to = [0.03, 0.1, 0.1]
+radius = 0.01
+rods = ["finger"]
+"""
+
+    kind: Literal["capsule"] = Field(description="round bar")
+    start: Vector = Field(alias="from", description="start of its axis in world axes, or those of its body, m")
+    end: Vector = Field(alias="to", description="end of its axis in world axes, or those of its body, m")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """An axis has a length."""
+        yield from super().conflicts(given)
+        start = numbers_of(given.get("from"))
+        if start and start == numbers_of(given.get("to")):
+            yield Fault(("to",), "must differ from from", 'a bar without length is a ball: kind = "sphere"')
+
+
+Radii = Annotated[
+    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
+    BY_LENGTH,
+]
+"""One radius, or one for each point of a lumen."""
+
+
+CLOSEST_POINTS = 1e-12
+"""Least distance of neighbours on a line relative to the largest: the equations of the line have so many digits."""
+
+
+@OBSTACLES.register
+class Lumen(ObstacleRecord):
+    """The inside of a tube, which rods may not leave: the balls about a smooth line through points.
+
+    Beyond its first and last point it goes on straight, with the radius that it has there: it is open at both ends.
+    """
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "vessel"
+kind = "lumen"
+points = [[0, 0, -0.02], [0, 0, 0.05], [0.01, 0, 0.12], [0.05, 0, 0.22]]
+radius = [6e-3, 6e-3, 5e-3, 5e-3]
+rods = ["finger"]
+"""
+
+    kind: Literal["lumen"] = Field(description="inside of a tube")
+    points: Annotated[tuple[Vector, ...], NotEmpty()] = Field(
+        description="points that its line passes in world axes, or those of its body, a natural cubic spline over the "
+        "distance between them, m"
+    )
+    radius: Radii = Field(description="its radius, one or one for each point, m")
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """The radius at each point, m."""
+        if isinstance(self.radius, tuple):
+            return self.radius
+        return (self.radius,) * len(self.points)
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Two points at least, neighbours apart, and as many radii."""
+        yield from super().conflicts(given)
+        points = given.get("points")
+        if not isinstance(points, list | tuple) or not points:
+            return
+        if len(points) < FEWEST_POINTS:
+            yield Fault(("points",), f"must have {FEWEST_POINTS} points at least, got {len(points)}")
+        for i, (before, point) in enumerate(itertools.pairwise(points), 1):
+            if numbers_of(point) and numbers_of(point) == numbers_of(before):
+                yield Fault(("points", i), "must differ from the point before it")
+        if all(len(numbers_of(point)) == 3 for point in points):
+            distances = [math.dist(before, point) for before, point in itertools.pairwise(points)]
+            if distances and 0.0 < min(distances) < CLOSEST_POINTS * max(distances):
+                problem = f"are {min(distances):g} m apart at the least and {max(distances):g} m at the most"
+                yield Fault(("points",), problem, "no smooth line through them can be computed: space them evenly")
+        radius = given.get("radius")
+        if isinstance(radius, list | tuple) and radius and len(radius) != len(points):
+            yield Fault(("radius",), f"must have one radius for each of {len(points)} points, got {len(radius)}")
+
+
+Obstacle = Annotated[Plane | Sphere | Capsule | Lumen, OBSTACLES]

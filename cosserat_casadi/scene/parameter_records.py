@@ -1,0 +1,434 @@
+"""Parameters: numbers of a scene that become arguments of the model's functions, by their names.
+
+A name is the dotted path of a key from the entry that has it, ``finger.material.youngs_modulus``; a part of what the
+key holds follows behind it: ``finger.section.radius.tip``, ``finger.intrinsic.curvature.y[1]``.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.faults import Fault, Path, shown
+from cosserat_casadi.scene.fields import unit_of, varies_by_component, varying_mark
+from cosserat_casadi.scene.input_fields import AXES
+from cosserat_casadi.scene.profiles import ENDS
+from cosserat_casadi.scene.records import Entry, Record, keys_of
+from cosserat_casadi.spelling import closest
+
+PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "supports", "measurements")
+"""Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
+
+SPAN = ("start", "end")
+"""Names of the two abscissae of a span."""
+
+Cell = tuple[int, int]
+"""A number of a key: its component, and its place along the rod."""
+
+
+class Form(Enum):
+    """How a key holds its numbers: each a number, those of base and tip, or the components of a vector."""
+
+    NUMBER = "number"
+    ENDS = "base and tip"
+    VECTOR = "components"
+    PROFILES = "components along the rod"
+    MATRIX = "rows of a matrix"
+
+
+class RefusedParameter(Exception):  # noqa: N818 - it never leaves the reading of scenes
+    """A name that no parameter can have: problem and remedy."""
+
+
+@dataclass(frozen=True)
+class Holder:
+    """An entry of a scene that may have parameters.
+
+    Attributes:
+        table: key of the list that it stands in.
+        index: its place there.
+        record: the entry; None where it is faulty.
+    """
+
+    table: str
+    index: int
+    record: Entry | None
+
+
+Holders = Mapping[str, Sequence[Holder]]
+"""Entries by the words that a name may begin with: their own names, and ``joints[0]``."""
+
+
+@dataclass(frozen=True)
+class Tied:
+    """Numbers of a scene that follow others.
+
+    Attributes:
+        numbers: which.
+        ratios: what each is times the number that it follows, one for each cell.
+    """
+
+    numbers: NamedNumbers
+    ratios: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class NamedNumbers:
+    """Numbers of a scene that have been named as one parameter.
+
+    Attributes:
+        name: as the scene writes it.
+        holder: the entry of the scene that has them.
+        keys: the key in the entry, behind the keys of the tables that lead there.
+        unit: SI unit of each, "1" without unit.
+        form: how the key holds its numbers.
+        cells: which of the numbers of the key they are, column after column.
+        default: their values in the scene, shape (components, places along the rod).
+        tied: other numbers that follow these.
+    """
+
+    name: str
+    holder: Holder
+    keys: tuple[str, ...]
+    unit: str
+    form: Form
+    cells: tuple[Cell, ...]
+    default: FloatArray
+    tied: tuple[Tied, ...] = ()
+
+    @property
+    def all_numbers(self) -> tuple[NamedNumbers, ...]:
+        """These numbers, and numbers that follow them."""
+        return (self, *(other.numbers for other in self.tied))
+
+    @property
+    def field(self) -> str:
+        """``owner.key`` with the keys of inner tables: the name that the key has among inputs."""
+        assert self.holder.record is not None
+        owner = getattr(self.holder.record, "name", None) or f"{self.holder.table}[{self.holder.index}]"
+        return ".".join((owner, *self.keys))
+
+    @property
+    def cell_names(self) -> tuple[str, ...]:
+        """A name for each cell, which names that number alone."""
+        rows = dict.fromkeys(row for row, _ in self.cells)
+        columns = dict.fromkeys(column for _, column in self.cells)
+        words = _component_words(self.form, len(rows))
+        names = []
+        for row, column in self.cells:
+            component = f".{words[row]}" if len(rows) > 1 else ""
+            place = ""
+            if len(columns) > 1:
+                place = f".{ENDS[column]}" if self.form is Form.ENDS else f"[{column}]"
+            names.append(self.name + component + place)
+        return tuple(names)
+
+    def written(self, record: Entry, values: Sequence[Any]) -> Entry:
+        """The entry with other numbers, or expressions, one for each cell."""
+        changed: Entry = self._changed(record, self.keys, values)
+        return changed
+
+    def _changed(self, record: Any, keys: Sequence[str], values: Sequence[Any]) -> Any:
+        key = keys[0]
+        old = getattr(record, key)
+        if len(keys) > 1:
+            new = self._changed(old, keys[1:], values)
+        else:
+            new = _stored(self.form, _grid(self.form, old, self.cells), dict(zip(self.cells, values, strict=True)))
+        return record.model_copy(update={key: new})
+
+
+def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
+    """The numbers that a name stands for; None where their entry is faulty.
+
+    Raises:
+        RefusedParameter: the name stands for no number that may be a parameter.
+    """
+    # Both joints[0].position and joints.0.position are read.
+    segments = re.sub(r"\[(\d+)\]", r".\1", name).split(".")
+    first = segments.pop(0)
+    if first in PARAMETER_LISTS and segments and segments[0].isdigit():
+        first = f"{first}[{int(segments.pop(0)[:9])}]"
+    if first not in holders:
+        problem = f"no rod, load, actuator, body, joint or support is named {shown(first)}"
+        names = [word for word in holders if "[" not in word]
+        raise RefusedParameter(problem, closest(first, names))
+    if not segments:
+        raise RefusedParameter("must name a number of an entry", "such as 'finger.material.youngs_modulus'")
+    holder = _with_key(holders[first], segments[0])
+    if holder.record is None:
+        return None
+    return _numbers_in(name, holder, segments)
+
+
+def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
+    """The numbers that the first of several names stands for, with those of the others, which follow them.
+
+    All keep the ratios that they have in the scene; equal numbers stay equal. None where some entry is faulty.
+
+    Raises:
+        RefusedParameter: a name stands for no number that may be a parameter, or some cannot follow the first.
+    """
+    first, *others = [named_numbers(name, holders) for name in names]
+    if first is None or None in others:
+        return None
+    tied = tuple(Tied(other, _ratios(first, other)) for other in others if other is not None)
+    return replace(first, tied=tied)
+
+
+def _ratios(first: NamedNumbers, other: NamedNumbers) -> tuple[float, ...]:
+    """Ratios of numbers to the numbers that they follow."""
+    if other.unit != first.unit:
+        problem = f"{shown(other.name)} is in {other.unit} and cannot follow {shown(first.name)}, in {first.unit}"
+        raise RefusedParameter(problem, "tie numbers of one kind together")
+    leading = first.default.ravel(order="F")
+    following = other.default.ravel(order="F")
+    if len(leading) != len(following):
+        problem = f"{shown(other.name)} has {len(following)} numbers and {shown(first.name)} {len(leading)}"
+        raise RefusedParameter(problem, "name parts of them that have as many")
+    if np.array_equal(leading, following):
+        return (1.0,) * len(leading)
+    if np.any(leading == 0.0):
+        problem = f"{shown(first.name)} is zero in the scene, so that {shown(other.name)} has no ratio to it"
+        raise RefusedParameter(problem, "begin the list with numbers that are not zero, or give both the same values")
+    return tuple((following / leading).tolist())
+
+
+def _with_key(holders: Sequence[Holder], key: str) -> Holder:
+    """Of entries of one name, the one that has a key."""
+    for holder in holders:
+        if holder.record is None or key in keys_of(type(holder.record)):
+            return holder
+    return holders[0]
+
+
+def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumbers:
+    record: Any = holder.record
+    remaining = list(segments)
+    keys: list[str] = []
+    while isinstance(record, Record):
+        words = ", ".join(sorted(keys_of(type(record))))
+        if not remaining:
+            raise RefusedParameter("is a table, not a number", f"go on with one of its keys: {words}")
+        key = remaining.pop(0)
+        known = keys_of(type(record))
+        if key not in known:
+            where = ".".join([name.split(".")[0], *keys])
+            raise RefusedParameter(f"{where} has no {shown(key)}", closest(key, known))
+        field = known[key]
+        keys.append(key)
+        owner = record
+        record = getattr(owner, key)
+    reason = owner.parameter_refusal(keys[-1])
+    if reason is not None:
+        raise RefusedParameter(*reason)
+    value = record
+    mark = varying_mark(field)
+    form = _form(value, along=mark is not None, by_component=mark is not None and varies_by_component(field))
+    unit = unit_of(field)
+    cells = _chosen(form, _lengths(form, value), remaining)
+    grid = _grid(form, value, cells)
+    default = np.array([grid[cell] for cell in cells], dtype=float)
+    chosen_rows = len({row for row, _ in cells})
+    default = default.reshape(chosen_rows, -1, order="F")
+    return NamedNumbers(name, holder, tuple(keys), "1" if unit == "–" else unit, form, cells, default)
+
+
+def _form(value: Any, *, along: bool, by_component: bool) -> Form:
+    """How a key holds its numbers.
+
+    Raises:
+        RefusedParameter: it holds no number, or one that selects the structure of the model.
+    """
+    if value is None:
+        raise RefusedParameter("is not given in the scene", "give it a value: the parameter's default")
+    if isinstance(value, float):
+        return Form.NUMBER
+    if isinstance(value, int) and not isinstance(value, bool):
+        raise RefusedParameter("is a whole number, which selects the structure of the model", "set it in the scene")
+    if isinstance(value, tuple) and value:
+        if by_component:
+            return Form.PROFILES
+        if all(isinstance(number, float) for number in value):
+            return Form.ENDS if along else Form.VECTOR
+        if all(isinstance(row, tuple) and all(isinstance(number, float) for number in row) for row in value):
+            return Form.MATRIX
+    raise RefusedParameter("is not a number", "parameters are numbers of the scene")
+
+
+def _lengths(form: Form, value: Any) -> list[int]:
+    """Numbers of each component of a key."""
+    if form is Form.NUMBER:
+        return [1]
+    if form is Form.ENDS:
+        return [len(value)]
+    return [len(component) if isinstance(component, tuple) else 1 for component in value]
+
+
+def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[Cell, ...]:
+    """The cells that the parts of a name behind its key choose; without parts all, as many in every component.
+
+    Raises:
+        RefusedParameter: there is no such part.
+    """
+    remaining = list(parts)
+    rows = len(lengths)
+    columns = max(lengths)
+    chosen_rows: Iterable[int] = range(rows)
+    if remaining and rows > 1:
+        row = _part(remaining.pop(0), _component_words(form, rows), rows, "component")
+        chosen_rows = [row]
+        columns = lengths[row]
+    chosen_columns: Iterable[int] = range(columns)
+    if remaining and columns > 1:
+        ends = ENDS if form is Form.ENDS else ()
+        what = "value" if form is Form.ENDS else "coefficient"
+        chosen_columns = [_part(remaining.pop(0), ends, columns, what)]
+    if remaining == ["0"]:
+        # The one coefficient of a constant.
+        remaining.clear()
+    if remaining:
+        problem = f"has no part {shown('.'.join(remaining))}"
+        raise RefusedParameter(problem, "to make a coefficient a parameter, give it in the scene: it may be zero")
+    return tuple((row, column) for column, row in itertools.product(chosen_columns, chosen_rows))
+
+
+def _component_words(form: Form, rows: int) -> Sequence[str]:
+    """Names of the components of a key."""
+    if form is Form.VECTOR and rows == len(SPAN):
+        return SPAN
+    return AXES.get(rows, AXES[3][:rows])
+
+
+def _part(word: str, words: Sequence[str], count: int, what: str) -> int:
+    """The place that a word, or a number, means."""
+    if word in words:
+        return words.index(word)
+    if word.isdigit() and int(word[:9]) < count:
+        return int(word)
+    known = ", ".join(words) or f"0 to {count - 1}"
+    raise RefusedParameter(f"has no {what} {shown(word)}", f"{what}s: {known}")
+
+
+def _grid(form: Form, value: Any, cells: Iterable[Cell]) -> dict[Cell, Any]:
+    """The numbers of a key by their cells; numbers that a name adds to a shorter component are zero."""
+    grid: dict[Cell, Any] = dict.fromkeys(cells, 0.0)
+    if form is Form.NUMBER:
+        grid[0, 0] = value
+    elif form is Form.ENDS:
+        grid.update({(0, column): number for column, number in enumerate(value)})
+    else:
+        for row, component in enumerate(value):
+            numbers = component if isinstance(component, tuple) else (component,)
+            grid.update({(row, column): number for column, number in enumerate(numbers)})
+    return grid
+
+
+def _stored(form: Form, grid: Mapping[Cell, Any], values: Mapping[Cell, Any]) -> Any:
+    """Value of a key with some of its numbers changed."""
+    numbers = {**grid, **values}
+    rows = 1 + max(row for row, _ in numbers)
+    components = []
+    for row in range(rows):
+        columns = sorted(column for own, column in numbers if own == row)
+        components.append(tuple(numbers[row, column] for column in columns))
+    if form is Form.NUMBER:
+        return components[0][0]
+    if form is Form.ENDS:
+        return components[0]
+    if form is Form.MATRIX:
+        return tuple(components)
+    return tuple(component[0] if len(component) == 1 else component for component in components)
+
+
+def parameter_faults(
+    names: Sequence[Any],
+    paths: Sequence[Path],
+    holders: Holders,
+    inputs: Iterable[str],
+    requests: Mapping[str, str],
+) -> Iterator[Fault]:
+    """Faults of the names of the parameters of a scene.
+
+    Args:
+        names: what the scene gives as names, which may be faulty.
+        paths: where each stands.
+        holders: entries that may have parameters.
+        inputs: names of what stays free at run time already.
+        requests: names of what an identification makes an input, with who asks for it.
+    """
+    free = set(inputs)
+    first: dict[tuple[str, int, tuple[str, ...], Cell], str] = {}
+    seen: set[str] = set()
+    for name, path in zip(names, paths, strict=True):
+        # A text that is listed twice has a fault already.
+        if not isinstance(name, str) or name in seen:
+            continue
+        seen.add(name)
+        try:
+            numbers = named_numbers(name, holders)
+        except RefusedParameter as refused:
+            problem, remedy = refused.args
+            yield Fault(path, f"{shown(name)}: {problem}", remedy)
+            continue
+        if numbers is None:
+            continue
+        if numbers.field in free:
+            problem = f"{shown(name)} is an input already"
+            yield Fault(path, problem, "leave it out here, or list inputs without it")
+        elif numbers.field in requests:
+            problem = f"{shown(name)} would be an input as well: {requests[numbers.field]}"
+            yield Fault(
+                path, problem, f"{shown(numbers.field)} is an input or a parameter: leave it out there, or here"
+            )
+        places = [(numbers.holder.table, numbers.holder.index, numbers.keys, cell) for cell in numbers.cells]
+        again = next((first[place] for place in places if place in first), None)
+        if again is not None:
+            problem = f"{shown(name)} names what {shown(again)} names already"
+            yield Fault(path, problem, "name each number once")
+        for place in places:
+            first.setdefault(place, name)
+
+
+def tie_faults(groups: Iterable[tuple[Sequence[Any], Path]], holders: Holders) -> Iterator[Fault]:
+    """Why names that are listed together cannot stand for one number; faults of single names have been told.
+
+    Args:
+        groups: names that are listed together, with where their list stands.
+        holders: entries that may have parameters.
+    """
+    for names, path in groups:
+        if not all(isinstance(name, str) for name in names):
+            continue
+        try:
+            for name in names:
+                named_numbers(name, holders)
+        except RefusedParameter:
+            continue
+        try:
+            tied_numbers(names, holders)
+        except RefusedParameter as refused:
+            problem, remedy = refused.args
+            yield Fault(path, problem, remedy)
+
+
+def holders_of(entries: Iterable[Holder], names: Iterable[Any]) -> dict[str, list[Holder]]:
+    """Entries by the words that a name may begin with.
+
+    Args:
+        entries: the entries of the lists that may have parameters, in the order of these lists.
+        names: the name of each; an entry whose name is no text is left out.
+    """
+    known: dict[str, list[Holder]] = {}
+    for holder, name in zip(entries, names, strict=True):
+        if isinstance(name, str):
+            known.setdefault(name, []).append(holder)
+        known.setdefault(f"{holder.table}[{holder.index}]", []).append(holder)
+    return known

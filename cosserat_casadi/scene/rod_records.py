@@ -1,0 +1,403 @@
+"""Rods: their material and section, the strains that they admit, the pose of their base.
+
+The local z axis of a section is the rod's tangent; strains are ordered K_x, K_y, K_z, Γ_x, Γ_y, Γ_z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import AfterValidator, Field, StrictBool
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.profiles import ends_of
+from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.values import (
+    ABOVE_BASE,
+    BY_LENGTH,
+    SEVERAL,
+    SINGLE,
+    Direction,
+    Name,
+    NotEmpty,
+    NotNegative,
+    Number,
+    Polynomials,
+    Positive,
+    Quaternion,
+    Size,
+    SizeOrZero,
+    Vector,
+    above_base,
+    listed,
+    without_repetition,
+)
+
+STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
+"""Names of the six strains, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
+
+PRESETS: dict[str, tuple[int, ...]] = {"planar": (1,), "kirchhoff": (0, 1, 2), "reissner": (0, 1, 2, 3, 4, 5)}
+"""Indices of the strains that the named rod theories admit."""
+
+IN_PLANE = {1, 3, 5}
+"""Indices of the strains that keep a rod in the local x–z plane: bending_y, shear_x, extension."""
+
+SHEAR_AND_EXTENSION = {3, 4, 5}
+"""Indices of the strains Γ; a rod that admits none of them keeps its length."""
+
+StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
+StrainChoice = Annotated[
+    Annotated[Literal["planar", "kirchhoff", "reissner"], SINGLE]
+    | Annotated[tuple[StrainName, ...], NotEmpty(), AfterValidator(without_repetition), SEVERAL],
+    BY_LENGTH,
+]
+
+
+# Material and section
+
+
+class Material(Record):
+    """An isotropic linear elastic material."""
+
+    example: ClassVar[str] = """\
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+"""
+
+    youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
+    poisson_ratio: Annotated[Number, Field(gt=-1, le=0.5)] | None = Field(
+        None, description="Poisson's ratio, without unit; instead of shear_modulus"
+    )
+    shear_modulus: Positive | None = Field(None, description="shear modulus G, Pa; instead of poisson_ratio")
+    density: Positive | None = Field(None, description="density, kg/m³; needed where gravity acts")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Poisson's ratio and the shear modulus say the same."""
+        if "poisson_ratio" in given and "shear_modulus" in given:
+            yield Fault(("shear_modulus",), "stands beside poisson_ratio", "give one of the two")
+        if "poisson_ratio" not in given and "shear_modulus" not in given:
+            yield Fault(("poisson_ratio",), "missing", "give poisson_ratio or shear_modulus, Pa")
+
+
+class SectionRecord(Record):
+    """A cross-section of a rod.
+
+    A shape is a record here and a class in model/sections.py that says what its area and second moments are.
+
+    Attributes:
+        radius_key: the key of the radius by which a round section touches and meets a stream; None of others.
+    """
+
+    radius_key: ClassVar[str | None] = None
+
+    shear_correction: Positive = Field(
+        1.0, description="k in the shear stiffness k G A, without unit; 1 as in report (1.21)"
+    )
+
+
+SECTIONS: Family[SectionRecord] = Family("section", key="shape")
+"""Shapes of cross-sections."""
+
+
+@SECTIONS.register
+class Circle(SectionRecord):
+    """A solid circular cross-section."""
+
+    example: ClassVar[str] = """\
+section = { shape = "circle", radius = { base = 2.0e-3, tip = 1.0e-3 } }     # tapered
+"""
+
+    radius_key: ClassVar[str] = "radius"
+
+    shape: Literal["circle"] = Field(description="solid circle")
+    radius: Size = Field(description="radius, m; a list of two goes linearly from base to tip")
+
+
+@SECTIONS.register
+class Annulus(SectionRecord):
+    """A circular tube."""
+
+    example: ClassVar[str] = """\
+section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
+"""
+
+    radius_key: ClassVar[str] = "outer_radius"
+
+    shape: Literal["annulus"] = Field(description="circular tube")
+    outer_radius: Size = Field(description="outer radius, m; a list of two goes linearly from base to tip")
+    inner_radius: SizeOrZero = Field(description="inner radius, m; a list of two goes linearly from base to tip")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The bore fits into the tube at both ends."""
+        outer = ends_of(given.get("outer_radius"))
+        inner = ends_of(given.get("inner_radius"))
+        # Both are linear in X: what holds at both ends holds between them.
+        for bore, wall in zip(inner, outer, strict=False):
+            if bore >= wall:
+                problem = f"must be < outer_radius at both ends, got {shown(bore)} in {shown(wall)}"
+                yield Fault(("inner_radius",), problem)
+                return
+
+
+@SECTIONS.register
+class Rectangle(SectionRecord):
+    """A solid rectangular cross-section."""
+
+    example: ClassVar[str] = """\
+section = { shape = "rectangle", width = 1.0e-2, height = 1.0e-3 }
+"""
+
+    shape: Literal["rectangle"] = Field(description="solid rectangle")
+    width: Size = Field(description="width along local x, m; a list of two goes linearly from base to tip")
+    height: Size = Field(description="height along local y, m; a list of two goes linearly from base to tip")
+
+
+Section = Annotated[Circle | Annulus | Rectangle, SECTIONS]
+
+
+class Stiffness(Record):
+    """Diagonal of the Hooke tensor, each constant or linear from base to tip."""
+
+    example: ClassVar[str] = """\
+stiffness = { bending_x = 1.0, bending_y = 1.0, torsion = 0.8 }
+linear_density = 0.01
+"""
+
+    bending_x: Size | None = Field(None, description="bending stiffness about local x, N m²")
+    bending_y: Size | None = Field(None, description="bending stiffness about local y, N m²")
+    torsion: Size | None = Field(None, description="torsional stiffness, N m²")
+    shear_x: Size | None = Field(None, description="shear stiffness along local x, N")
+    shear_y: Size | None = Field(None, description="shear stiffness along local y, N")
+    extension: Size | None = Field(None, description="axial stiffness, N")
+
+
+class Damping(Record):
+    """Kelvin–Voigt damping: stress H (ξ − ξ⁰) + Υ ξ̇, in motion alone."""
+
+    example: ClassVar[str] = """\
+damping = { retardation_time = 0.01 }
+"""
+
+    retardation_time: NotNegative | None = Field(
+        None, description="τ in Υ = τ H with the Hooke tensor H, s; instead of coefficients"
+    )
+    bending_x: SizeOrZero | None = Field(None, description="damping of bending about local x, N m² s; 0 when left out")
+    bending_y: SizeOrZero | None = Field(None, description="damping of bending about local y, N m² s; 0 when left out")
+    torsion: SizeOrZero | None = Field(None, description="damping of torsion, N m² s; 0 when left out")
+    shear_x: SizeOrZero | None = Field(None, description="damping of shear along local x, N s; 0 when left out")
+    shear_y: SizeOrZero | None = Field(None, description="damping of shear along local y, N s; 0 when left out")
+    extension: SizeOrZero | None = Field(None, description="damping of extension, N s; 0 when left out")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The retardation time or coefficients, one of the two."""
+        coefficients = [name for name in STRAINS if name in given]
+        if "retardation_time" in given and coefficients:
+            yield Fault((coefficients[0],), "stands beside retardation_time", "give one of the two")
+        if "retardation_time" not in given and not coefficients:
+            remedy = "give retardation_time, s, or coefficients by strain such as bending_x"
+            yield Fault(("retardation_time",), "missing", remedy)
+
+
+# Shape and pose
+
+
+class Intrinsic(Record):
+    """Strains of the unloaded rod, ξ⁰."""
+
+    example: ClassVar[str] = """\
+intrinsic = { curvature = [0, { base = 4.0, tip = 6.0 }, 0] }     # bent about y, more so towards the tip
+"""
+
+    curvature: Polynomials = Field(
+        (0.0, 0.0, 0.0), description="K_x, K_y, K_z, 1/m; a component may list Legendre coefficients in 2X − 1"
+    )
+    tangent: Polynomials = Field(
+        (0.0, 0.0, 1.0),
+        description="Γ_x, Γ_y, Γ_z, without unit; a component may list Legendre coefficients in 2X − 1",
+    )
+
+
+class Base(Record):
+    """Pose of the section X = 0, in the world or in a section of another rod."""
+
+    example: ClassVar[str] = """\
+base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideways
+"""
+
+    rod: str | None = Field(
+        None, description="name of the rod that carries this one: the pose of the base is then that in its section"
+    )
+    at: Annotated[
+        Number,
+        above_base("at its base the other rod does not move: give a pose in the world"),
+        ABOVE_BASE,
+    ] = Field(1.0, description="abscissa X of the carrying section, without unit, above 0 and at most 1; with rod")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the base, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the base w, x, y, z, of norm 1, without unit"
+    )
+    tangent: Direction | None = Field(
+        None,
+        description="direction of the base's z axis, without unit; the shortest rotation of z, instead of quaternion",
+    )
+    free: StrictBool = Field(
+        False, description="whether nothing holds the base in motion: the rod starts at this pose, free in space"
+    )
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The tangent is an orientation already; a section has a rod; what a rod carries is not free."""
+        if "tangent" in given and "quaternion" in given:
+            yield Fault(("tangent",), "stands beside quaternion", "give one of the two")
+        if "at" in given and "rod" not in given:
+            yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
+        if given.get("free") is True and "rod" in given:
+            yield Fault(("free",), "stands beside rod", "a base that a rod carries is not free: leave one of them out")
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """An orientation is a parameter as a quaternion."""
+        if key == "tangent" or (key == "quaternion" and self.tangent is not None):
+            return "is given by a direction", "give the quaternion instead, and name that"
+        return super().parameter_refusal(key)
+
+    def held(self) -> Base:
+        """The base clamped where it starts."""
+        if not self.free:
+            return self
+        return self.model_copy(update={"free": False})
+
+
+RotaryInertia = Annotated[tuple[NotNegative, NotNegative, NotNegative], listed(3, "3 numbers")]
+
+
+class Rod(Entry):
+    """An elastic rod, held at its base."""
+
+    example: ClassVar[str] = """\
+[[rods]]
+name = "finger"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 2.0e-3 }
+base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "length": InputField("m", 1, positive=True, geometry=True),
+        "base.position": InputField("m", 3, axes="world", geometry=True),
+        "base.quaternion": InputField("1", 4, nonzero=True, geometry=True),
+    }
+
+    name: Name = Field(description="name of the rod, a letter, then letters, digits and underscores")
+    length: Positive = Field(description="undeformed length, m")
+    strain: StrainChoice = Field(
+        description="admitted strains: 'planar' (bending in the local x–z plane), 'kirchhoff' (bending and torsion), "
+        "'reissner' (all six), or a list out of bending_x, bending_y, torsion, shear_x, shear_y, extension"
+    )
+    basis: Literal["legendre", "chebyshev"] = Field("legendre", description="polynomials that the strains are made of")
+    material: Material | None = Field(None, description="what the rod is made of; with section")
+    section: Section | None = Field(None, description="its cross-section; with material")
+    stiffness: Stiffness | None = Field(None, description="stiffnesses, N m² and N; instead of material and section")
+    linear_density: Size | None = Field(
+        None, description="mass per length, kg/m, with stiffness; a list of two goes linearly from base to tip"
+    )
+    rotary_inertia: RotaryInertia | None = Field(
+        None,
+        description="moments of inertia per length about section x, y and tangent, kg m; with linear_density, 0 when "
+        "left out; with material and section they follow from the density",
+    )
+    damping: Damping | None = Field(None, description="internal damping, in motion alone")
+    intrinsic: Intrinsic = Field(Intrinsic(), description="strains of the unloaded rod, 1/m and without unit")
+    base: Base = Field(Base(), description="pose of the base, in the world or in a section of another rod, m")
+
+    @property
+    def admitted(self) -> tuple[int, ...]:
+        """Indices of the admitted strains, ascending, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
+        return admitted_strains(self.strain)
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The elasticity is given once, for every admitted strain; damping for no other; inertia with its mass."""
+        yield from _elasticity_given_once(given)
+        yield from _inertia_without_mass(given)
+        admitted = [STRAINS[index] for index in admitted_strains(given.get("strain"))]
+        stiffness = given.get("stiffness")
+        if isinstance(stiffness, Mapping):
+            for name in admitted:
+                if name not in stiffness:
+                    yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
+        damping = given.get("damping")
+        # Without a sound choice of strains none is known to be left out.
+        if isinstance(damping, Mapping) and admitted:
+            for name in STRAINS:
+                if name in damping and name not in admitted:
+                    remedy = f"its strains: {', '.join(admitted)}"
+                    yield Fault(("damping", name), "is of a strain that the rod does not admit", remedy)
+
+    @classmethod
+    def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """The pose of a base is free where it is in the world and cannot leave the plane that its tip is held in."""
+        if not field.startswith("base."):
+            return
+        name = given.get("name")
+        base = given.get("base")
+        # The base of a carried rod is an unknown, not an input, as is a free one.
+        if isinstance(base, Mapping) and "rod" in base:
+            yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
+        elif isinstance(base, Mapping) and base.get("free") is True:
+            yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
+        holding = (*scene.tables("supports"), *scene.tables("joints"))
+        held = any(table.get("rod") == name for _, table in holding)
+        admitted = set(admitted_strains(given.get("strain")))
+        # Constraints of a rod in a plane are those in its plane: out of it they would be too few.
+        if held and admitted <= IN_PLANE:
+            problem = f"{shown(name)} bends in a plane and its tip is held"
+            yield Fault((), problem, "admit torsion, or its base could leave the plane")
+
+
+def is_round(section: Any) -> bool:
+    """Whether the table of a section has the shape of a round one."""
+    record = SECTIONS.record_of(section) if isinstance(section, Mapping) else None
+    return record is not None and record.radius_key is not None
+
+
+def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
+    made_of = [key for key in ("material", "section") if key in rod]
+    direct = [key for key in ("stiffness", "linear_density") if key in rod]
+    if made_of and direct:
+        remedy = "give material and section, or stiffness and linear_density"
+        yield Fault((direct[0],), f"stands beside {' and '.join(made_of)}", remedy)
+    elif made_of == ["material"]:
+        yield Fault(("section",), "missing", "a material needs a section")
+    elif made_of == ["section"]:
+        yield Fault(("material",), "missing", "a section needs a material")
+    elif not made_of and "stiffness" not in rod:
+        yield Fault(("material",), "missing", "give material and section, or stiffness")
+
+
+def _inertia_without_mass(rod: Table) -> Iterator[Fault]:
+    """Faults of a rotary inertia beside material or section, from which it follows, or without a mass per length."""
+    if "rotary_inertia" not in rod:
+        return
+    made_of = [key for key in ("material", "section") if key in rod]
+    if made_of:
+        remedy = "it follows from the density: leave it out, or give stiffness and linear_density"
+        yield Fault(("rotary_inertia",), f"stands beside {' and '.join(made_of)}", remedy)
+    elif "linear_density" not in rod:
+        yield Fault(("linear_density",), "missing", "a rotary inertia belongs to a mass per length, kg/m")
+
+
+def admitted_strains(strain: Any) -> tuple[int, ...]:
+    """Indices of the strains that the entry ``strain`` of a rod admits, ascending; none where it is faulty."""
+    if isinstance(strain, str):
+        return PRESETS.get(strain, ())
+    if not isinstance(strain, list | tuple):
+        return ()
+    # In the order of the strains, whatever the order of the list.
+    return tuple(index for index, name in enumerate(STRAINS) if name in strain)

@@ -1,0 +1,146 @@
+"""Unknowns of an identification, and its settings: `[[unknowns]]` and `[identification]`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, shown
+from cosserat_casadi.scene.input_rules import input_part_faults
+from cosserat_casadi.scene.measurement_record import PositiveComponent, overlap, table_that_moves
+from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.values import Component, Number, Positive, TiedNames, Whole, names_in, numbers_of
+
+
+class Prior(Record):
+    """Prior of an unknown: a normal distribution."""
+
+    example: ClassVar[str] = """\
+[[unknowns]]
+parameter = "finger.section.radius"
+prior = { mean = 2e-3, sigma = 2e-5 }
+"""
+
+    mean: Component = Field(description="expected value in the unit of the unknown; a number, or one for each entry")
+    sigma: PositiveComponent = Field(
+        description="standard deviation in the unit of the unknown; a number, or one for each entry"
+    )
+
+
+class Unknown(Entry):
+    """A number of the scene that is to be found: a parameter, or an input."""
+
+    example: ClassVar[str] = """\
+[[unknowns]]
+parameter = "finger.material.youngs_modulus"
+lower = 1e9
+upper = 1e11
+prior = { mean = 2e9, sigma = 5e8 }
+
+[[unknowns]]
+parameter = ["arm.stiffness.bending_x", "arm.stiffness.bending_y"]
+
+[[unknowns]]
+input = "push.force"
+per_row = true
+"""
+
+    parameter: TiedNames | None = Field(
+        None,
+        description="the number's name as `parameters` spells it; it need not be listed there; or a list of names, "
+        "whose numbers keep the ratios that they have in the scene: those of the first are found; or input",
+    )
+    input: str | None = Field(None, description="'load.field' of the input, or of a part such as 'push.force.z'")
+    per_row: bool = Field(
+        False,
+        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds; an "
+        "estimate asks for a prior where not",
+    )
+    lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
+    upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")
+    prior: Prior | None = Field(None, description="what is known beforehand, in its unit")
+
+    @property
+    def name(self) -> str:
+        """As the scene spells it."""
+        if self.parameter is not None:
+            return names_in(self.parameter)[0]
+        return str(self.input)
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A parameter or an input; bounds in their order."""
+        if "parameter" in given and "input" in given:
+            yield Fault(("input",), "stands beside parameter", "give one of the two")
+        elif "parameter" not in given and "input" not in given:
+            yield Fault(("parameter",), "missing", "name a parameter or an input")
+        elif given.get("per_row") is True and "parameter" in given and not ("lower" in given and "upper" in given):
+            problem = "asks for a parameter of each row, of which lower or upper is missing"
+            yield Fault(("per_row",), problem, "say between which values it may be; an estimate begins there")
+        lower = numbers_of(given.get("lower"))
+        upper = numbers_of(given.get("upper"))
+        count = max(len(lower), len(upper))
+        if min(len(lower), len(upper)) > 1 and len(lower) != len(upper):
+            yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
+            return
+        lowest = lower * count if len(lower) == 1 else lower
+        highest = upper * count if len(upper) == 1 else upper
+        if any(low >= high for low, high in zip(lowest, highest, strict=False)):
+            yield Fault(("upper",), "must be above lower")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """The input exists, and no column sets it."""
+        name = given.get("input")
+        if not isinstance(name, str):
+            return
+        path: Path = ("input",)
+        for fault in input_part_faults(name, scene):
+            yield fault.below(path)
+        for i, measurement in scene.tables("measurements"):
+            inputs = measurement.get("inputs")
+            if not isinstance(inputs, Mapping):
+                continue
+            for measured in inputs:
+                if isinstance(measured, str) and overlap(name, measured):
+                    problem = f"measurements[{i}] sets {shown(measured)}"
+                    yield Fault(path, problem, "what is unknown has no column: leave it out there, or here")
+                    return
+        over_time = any("time" in measurement for _, measurement in scene.tables("measurements"))
+        mover = table_that_moves(name, scene)
+        if over_time and mover is not None:
+            problem = f"motions[{mover}] has its values over time"
+            yield Fault(path, problem, "leave it out, or move it by a wave")
+
+
+class IdentificationSettings(Record):
+    """How `cosserat identify` looks for the unknowns; all other commands leave it aside."""
+
+    example: ClassVar[str] = """\
+[identification]
+loss = "huber"
+starts = 8
+"""
+
+    loss: Literal["squares", "huber", "cauchy"] = Field(
+        "squares",
+        description="what a residual costs: its square, or less where it is large, so that outliers weigh less",
+    )
+    loss_width: Positive = Field(
+        2.0, description="residual, in standard deviations, from which on 'huber' and 'cauchy' cost less, without unit"
+    )
+    noise: Literal["stated", "residual"] = Field(
+        "stated",
+        description="whether intervals follow from sigma as stated, or from sigma scaled so that the residuals fit it",
+    )
+    failures: Literal["leave_out", "stop"] = Field(
+        "leave_out", description="what becomes of cases without an equilibrium: they are left out, or all stops"
+    )
+    hold_out: Annotated[Number, Field(ge=0, lt=1)] = Field(
+        0.0, description="share of the cases that is not fitted but predicted, without unit"
+    )
+    starts: Annotated[Whole, Field(ge=1, le=10_000)] = Field(
+        1, description="places between the bounds, or from the priors, from which the search begins"
+    )

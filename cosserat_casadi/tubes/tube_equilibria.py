@@ -1,0 +1,356 @@
+"""All equilibria of concentric tubes at given inputs.
+
+The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. There remain the
+n − 1 angles between the tips, on a torus, which the robot carries to the n − 1 angles between the drives. This map has
+the degree one, that of tubes that do not twist: at all inputs the signs of its determinant add up to one over
+all equilibria. A drive that is turned once round is where it was. So equilibria that are twisted by a full turn more
+count too: each point of the torus belongs to one of them.
+
+Of two tubes the map is a function of one angle, whose rises and falls are told apart by an adaptive scan. Of more tubes
+Newton's method starts from the points of finer and finer grids until a grid finds nothing new and the signs add up.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_model import TubeModel
+from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
+from cosserat_casadi.tubes.tube_solve import MOST_STEPS, judged, loaded_from, solution_near, solve_tubes
+
+MOST_TUBES = 4
+"""Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
+
+PAIR = 2
+
+TURN = 2 * np.pi
+
+FIRST_ANGLE = 0.1234
+"""Where scans and grids begin, rad: no angle at which symmetric robots have an equilibrium."""
+
+FIRST_INTERVALS = 48
+"""Intervals of a turn that the scan of two tubes begins with."""
+
+AGREES = 0.01
+"""Angle, rad, by which the cubic through the ends of an interval may miss the drives in its middle."""
+
+MOST_EVALUATIONS = 20_000
+"""Angles that the scan of two tubes looks at before it gives up."""
+
+GRIDS = {3: (8, 16, 32), 4: (6, 9, 12)}
+"""Points along each angle of the grids of starts, by the number of tubes."""
+
+SAME = 1e-6
+"""Angles at the tips, rad, that differ by less are those of one equilibrium."""
+
+
+@dataclass(frozen=True)
+class TubeEquilibria:
+    """The equilibria of concentric tubes at the same inputs.
+
+    Attributes:
+        robot: the tubes.
+        solutions: the equilibria, by their energy, the least first.
+        complete: whether the search ended as it should: it settled before its work ran out, all equilibria are within
+            tolerance, and the signs of their determinants add up to one. Two of opposite signs could still be missing.
+            Never so under loads, where the search starts from the equilibria without loads and follows them.
+    """
+
+    robot: Robot
+    solutions: tuple[TubeSolution, ...]
+    complete: bool
+
+    @property
+    def stable(self) -> tuple[TubeSolution, ...]:
+        """The stable equilibria."""
+        return tuple(solution for solution in self.solutions if solution.stable)
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        if self.robot.loads and self.solutions:
+            return "Equilibria were found by following those without loads while the loads grow: others may be missing."
+        if self.complete:
+            return (
+                "The search for all equilibria of these inputs has settled, and the signs of their determinants add up "
+                "to one: no single one is missing."
+            )
+        if not self.solutions:
+            return "No equilibrium was found, though there is one: the search ended before it settled."
+        return (
+            "Equilibria were found, but others may be missing: the search ended before it settled with determinants "
+            "whose signs add up to one, within tolerance."
+        )
+
+
+def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria:
+    """Find every equilibrium of concentric tubes.
+
+    Args:
+        scene: a scene with tubes.
+        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
+            or all of them, rotation and translation of each tube, rad and m, and the loads.
+
+    Raises:
+        SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.
+    """
+    robot = robot_of(scene)
+    at = robot.packed(values)
+    if robot.size > MOST_TUBES:
+        problem = f"all equilibria are looked for of at most {MOST_TUBES} tubes, the scene has {robot.size}"
+        raise SceneError(Problem("tubes", problem, "solve it without --all"))
+    # As many steps as one of them needs are a beginning for the others.
+    model = solve_tubes(scene, at).model
+    if isinstance(model, LoadedTubeModel):
+        return _under_loads(model, at)
+    return _without_loads(TubeModel(robot, model.steps), at)
+
+
+def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
+    """The equilibrium of :func:`solve_tubes`; the stable one of least energy where it is not stable and there is one.
+
+    Args:
+        scene: a scene with tubes.
+        values: as in :func:`solve_tubes`.
+
+    Raises:
+        SceneError: as :func:`all_equilibria`, and where the loads have no energy.
+    """
+    if not robot_of(scene).has_energy:
+        problem = "the loads have no energy, which would tell what is stable"
+        raise SceneError(Problem("--stable", problem, "leave it out"))
+    solution = solve_tubes(scene, values)
+    if solution.stable:
+        return solution
+    return next(iter(all_equilibria(scene, values).stable), solution)
+
+
+def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
+    """The equilibria that those without loads lead to."""
+    robot = model.robot
+    without = _without_loads(model.unloaded, at)
+    while True:
+        finer = LoadedTubeModel(robot, 2 * model.steps)
+        reached = [loaded_from(model, at, start) for start in without.solutions]
+        solutions: list[TubeSolution] = []
+        for solution in reached:
+            if solution.converged and all(_differ(solution, known) for known in solutions):
+                solutions.append(_refined(model, finer, at, solution.x))
+        if finer.steps >= MOST_STEPS or all(solution.converged for solution in solutions):
+            by_energy = sorted(solutions, key=lambda solution: solution.energy)
+            return TubeEquilibria(robot, tuple(by_energy), complete=False)
+        model = finer
+
+
+def _differ(one: TubeSolution, other: TubeSolution) -> bool:
+    """Whether two equilibria under loads differ; a quaternion and its opposite are one frame."""
+    size = one.robot.size
+    sign = np.sign(one.x[size:] @ other.x[size:])
+    change = np.concatenate([one.angles - other.angles, one.x[size:] - sign * other.x[size:]])
+    return bool(np.abs(change).max() > SAME)
+
+
+def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
+    """Every equilibrium of tubes without loads, looked for with a model to begin with."""
+    robot = model.robot
+    while True:
+        search = _searched(model, at)
+        finer = TubeModel(robot, 2 * model.steps)
+        solutions = [_refined(model, finer, at, x) for x in search.angles]
+        # More steps would find the same ones again, and no others.
+        resolved = all(solution.converged for solution in solutions)
+        if resolved or finer.steps >= MOST_STEPS:
+            complete = search.settled and resolved and _is_whole(solutions)
+            by_energy = sorted(solutions, key=lambda solution: solution.energy)
+            return TubeEquilibria(robot, tuple(by_energy), complete)
+        model = finer
+
+
+def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: FloatArray) -> TubeSolution:
+    """An equilibrium of the finer model near one of a model, with the estimate of its error."""
+    rough = solution_near(model, inputs, x)
+    fine = solution_near(finer, inputs, x)
+    error = None
+    if rough.converged and fine.converged:
+        error = tip_error(rough, fine)
+    return judged(fine, error)
+
+
+def _is_whole(solutions: list[TubeSolution]) -> bool:
+    """Whether equilibria differ, and have the signs that all equilibria have."""
+    for one, other in itertools.combinations(solutions, 2):
+        if np.abs(one.x - other.x).max() < SAME:
+            return False
+    return _degree(solution.stability.determinant for solution in solutions) == 1
+
+
+def _degree(determinants: Iterator[float]) -> int:
+    return int(sum(np.sign(determinant) for determinant in determinants))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The end of a search of a model.
+
+    Attributes:
+        angles: at the tips of each equilibrium, shape (n,), rad.
+        settled: whether it ended by itself, and not because its work ran out.
+    """
+
+    angles: list[FloatArray]
+    settled: bool
+
+
+def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
+    """Look for every equilibrium of a model."""
+    if model.size == 1:
+        # One tube does not twist.
+        return _Search([model.robot.rotations(inputs).copy()], settled=True)
+    if model.size == PAIR:
+        return _of_two_tubes(model, inputs)
+    return _of_more_tubes(model, inputs)
+
+
+# Two tubes
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """Reading of the scan of two tubes at one angle between the tips.
+
+    Attributes:
+        angle: between the tips, rad.
+        missed: by how much the angle between the drives differs from that of the inputs, rad.
+        slope: of that over the angle.
+    """
+
+    angle: float
+    missed: float
+    slope: float
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two tubes at given inputs."""
+
+    model: TubeModel
+    inputs: FloatArray
+
+    def read(self, angle: float) -> _Reading:
+        """The drives where the tips are at an angle."""
+        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs)
+        missed = float(residual[1] - residual[0])
+        slope = float(jacobian[1, 1] - jacobian[0, 1])
+        return _Reading(angle, missed, slope)
+
+    def tips(self, angle: float) -> FloatArray:
+        """Angles at both tips, turned together until the first drive is met."""
+        together = np.array([0.0, angle])
+        residual = np.ravel(self.model.residual(together, self.inputs).full())
+        return np.asarray(together - residual[0])
+
+
+def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
+    pair = _Pair(model, inputs)
+    readings, settled = _readings(pair)
+    found: list[FloatArray] = []
+    for before, after in itertools.pairwise(readings):
+        found += [pair.tips(angle) for angle in _roots(pair, before, after)]
+    return _Search(found, settled)
+
+
+def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
+    """Readings over one turn of the tips, so close that a cubic between neighbours predicts the readings between.
+
+    Returns:
+        The readings, and whether they are as close as that everywhere.
+    """
+    angles = FIRST_ANGLE + np.linspace(0.0, TURN, FIRST_INTERVALS + 1)
+    first, *later = [pair.read(float(angle)) for angle in angles]
+    kept = [first]
+    pending = list(reversed(later))
+    evaluations = len(angles)
+    while pending:
+        before = kept[-1]
+        after = pending[-1]
+        middle = pair.read((before.angle + after.angle) / 2)
+        evaluations += 1
+        if _foreseen(before, middle, after) or evaluations > MOST_EVALUATIONS:
+            kept += [middle, pending.pop()]
+        else:
+            pending.append(middle)
+    return kept, evaluations <= MOST_EVALUATIONS
+
+
+def _foreseen(before: _Reading, middle: _Reading, after: _Reading) -> bool:
+    """Whether the cubic through two readings predicts the reading in the middle."""
+    width = after.angle - before.angle
+    missed = (before.missed + after.missed) / 2 + width * (before.slope - after.slope) / 8
+    change = 1.5 * (after.missed - before.missed) - width * (before.slope + after.slope) / 4
+    return abs(missed - middle.missed) <= AGREES and abs(change - width * middle.slope) <= AGREES
+
+
+def _roots(pair: _Pair, before: _Reading, after: _Reading) -> list[float]:
+    """Angles between two readings at which the drives are met, up to full turns."""
+    ends = [before, after]
+    if (before.slope > 0.0) != (after.slope > 0.0):
+        # It rises and falls in between: each of the two parts goes one way.
+        angle = bracketed_zero(
+            lambda angle: pair.read(angle).slope, (before.angle, before.slope), (after.angle, after.slope)
+        )
+        ends = [before, pair.read(angle), after]
+    roots = []
+    for start, end in itertools.pairwise(ends):
+        low, high = sorted((start.missed / TURN, end.missed / TURN))
+        for turns in range(int(np.floor(low)) + 1, int(np.floor(high)) + 1):
+            root = _crossing(pair, start, end, TURN * turns)
+            # A drive that is off by full turns is met by tips that are off by as many.
+            roots.append(root - TURN * turns)
+    return roots
+
+
+def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> float:
+    """The angle at which the drives are off by a level, between readings on both sides of it."""
+
+    def above(angle: float) -> float:
+        return pair.read(angle).missed - level
+
+    return bracketed_zero(above, (start.angle, start.missed - level), (end.angle, end.missed - level))
+
+
+# More tubes
+
+
+def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
+    found: list[FloatArray] = []
+    for points in GRIDS[model.size]:
+        before = len(found)
+        for start in _starts(model, inputs, points):
+            end = solution_near(model, inputs, start)
+            if end.converged and all(np.abs(end.x - known).max() > SAME for known in found):
+                found.append(end.x)
+        determinants = (float(np.linalg.det(model.jacobian(x, inputs)[0].full())) for x in found)
+        if len(found) == before and _degree(determinants) == 1:
+            return _Search(found, settled=True)
+    return _Search(found, settled=False)
+
+
+def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
+    """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
+    angles = FIRST_ANGLE + TURN / points * np.arange(points)
+    for between in itertools.product(angles, repeat=model.size - 1):
+        tips = np.array([0.0, *between])
+        missed = np.ravel(model.residual(tips, inputs).full())
+        tips -= missed[0]
+        yield tips - TURN * np.round((missed - missed[0]) / TURN)

@@ -1,0 +1,468 @@
+"""Functions that models of concentric tubes share: what follows from the state along the robot.
+
+A model (`tubes.tube_model`, `tubes.loaded_model`) says which numbers at the tip are unknown, and integrates the state
+from there to the base plate.
+"""
+
+from __future__ import annotations
+
+import itertools
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Self
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.pose import POSE_SIZE, Pose
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
+from cosserat_casadi.tubes.march import AnyState, March
+from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.variations import TipVariations
+
+NEWTON_TOLERANCE = 1e-12
+"""Angle missed, rad, at which the steps of `equilibrium` end."""
+
+NEWTON_STEPS = 30
+"""Most steps of `equilibrium`."""
+
+
+PATH = ("x", "inputs", "load_factor")
+"""Arguments of the functions on the way from straight tubes, load factor 0, to those of the scene, 1."""
+
+
+class TubeFunctions(ABC):
+    """A robot of concentric tubes with a number of steps.
+
+    Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
+    rotation and the translation of each tube, then the loads. Those of a path have the names and arguments that they
+    have in :class:`cosserat_casadi.Model`; the load factor multiplies all curvatures, so that 0 is straight tubes.
+
+    Attributes:
+        robot: the tubes.
+        steps: steps of each of the pieces that the robot has between places where a tube begins to bend or ends, 2 n,
+            and where forces act beside the tips.
+    """
+
+    def __init__(self, robot: Robot, steps: int) -> None:
+        self.robot = robot
+        self.steps = steps
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Robot, int]]:
+        """How pickle and copy make the model anew: its functions are written again when they are asked for."""
+        return type(self), (self.robot, self.steps)
+
+    @property
+    def size(self) -> int:
+        """Number of tubes."""
+        return self.robot.size
+
+    @property
+    def scene(self) -> Scene:
+        """The scene this is a model of."""
+        return self.robot.scene
+
+    @property
+    def inputs(self) -> InputLayout:
+        """Names, order and default values of the inputs."""
+        return self.robot.layout
+
+    # What a model says
+
+    @property
+    @abstractmethod
+    def unknowns(self) -> int:
+        """Number of unknowns."""
+
+    @abstractmethod
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
+        """How the configuration changes along the robot; where loads act, all of them have an energy."""
+
+    @property
+    @abstractmethod
+    def _residual(self) -> Matrix:
+        """Residual, zero in equilibrium, with as many entries as there are unknowns."""
+
+    @property
+    def _jacobian(self) -> Matrix:
+        """Derivative of the residual with x, square."""
+        x, _, _ = self._arguments
+        return ca.jacobian(self._residual, x)
+
+    @property
+    @abstractmethod
+    def _whole(self) -> March:
+        """States with the frame of the centre line and the energy."""
+
+    @abstractmethod
+    def _state(self, stacked: Matrix) -> AnyState:
+        """The state of stacked entries of `_whole`."""
+
+    @property
+    @abstractmethod
+    def _staged(self) -> Staged:
+        """A step of such states, in its stages."""
+
+    @property
+    @abstractmethod
+    def _begun(self) -> Matrix:
+        """The stacked state at the tip of the robot, with the carried numbers behind it: none yet."""
+
+    @abstractmethod
+    def _passing(self, piece: int, stacked: Matrix) -> Matrix:
+        """The stacked state and the carried numbers behind it, beyond the start of a piece, where tubes may end."""
+
+    @abstractmethod
+    def _missed(self, plate: Matrix) -> Matrix:
+        """The residual, from the stacked state at the plate."""
+
+    # What is asked of the model
+
+    @cached_property
+    def residual(self) -> ca.Function:
+        """(x, inputs) ↦ residual, zero in equilibrium: see the model; angles in rad."""
+        return self._function("residual", {"residual": self._residual})
+
+    @cached_property
+    def jacobian(self) -> ca.Function:
+        """(x, inputs) ↦ derivative of the residual with x, square, and the residual."""
+        return self._function("jacobian", {"jacobian": self._jacobian, "residual": self._residual})
+
+    @cached_property
+    def input_jacobian(self) -> ca.Function:
+        """(x, inputs) ↦ derivative of the residual with the inputs, a column each."""
+        _, inputs, _ = self._arguments
+        return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
+
+    @cached_property
+    def path_residual(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ residual of tubes whose curvatures are those of the scene times the factor."""
+        return ca.Function("path_residual", [*self._arguments], [self._residual], [*PATH], ["residual"])
+
+    @cached_property
+    def path_jacobian(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ derivative of that residual with x."""
+        return ca.Function("path_jacobian", [*self._arguments], [self._jacobian], [*PATH], ["jacobian"])
+
+    @cached_property
+    def path_rate(self) -> ca.Function:
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of that residual at fixed x."""
+        _, inputs, load_factor = self._arguments
+        rates = ca.MX.sym("inputs_rate", inputs.size1()), ca.MX.sym("load_factor_rate")
+        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates))
+        names = [*PATH, "inputs_rate", "load_factor_rate"]
+        return ca.Function("path_rate", [*self._arguments, *rates], [rate], names, ["residual_rate"])
+
+    @property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a step: angles and numbers of a quaternion alike."""
+        return np.ones(self.unknowns)
+
+    @property
+    def is_assembly(self) -> bool:
+        """Whether the Jacobian is sparse: it never is."""
+        return False
+
+    @cached_property
+    def equilibrium(self) -> ca.Function:
+        """(start, inputs) ↦ unknowns, by Newton's method, and the sum of angles missed, 1×1, rad.
+
+        It is an expression like any other: CasADi differentiates it exactly, by the implicit function theorem, and
+        writes it in C. Full steps from the start, at most NEWTON_STEPS. Where the angle missed is not small, or no
+        number, nothing was found: whoever calls it has to look.
+        """
+        x, inputs, _ = self._arguments
+        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs)])
+        options = {"abstol": NEWTON_TOLERANCE, "max_iter": NEWTON_STEPS}
+        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, inputs)
+        return ca.Function(
+            "equilibrium",
+            [x, inputs],
+            [found, ca.sum1(ca.fabs(missed(found, inputs)))],
+            ["start", "inputs"],
+            ["x", "missed"],
+        )
+
+    @cached_property
+    def energy(self) -> ca.Function:
+        """(x, inputs) ↦ elastic energy of what stands out, and of torsion in the housing, J.
+
+        Less the work of the loads, where all of them have an energy: see :attr:`Robot.has_energy`.
+        """
+        last = self._state(self._whole.ends[-1])
+        twisting = ca.sum1(last.torques**2 * self._compliance) / 2
+        # Integrated towards the base, lengths are negative.
+        return self._function("energy", {"energy": twisting - last.energy})
+
+    @cached_property
+    def tips(self) -> ca.Function:
+        """(x, inputs) ↦ positions, 3×n, m, and quaternions, 4×n, of the tubes' tips, in base axes."""
+        position = ca.horzcat(*[tip.position for tip in self._tips])
+        quaternion = ca.horzcat(*[tip.quaternion for tip in self._tips])
+        return self._function("tips", {"position": position, "quaternion": quaternion})
+
+    @cached_property
+    def tip_jacobian(self) -> ca.Function:
+        """(x, inputs) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
+
+        Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
+        follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
+        """
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments[:2])
+        following = -ca.solve(jacobian, by_inputs)
+        changes = poses_by_inputs + poses_by_x @ following
+        rows: list[Matrix] = []
+        for pose, change in zip(ca.horzsplit(poses), ca.vertsplit(changes, POSE_SIZE), strict=True):
+            back = quaternion_conjugate(pose[3:])
+            # δQ = ½ (0, δθ) ⊗ Q.
+            turns = [2 * quaternion_product(column, back)[1:] for column in ca.horzsplit(change[3:, :])]
+            rows += [ca.horzcat(*turns), change[:3, :]]
+        return self._function("tip_jacobian", {"tip_jacobian": ca.vertcat(*rows)})
+
+    @cached_property
+    def sensitivity(self) -> ca.Function:
+        """(x, inputs) ↦ derivatives of residual and tips, from one integration with all changes.
+
+        Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
+        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
+        """
+        x, inputs, _ = self._arguments
+        directions = Directions(self.robot, self.unknowns)
+        ends = self._changing(directions)
+        plate, plate_changes = ends[-1]
+        at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
+        _, missed = at_plate(plate, x, inputs, plate_changes)
+        # A rotation turns its drive, and changes nothing else.
+        by_rotations = ca.vertcat(-ca.DM.eye(self.size), ca.DM(self.unknowns - self.size, self.size))
+        poses: list[Matrix] = []
+        changes: list[Matrix] = []
+        for index, rank in enumerate(self._ranks):
+            reached = _selected(rank, [state for state, _ in ends[:-1]])
+            reached_changes = _selected(rank, [change for _, change in ends[:-1]])
+            of_tip = with_changes(self._of_tip(index), directions, {2: directions.of_x})
+            pose, moved = of_tip(plate, reached, x, plate_changes, reached_changes)
+            poses.append(pose)
+            changes.append(moved)
+        moved = ca.vertcat(*changes)
+        outputs = {
+            "jacobian": missed[:, : self.unknowns],
+            "by_inputs": directions.by_inputs(missed, by_rotations),
+            "poses": ca.horzcat(*poses),
+            "poses_by_x": moved[:, : self.unknowns],
+            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.size)),
+        }
+        return self._function("sensitivity", outputs)
+
+    def _changing(self, directions: Directions) -> list[tuple[Matrix, Matrix]]:
+        """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
+        x, inputs, _ = self._arguments
+        staged = self._staged
+        width = staged.width_with_carried
+        begun = ca.Function("begun", [x, inputs], [self._begun])
+        state, changes = with_changes(begun, directions, {0: directions.of_x, 1: directions.of_inputs})(x, inputs)
+        ends = [(state, changes)]
+        of_pieces = ca.Function("lengths", [inputs], [ca.vertcat(*self._piece_lengths) / self.steps])
+        lengths, length_changes = with_changes(of_pieces, directions, {0: directions.of_inputs})(inputs)
+        length_changes = length_changes[:, directions.translations]
+        steps = changing_step(staged, directions).mapaccum("changing_steps", self.steps)
+        for piece, sections in enumerate(ca.horzsplit(self._sections, self.steps)):
+            if staged.carried:
+                begin = ca.MX.sym("begin", width)
+                passing = ca.Function("passing", [begin, inputs], [self._passing(piece, begin)])
+                passed = with_changes(passing, directions, {1: directions.of_inputs})
+                state, changes = passed(state, inputs, changes)
+            along = ca.vertcat(lengths[piece], length_changes[piece, :].T)
+            stacked = steps(ca.vertcat(state, ca.vec(changes)), ca.repmat(along, 1, self.steps), sections)[:, -1]
+            state, changes = stacked[:width], ca.reshape(stacked[width:], width, -1)
+            ends.append((state, changes))
+        return [(state[: staged.width], changes[: staged.width, :]) for state, changes in ends]
+
+    @property
+    def _of_plate(self) -> ca.Function:
+        """(state at the plate, x, inputs) ↦ residual."""
+        x, inputs, _ = self._arguments
+        plate = ca.MX.sym("plate", self._staged.width)
+        return ca.Function("of_plate", [plate, x, inputs], [self._missed(plate)])
+
+    def _of_tip(self, index: int) -> ca.Function:
+        """(state at the plate, state at the tip of a tube, x) ↦ its pose in base axes, position and quaternion."""
+        x, _, _ = self._arguments
+        plate, reached = (ca.MX.sym(name, self._staged.width) for name in ("plate", "reached"))
+        pose = self._tip_pose(index, plate, reached)
+        return ca.Function("of_tip", [plate, reached, x], [ca.vertcat(pose.position, pose.quaternion)])
+
+    @cached_property
+    def stations(self) -> ca.Function:
+        """(x, inputs) ↦ the robot at all ends of steps from the plate to its tip, a column each.
+
+        Distances from the plate along the centre line, 1×k, m; positions, 3×k, m, and quaternions, 4×k, of the frame
+        that does not turn about the centre line, in base axes; angles of the tubes against it, n×k, rad; torques in
+        the tubes, n×k, N m.
+        """
+        columns = [self._state(column) for column in reversed(ca.horzsplit(self._whole.stations))]
+        poses = [self._in_base(column.pose) for column in columns]
+        outputs = {
+            "distance": ca.horzcat(0, ca.cumsum(-_reversed(self._lengths), 1)),
+            "position": ca.horzcat(*[pose.position for pose in poses]),
+            "quaternion": ca.horzcat(*[pose.quaternion for pose in poses]),
+            "angles": ca.horzcat(*[column.angles for column in columns]),
+            "torques": ca.horzcat(*[column.torques for column in columns]),
+        }
+        return self._function("stations", outputs)
+
+    # Where it has which section
+
+    @cached_property
+    def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
+        """Unknowns, inputs and load factor, of which all functions are."""
+        return ca.MX.sym("x", self.unknowns), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
+
+    @cached_property
+    def _lengths(self) -> ca.MX:
+        """Lengths of all steps from the tip on, 1×(2 n steps), negative, m."""
+        return ca.horzcat(*[ca.repmat(length / self.steps, 1, self.steps) for length in self._piece_lengths])
+
+    @property
+    def _piece_lengths(self) -> list[ca.MX]:
+        """Lengths of the pieces from the tip on, negative, m."""
+        return [end - start for start, end in itertools.pairwise(self._places)]
+
+    @cached_property
+    def _sections(self) -> Matrix:
+        """Stacked section of every step, (2 n + 2)×(2 n steps)."""
+        sections = []
+        for start, end in itertools.pairwise(self._places):
+            sections.append(ca.repmat(self._section((start + end) / 2), 1, self.steps))
+        return ca.horzcat(*sections)
+
+    @cached_property
+    def _places(self) -> list[ca.MX]:
+        """Where tubes end and where they begin to bend, from the tip of the robot to the plate, then the plate.
+
+        The order is found as the function is evaluated: inputs may change it, and pieces between places that coincide,
+        or lie in the housing, have no length.
+        """
+        places = list(self._unsorted)
+        # Exchanging neighbours sorts whatever the values are, without a branch.
+        for passed in range(len(places)):
+            for index in range(len(places) - 1 - passed):
+                first, second = places[index], places[index + 1]
+                # Of places that coincide the first stays so, in derivatives too: those of fmax and fmin are of one.
+                exchanged = first < second
+                places[index] = ca.if_else(exchanged, second, first)
+                places[index + 1] = ca.if_else(exchanged, first, second)
+        return [*places, ca.MX(0.0)]
+
+    @property
+    def _unsorted(self) -> list[ca.MX]:
+        """Where tubes end and begin to bend, tube after tube, then what else divides the robot."""
+        return [*[place for ends in self._ends for place in ends], *self._loaded_places]
+
+    @property
+    def _loaded_places(self) -> list[ca.MX]:
+        """Where forces act beside the tips."""
+        return []
+
+    @cached_property
+    def _ends(self) -> list[tuple[ca.MX, ca.MX]]:
+        """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
+        _, inputs, _ = self._arguments
+        ends = []
+        for index in range(self.size):
+            tip = inputs[2 * index + 1]
+            straight = tip - self.robot.curved[index]
+            # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
+            bend = ca.if_else(straight > 0.0, straight, 0.0)
+            ends.append((tip, bend))
+        return ends
+
+    @cached_property
+    def _ranks(self) -> list[ca.MX]:
+        """Of every tube at which of the sorted places its tip is, 1×1."""
+        return [self._rank(2 * index) for index in range(self.size)]
+
+    def _rank(self, own: int) -> ca.MX:
+        """Index among the sorted places of one of `_unsorted`, 1×1; places that coincide have different indices."""
+        rank = ca.MX(0.0)
+        for number, place in enumerate(self._unsorted):
+            if number < own:
+                rank = rank + (place >= self._unsorted[own])
+            elif number > own:
+                rank = rank + (place > self._unsorted[own])
+        return rank
+
+    def _section(self, place: ca.MX) -> Matrix:
+        """Stacked section at a place: torsion, moments, bending and own energy of the tubes there, (2 n + 2)×1."""
+        robot = self.robot
+        _, _, load_factor = self._arguments
+        moments = []
+        bending: Matrix = ca.MX(0.0)
+        own: Matrix = ca.MX(0.0)
+        for index, (tip, bend) in enumerate(self._ends):
+            stiffness = float(robot.bending[index])
+            curvature = load_factor * float(robot.curvature[index])
+            is_here = ca.if_else(place < tip, 1.0, 0.0)
+            is_curved = is_here * ca.if_else(place > bend, 1.0, 0.0)
+            moments.append(is_curved * stiffness * curvature)
+            bending = bending + is_here * stiffness
+            own = own + is_curved * stiffness * curvature**2 / 2
+        # A piece without length may have no tube; dividing by its stiffness must do no harm.
+        stiffness_or_one = bending + ca.if_else(bending > 0.0, 0.0, 1.0)
+        return ca.vertcat(robot.torsion, *moments, stiffness_or_one, own)
+
+    # What follows from it
+
+    @property
+    def _compliance(self) -> ca.MX:
+        """Angle that a torque of one turns the drive end of every tube against the plate, n×1, rad/(N m)."""
+        _, inputs, _ = self._arguments
+        inside = ca.DM(self.robot.length) - self.robot.translations(inputs)
+        return inside / ca.DM(self.robot.torsion)
+
+    def _in_base(self, pose: Pose) -> Pose:
+        """A pose in base axes, where it is given in those of the tip's frame."""
+        return self._state(self._whole.ends[-1]).pose.seen(pose)
+
+    def _tip_pose(self, index: int, plate: Matrix, reached: Matrix) -> Pose:
+        """Pose of a tube's tip in base axes; its x axis is the direction that the tube would bend towards.
+
+        Args:
+            index: of the tube.
+            plate: stacked state at the plate.
+            reached: stacked state at the tip of the tube.
+        """
+        x, _, _ = self._arguments
+        half = x[index] / 2
+        turn = Pose(ca.DM.zeros(3), ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
+        return self._state(plate).pose.seen(self._state(reached).pose).then(turn)
+
+    @cached_property
+    def _tips(self) -> list[Pose]:
+        """Pose of every tube's tip in base axes."""
+        ends = self._whole.ends
+        return [self._tip_pose(index, ends[-1], _selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
+
+    def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
+        """A function of unknowns and inputs, of tubes with the curvatures of the scene."""
+        x, inputs, load_factor = self._arguments
+        results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
+        return ca.Function(name, [x, inputs], results, ["x", "inputs"], list(outputs))
+
+
+def _reversed(row: ca.MX) -> ca.MX:
+    """A row from its end to its start."""
+    return ca.horzcat(*reversed(ca.horzsplit(row)))
+
+
+def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
+    """The column of a number that is known as the function is evaluated."""
+    chosen: Matrix = ca.DM(0.0)
+    for number, column in enumerate(columns):
+        chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)
+    return chosen

@@ -1,0 +1,108 @@
+"""The model of concentric tubes without loads: named CasADi functions of the angles at their tips and of the inputs.
+
+Every tube's tip bears no torque. So the angles there, the unknowns x, determine the whole robot: it is integrated from
+the tips to the base plate, and through the housing to the drives, where the angles must be the rotations of the inputs.
+That is one small equation a tube. See docs/tubes.md.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.tubes.march import March
+from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.tube_flow import START, FlowState, twist_step, whole_stages, whole_step
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.variations import TipVariations, of_angles
+
+
+class TubeModel(TubeFunctions):
+    """A robot of concentric tubes without loads; unknown are the angles x at the tips of the tubes (n)."""
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns: one a tube."""
+        return self.size
+
+    def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
+        """How the angles and torques change along the robot."""
+        along, of_steps = self.variations(x, inputs)
+        return of_angles(self.size, along.full(), of_steps.full())
+
+    @cached_property
+    def variations(self) -> ca.Function:
+        """(x, inputs) ↦ how the angles and torques at all ends of steps change.
+
+        With the angles at the tips, (2 n k)×n, column after column of the stations from the tip to the plate; and, for
+        each step, the angles at its end with the torques at its start, n×(n (k − 1)).
+        """
+        size = self.size
+        x, _, _ = self._arguments
+        stations = self._twist.stations
+        angles = ca.MX.sym("angles", size)
+        torques = ca.MX.sym("torques", size)
+        length = ca.MX.sym("length")
+        section = ca.MX.sym("section", 2 * size + 2)
+        after = twist_step(size)(ca.vertcat(angles, torques), length, section)
+        from_torques = ca.jacobian(after[:size], torques)
+        one_step = ca.Function("one_step", [angles, torques, length, section], [from_torques])
+        every_step = one_step.map(self._lengths.size2())
+        outputs = {
+            "along": ca.jacobian(ca.vec(stations), x),
+            "of_steps": every_step(stations[:size, :-1], stations[size:, :-1], self._lengths, self._sections),
+        }
+        return self._function("variations", outputs)
+
+    # How it is integrated
+
+    @cached_property
+    def _twist(self) -> March:
+        """Angles and torques alone: what decides on equilibrium and stability."""
+        x, _, _ = self._arguments
+        return self._marched(twist_step(self.size), ca.vertcat(x, ca.DM.zeros(self.size)))
+
+    @cached_property
+    def _whole(self) -> March:
+        """The same with the frame of the centre line and the energy."""
+        return self._marched(whole_step(self.size), self._begun)
+
+    def _marched(self, step: ca.Function, state: Matrix) -> March:
+        """Take the steps of all pieces from the tip on."""
+        steps = step.mapaccum("steps", self.steps)
+        lengths = ca.horzsplit(self._lengths, self.steps)
+        sections = ca.horzsplit(self._sections, self.steps)
+        ends: list[Matrix] = [state]
+        stations: list[Matrix] = [state]
+        for length, section in zip(lengths, sections, strict=True):
+            passed = steps(ends[-1], length, section)
+            ends.append(passed[:, -1])
+            stations.append(passed)
+        return March(ends, ca.horzcat(*stations))
+
+    @cached_property
+    def _residual(self) -> Matrix:
+        """Angles at the drives less the rotations of the inputs, n×1, rad."""
+        return self._missed(self._twist.ends[-1])
+
+    def _missed(self, plate: Matrix) -> Matrix:
+        _, inputs, _ = self._arguments
+        angles, torques, _ = ca.vertsplit(plate, [0, self.size, 2 * self.size, plate.size1()])
+        return angles - self._compliance * torques - self.robot.rotations(inputs)
+
+    def _state(self, stacked: Matrix) -> FlowState:
+        return FlowState.of(stacked)
+
+    @property
+    def _staged(self) -> Staged:
+        return whole_stages(self.size)
+
+    @property
+    def _begun(self) -> Matrix:
+        x, _, _ = self._arguments
+        return ca.vertcat(x, ca.DM.zeros(self.size), START)
+
+    def _passing(self, piece: int, stacked: Matrix) -> Matrix:
+        return stacked

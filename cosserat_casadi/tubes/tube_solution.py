@@ -1,0 +1,158 @@
+"""An equilibrium of concentric tubes, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.pose import NumericPose
+from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.spelling import closest
+from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_stability import TubeStability, stability_of
+
+
+@dataclass(frozen=True)
+class TubeShape:
+    """A robot at k places from the plate to its tip.
+
+    Attributes:
+        distance: from the plate along the centre line, shape (k,), m.
+        position: in world axes, shape (k, 3), m.
+        quaternion: of the frame that follows the centre line without turning about it, w x y z, shape (k, 4).
+        angles: of the tubes against that frame, shape (k, n), rad; beyond its tip a tube keeps the angle of the tip.
+        torques: in the tubes, shape (k, n), N m.
+    """
+
+    distance: FloatArray
+    position: FloatArray
+    quaternion: FloatArray
+    angles: FloatArray
+    torques: FloatArray
+
+
+@dataclass(frozen=True)
+class TubeSolution:
+    """An equilibrium of concentric tubes.
+
+    Attributes:
+        model: the robot with its steps.
+        inputs: rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,).
+        x: angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
+            quaternion in world axes behind them, shape (n + 4,).
+        outcome: how the solve ended.
+        residual_norm: largest angle that the tubes miss their drives by, rad.
+        error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
+            it was not estimated.
+        iterations: Newton steps of the search with this model; 0 at points of a path.
+    """
+
+    model: TubeFunctions
+    inputs: FloatArray
+    x: FloatArray
+    outcome: Outcome
+    residual_norm: float
+    error_estimate: float | None
+    iterations: int = 0
+
+    @property
+    def robot(self) -> Robot:
+        """The tubes."""
+        return self.model.robot
+
+    @property
+    def converged(self) -> bool:
+        """Whether this is an equilibrium within tolerance."""
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def within_tolerance(self) -> bool:
+        """Whether the estimated error is within the scene's tolerance."""
+        return self.error_estimate is not None and self.error_estimate <= self.robot.tolerance
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        return self.outcome.value
+
+    @cached_property
+    def stability(self) -> TubeStability:
+        """Stability from the second variation of the energy."""
+        return stability_of(self.model, self.x, self.inputs)
+
+    @property
+    def angles(self) -> FloatArray:
+        """Angles at the tips against the frame of the centre line, shape (n,), rad."""
+        return self.x[: self.robot.size]
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the energy rises in every direction; None where the loads have no energy."""
+        return self.stability.stable
+
+    @cached_property
+    def energy(self) -> float:
+        """Elastic energy of what stands out of the plate, and of torsion in the housing, less the work of the loads, J.
+
+        The work counts where all loads have an energy.
+        """
+        return float(self.model.energy(self.x, self.inputs))
+
+    @cached_property
+    def shape(self) -> TubeShape:
+        """The robot at the ends of all steps."""
+        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs)
+        return TubeShape(
+            distance=np.ravel(distance.full()),
+            position=position.full().T,
+            quaternion=quaternion.full().T,
+            angles=angles.full().T,
+            torques=torques.full().T,
+        )
+
+    @cached_property
+    def tips(self) -> dict[str, NumericPose]:
+        """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
+        position, quaternion = self.model.tips(self.x, self.inputs)
+        return {
+            name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
+            for index, name in enumerate(self.robot.names)
+        }
+
+    def tip(self, tube: str | None = None) -> NumericPose:
+        """Pose of a tube's tip in the world; without a name that of the tube that reaches farthest.
+
+        Raises:
+            SceneError: there is no such tube.
+        """
+        name = tube
+        if name is None:
+            name = self.robot.names[int(np.argmax(self.robot.translations(self.inputs)))]
+        if name not in self.tips:
+            raise SceneError(Problem(name, "is no tube", closest(name, self.tips)))
+        return self.tips[name]
+
+    @cached_property
+    def tip_jacobian(self) -> FloatArray:
+        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
+        jacobian = self.model.tip_jacobian(self.x, self.inputs).full()
+        return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
+
+
+def tip_error(found: TubeSolution, finer: TubeSolution) -> float:
+    """Largest pose error of the tips of one solution beside a finer one, distances relative to the length outside."""
+    length = float(finer.robot.translations(finer.inputs).max())
+    rough = found.tips.values()
+    exact = finer.tips.values()
+    displacements = np.array([tip.position for tip in rough]) - [tip.position for tip in exact]
+    turns = rotation_vectors(
+        np.array([tip.quaternion for tip in exact]),
+        np.array([tip.quaternion for tip in rough]),
+    )
+    return change_size(np.concatenate([displacements / length, turns]))

@@ -1,0 +1,189 @@
+"""Solve concentric tubes: one equilibrium at given inputs, with as many steps as its tolerance needs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.load_path import column, input_path
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve
+from cosserat_casadi.numerics.continuation import ContinuationResult, Path, PathPoint, follow
+from cosserat_casadi.numerics.events import DETERMINANT
+from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.trace import PathOutcome, trace
+from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_model import TubeModel
+from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
+
+FEWEST_STEPS = 2
+"""Steps of a piece that the search begins with."""
+
+LOADING = ArcSettings(longest=0.1, load_factor_change=0.05)
+"""Limits of a path over the loads; angles at the tips count in rad, the loads as their share."""
+
+ENOUGH_STEPS = 32
+"""Steps of a piece with which an equilibrium that has not been found is not looked for any more."""
+
+MOST_STEPS = 256
+"""Steps of a piece beyond which it gives up."""
+
+
+def model_of(robot: Robot, steps: int) -> TubeFunctions:
+    """The model of a robot with a number of steps; without loads it has nothing of them."""
+    if robot.loads:
+        return LoadedTubeModel(robot, steps)
+    return TubeModel(robot, steps)
+
+
+def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
+    """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones, then loaded.
+
+    It is the one that a robot has which was curved where it is; one that was turned there may be in another. Whether it
+    is stable it says itself; :func:`all_equilibria` finds the others.
+
+    Args:
+        scene: a scene with tubes.
+        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
+            or all of them, rotation and translation of each tube, rad and m, and the loads.
+
+    Raises:
+        SceneError: the scene has no tubes, or an input is unknown or out of its range.
+    """
+    robot = robot_of(scene)
+    return solve_inputs(TubeModels(robot), robot.packed(values))
+
+
+class TubeModels:
+    """Models of a robot by their number of steps, each made once."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self._made: dict[int, TubeFunctions] = {}
+
+    def of(self, steps: int) -> TubeFunctions:
+        """The model with a number of steps."""
+        if steps not in self._made:
+            self._made[steps] = model_of(self.robot, steps)
+        return self._made[steps]
+
+
+def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
+    """As :func:`solve_tubes`, for one set of inputs after the other.
+
+    Args:
+        models: of the robot.
+        at: all inputs, in their range.
+    """
+    steps = FEWEST_STEPS
+    found = solve_at(models.of(steps), at)
+    while True:
+        steps *= 2
+        finer = solve_at(models.of(steps), at)
+        error = None
+        if found.converged and finer.converged:
+            error = tip_error(found, finer)
+        resolved = error is not None and error <= models.robot.tolerance
+        lost = steps >= ENOUGH_STEPS and not found.converged and not finer.converged
+        if resolved or lost or steps >= MOST_STEPS:
+            return judged(finer, error)
+        found = finer
+
+
+def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
+    """A solution with the estimate of its error, and its outcome by that."""
+    estimated = replace(solution, error_estimate=error)
+    if estimated.converged and not estimated.within_tolerance:
+        return replace(estimated, outcome=Outcome.UNRESOLVED)
+    return estimated
+
+
+def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that straight tubes lead to, while their curvature grows, and then their loads."""
+    if isinstance(model, LoadedTubeModel):
+        curved = solve_at(model.unloaded, inputs)
+        return loaded_from(model, inputs, curved)
+    path = Path(
+        residual=lambda x, t: column(model.path_residual(x, inputs, t)),
+        jacobian=lambda x, t: model.path_jacobian(x, inputs, t).full(),
+        rate=lambda x, t: column(model.path_rate(x, inputs, t, np.zeros_like(inputs), 1.0)),
+        # Straight tubes do not twist.
+        start=model.robot.rotations(inputs).copy(),
+    )
+    end = _followed(path)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def _followed(path: Path) -> ContinuationResult:
+    """The end of a path, which passes no place where branches come close to each other from one to another.
+
+    Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step
+        comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed
+        as it goes: where tubes are opposed exactly, by symmetry, it leads to the unstable equilibrium.
+    """
+    rough = follow(path)
+    if rough.outcome is Outcome.CONVERGED and _sign(path, (rough.x, 1.0)) == _sign(path, (path.start, 0.0)):
+        return rough
+    careful = follow(replace(path, admits=lambda before, after: _sign(path, before) == _sign(path, after)))
+    if careful.outcome is not Outcome.CONVERGED:
+        return rough
+    return careful
+
+
+def _sign(path: Path, point: PathPoint) -> float:
+    """Sign of the determinant at a point of a path."""
+    jacobian = path.jacobian(*point)
+    assert isinstance(jacobian, np.ndarray)
+    return float(np.linalg.slogdet(jacobian)[0])
+
+
+def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
+    """The equilibrium that one without loads leads to, while these grow, through folds if there are any."""
+    start = model.begin(curved.x, inputs)
+    if not curved.converged:
+        return solution_at(model, inputs, start, found=False)
+    path = input_path(model, start, model.robot.without_loads(inputs), inputs)
+    end = _followed(path)
+    iterations = curved.iterations + end.iterations
+    if end.outcome is Outcome.CONVERGED:
+        return solution_at(model, inputs, end.x, found=True, iterations=iterations)
+    # Where the robot snaps under its loads the way goes on beyond the folds.
+    traced = trace(Curve(path, DETERMINANT, LOADING))
+    if traced.outcome is PathOutcome.CONVERGED:
+        return solution_at(model, inputs, traced.points[-1].x, found=True, iterations=iterations)
+    return solution_at(model, inputs, end.x, found=False, iterations=iterations)
+
+
+def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that Newton's method leads to from a start."""
+    equations = Equations(
+        residual=lambda x: column(model.residual(x, inputs)),
+        jacobian=lambda x: model.jacobian(x, inputs)[0].full(),
+    )
+    end = newton(equations, start, NewtonSettings())
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def solution_at(
+    model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool, iterations: int = 0
+) -> TubeSolution:
+    """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
+
+    Args:
+        model: the robot.
+        inputs: of the robot.
+        x: its unknowns.
+        found: whether they are an equilibrium.
+        iterations: Newton steps of the search.
+    """
+    outcome = Outcome.LOAD_STALLED
+    if found:
+        outcome = Outcome.CONVERGED
+    residual = model.residual(x, inputs).full()
+    missed = float(np.abs(residual).max())
+    return TubeSolution(model, inputs, x, outcome, missed, None, iterations)

@@ -1,0 +1,112 @@
+"""Whether an equilibrium of the tubes is stable: the second variation of its energy, by its conjugate points.
+
+The angles have the energy that `tubes.tube_flow` writes; under loads that keep their direction in the world the tangent
+belongs to it too. At the tip they are free, at the drives and at the plate they are held. The steps of
+the integration are symplectic: they are those of a discrete energy, whose second variation is block tridiagonal. Its
+pivots from the tip on follow from how the configuration of the sections changes with that of the tip, and their
+negative eigenvalues are as many as the directions in which the energy falls. For the continuous energy these are the
+conjugate points of I. M. Gelfand, S. V. Fomin, *Calculus of Variations*, 1963, sections 26 to 29. See docs/tubes.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.variations import TipVariations
+
+NEUTRAL = 1e-9
+"""Singular value of the derivative of the drives' angles, relative to the largest, below which it is zero."""
+
+NO_LENGTH = 1e-12
+"""Length of a step, relative to the robot's, below which it has none."""
+
+NUDGE = 1e-14
+"""Shift of a matrix that is singular to the last digit: the pivots' signs on either side of it add up alike."""
+
+
+@dataclass(frozen=True)
+class TubeStability:
+    """Stability of an equilibrium from the second variation.
+
+    Attributes:
+        falling: independent directions in which the energy falls; None where the loads have no energy.
+        neutral: whether there is one more in which it stays the same: the robot is about to snap.
+        determinant: of the derivative of the drives' angles with those at the tips; 1 of tubes that do not twist, 0
+            where a robot snaps.
+    """
+
+    falling: int | None
+    neutral: bool
+    determinant: float
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the energy rises in every direction; None where the loads have no energy."""
+        if self.falling is None:
+            return None
+        return self.falling == 0 and not self.neutral
+
+
+def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> TubeStability:
+    """Judge an equilibrium.
+
+    Args:
+        model: the robot.
+        x: its unknowns.
+        inputs: its inputs.
+    """
+    jacobian = model.jacobian(x, inputs)[0].full()
+    singular = np.linalg.svd(jacobian, compute_uv=False)
+    falling = None
+    if model.robot.has_energy:
+        falling = _falling(model, model.varied(x, inputs), inputs)
+    return TubeStability(
+        falling=falling,
+        neutral=bool(singular[-1] <= NEUTRAL * singular[0]),
+        determinant=float(np.linalg.det(jacobian)),
+    )
+
+
+def _falling(model: TubeFunctions, variations: TipVariations, inputs: FloatArray) -> int:
+    """Directions in which the energy falls: negative eigenvalues of all pivots."""
+    falling = 0
+    configuration = variations.configuration
+    outermost = float(model.robot.translations(inputs).max())
+    negligible = NO_LENGTH * outermost / float(model.robot.torsion.min())
+    for before, after, step in zip(configuration[:-1], configuration[1:], variations.of_steps, strict=True):
+        # A piece without length changes nothing.
+        if np.abs(step).max() > negligible:
+            falling += _negative(np.linalg.solve(-step, _divided(after, before)))
+    return falling + _negative(_held(model, inputs, configuration[-1], variations.at_plate))
+
+
+def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, torques: FloatArray) -> FloatArray:
+    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, n×n, scaled.
+
+    The plate holds the tangent. With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no
+    compliance, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.
+    """
+    robot = model.robot
+    root = np.sqrt((robot.length - robot.translations(inputs)).clip(min=0.0) / robot.torsion)
+    at_plate = -_divided(torques, configuration)[:, : robot.size]
+    return np.eye(robot.size) + root[:, None] * at_plate * root
+
+
+def _divided(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """The quotient A B⁻¹ with a square B."""
+    size = len(denominator)
+    try:
+        return np.asarray(np.linalg.solve(denominator.T, numerator.T).T)
+    except np.linalg.LinAlgError:
+        nudged = denominator + NUDGE * np.abs(denominator).max() * np.eye(size)
+        return np.asarray(np.linalg.solve(nudged.T, numerator.T).T)
+
+
+def _negative(matrix: FloatArray) -> int:
+    """Negative eigenvalues of a matrix that is symmetric up to rounding."""
+    eigenvalues = np.linalg.eigvalsh((matrix + matrix.T) / 2)
+    return int(np.sum(eigenvalues < 0.0))

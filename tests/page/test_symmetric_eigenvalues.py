@@ -1,0 +1,47 @@
+"""The page's own eigenvalues of the second variation against those of the library."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues
+from tests.page.pages_made import run_node
+
+
+def test_eigenvalues_over_the_admissible_variations(tmp_path: Path) -> None:
+    random = np.random.default_rng(7)
+    cases = []
+    expected = []
+    # Without constraints; with three; with two that repeat each other; with a slack cable; rods of two energy units.
+    for free, held, spoil in (
+        (1, 0, ""),
+        (9, 0, ""),
+        (12, 3, ""),
+        (12, 3, "repeat"),
+        (8, 2, "slack"),
+        (10, 3, "units"),
+    ):
+        n = free + held
+        jacobian = random.normal(size=(n, n))
+        jacobian = jacobian + jacobian.T
+        jacobian[free:, free:] = 0.0
+        units = np.ones(free)
+        if spoil == "repeat":
+            jacobian[-1] = 2 * jacobian[-2]
+        if spoil == "slack":
+            jacobian[-1] = 0.0
+            jacobian[-1, -1] = 1.0
+        if spoil == "units":
+            units[: free // 2] = 0.01
+        allowed = ConstrainedVariations(np.arange(free), np.arange(free, n), units)
+        expected.append(admissible_eigenvalues(jacobian, allowed))
+        plain = {"free": allowed.free.tolist(), "held": allowed.held.tolist(), "units": units.tolist()}
+        cases.append({"jacobian": jacobian.tolist(), "allowed": plain})
+    file = tmp_path / "cases.json"
+    file.write_text(json.dumps(cases))
+    for found, values in zip(run_node("symmetric_eigenvalues.js", file), expected, strict=True):
+        assert_allclose(found, values, rtol=1e-10, atol=1e-12)
