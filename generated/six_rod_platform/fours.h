@@ -1,13 +1,14 @@
 /* Four numbers that are computed together: a vector of the processor where FOURS_IN_VECTORS is defined, else lane after
    lane. What one of the four is comes out the same either way. Included anew for each of the two.
 
-   Arrays of fours are arrays of numbers, four for each. EACH makes a number one that stands for four alike, and
+   Arrays of fours are arrays of numbers, four for each. EACH makes a number one that stands for four alike, FILL stores
+   such a number, and
    EVERY_LANE calls what computes four, once or for each lane. */
 #undef FOUR
 #undef EACH
 #undef LOAD
 #undef STORE
-#undef CLEAR
+#undef FILL
 #undef EVERY_LANE
 
 #define EACH(number) ((casadi_real)(number))
@@ -20,7 +21,7 @@ typedef casadi_real vector_of_four
 #define FOUR vector_of_four
 #define LOAD(numbers) (*(const FOUR *)(numbers))
 #define STORE(numbers, value) (*(FOUR *)(numbers) = (value))
-#define CLEAR(numbers) ((numbers)[0] = (numbers)[1] = (numbers)[2] = (numbers)[3] = 0)
+#define FILL(numbers, number) ((numbers)[0] = (numbers)[1] = (numbers)[2] = (numbers)[3] = (number))
 #define EVERY_LANE(call) \
   {                      \
     enum { lane = 0 };   \
@@ -30,7 +31,7 @@ typedef casadi_real vector_of_four
 #define FOUR casadi_real
 #define LOAD(numbers) (*(numbers))
 #define STORE(numbers, value) (*(numbers) = (value))
-#define CLEAR(numbers) (*(numbers) = 0)
+#define FILL(numbers, number) (*(numbers) = (number))
 #define EVERY_LANE(call)                   \
   {                                        \
     int lane;                              \
