@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
+from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,7 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
     numbers = np.full((len(rows), len(header)), np.nan)
     for values, (line, row) in zip(numbers, rows, strict=True):
-        problems += _fill(values, f"{path}, line {line}", header, row)
+        problems += fill(values, f"{path}, line {line}", header, row)
     return header, numbers, [line for line, _ in rows], problems
 
 
@@ -40,20 +41,39 @@ def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     Raises:
         SceneError: the file cannot be read, or holds no row.
     """
+    header, rows = begun_rows(path)
+    return header, list(rows)
+
+
+def begun_rows(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """As :func:`read_rows`, one row after the other: a file may be larger than memory.
+
+    Raises:
+        SceneError: the file cannot be read, as the rows may tell later, or holds no row.
+    """
+    rows = _filled_rows(path)
+    _, names = next(rows, (0, []))
+    first = next(rows, None)
+    if first is None:
+        raise SceneError(Problem(str(path), "holds no row of numbers", "give a header and a row of numbers below it"))
+    header = [cell.strip() for cell in names]
+    if len(header) == 1 and any(sign in header[0] for sign in SEPARATORS):
+        problem = f"has the one column {header[0]!r}"
+        raise SceneError(Problem(str(path), problem, "separate columns by commas, and write decimals with a point"))
+    return header, chain([first], rows)
+
+
+def _filled_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """The line and the cells of each row that is not empty."""
     try:
-        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+        with path.open(encoding="utf-8-sig") as stream:
+            for line, row in enumerate(csv.reader(stream), 1):
+                if any(cell.strip() for cell in row):
+                    yield line, row
     except OSError as error:
         raise SceneError(Problem(str(path), f"cannot be read: {error.strerror}")) from None
     except (ValueError, csv.Error) as error:
         raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
-    filled = [(line, row) for line, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
-    if len(filled) < 2:
-        raise SceneError(Problem(str(path), "holds no row of numbers", "give a header and a row of numbers below it"))
-    header = [cell.strip() for cell in filled[0][1]]
-    if len(header) == 1 and any(sign in header[0] for sign in SEPARATORS):
-        problem = f"has the one column {header[0]!r}"
-        raise SceneError(Problem(str(path), problem, "separate columns by commas, and write decimals with a point"))
-    return header, filled[1:]
 
 
 def repeated(header: list[str]) -> list[str]:
@@ -88,7 +108,7 @@ def shortened(problems: list[Problem], where: str) -> list[Problem]:
     return [*problems[:MOST_TOLD], Problem(where, f"has {further} more faults")]
 
 
-def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
+def fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
     """Put the numbers of a row into an array, and return the problems of the other cells."""
     problems = length_faults(where, header, row)
     if problems:

@@ -7,7 +7,6 @@ from itertools import combinations, product
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -15,6 +14,8 @@ from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.scene import scene_from_dict
+from cosserat_casadi.sweep.sampling import column_ends, farthest_rows
+from cosserat_casadi.sweep.scratch import Scratch
 
 COMPILED_FROM = 1000
 """Rows of equal parameters from which a library is compiled for them; a sweep of inputs alone always has one.
@@ -25,7 +26,7 @@ solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs 
 
 
 def argument_columns(
-    tables: Mapping[str, Any], columns: Sequence[str], chosen: Sequence[int], values: FloatArray
+    tables: Mapping[str, Any], columns: Sequence[str], chosen: Sequence[int], values: FloatArray, scratch: Scratch
 ) -> list[int]:
     """Which columns a compiled library takes as parameters; none where too few rows would share it.
 
@@ -34,12 +35,14 @@ def argument_columns(
         columns: of the table.
         chosen: those among them that are no inputs.
         values: of the table, shape (rows, columns).
+        scratch: where they lie.
     """
     # Rows of scenes with obstacles are not compiled.
     if len(values) < COMPILED_FROM or tables.get("obstacles"):
         return []
     # A column of one value is a constant, which costs nothing.
-    varying = [k for k in chosen if np.ptp(values[:, k]) > 0.0]
+    low, high = column_ends(values, scratch)
+    varying = [k for k in chosen if high[k] > low[k]]
     arguments = [k for k in varying if accepts_parameters(tables, [columns[k]])]
     rest = [k for k in chosen if k not in arguments]
     if rest:
@@ -67,7 +70,7 @@ def accepts_parameters(tables: Mapping[str, Any], names: Sequence[str]) -> bool:
     return parameter_layout(scene).size == len(names)
 
 
-def extreme_rows(values: FloatArray) -> list[int]:
+def extreme_rows(values: FloatArray, scratch: Scratch) -> list[int]:
     """Rows that a scene is asked about in place of all: those nearest to the corners of every two columns.
 
     What a scene refuses is a number beyond a bound, or two of which one must be less than the other; among all rows
@@ -75,21 +78,21 @@ def extreme_rows(values: FloatArray) -> list[int]:
 
     Args:
         values: shape (rows, columns).
+        scratch: where they lie.
     """
-    low = values.min(axis=0)
-    width = np.ptp(values, axis=0)
-    scaled = (values - low) / np.where(width > 0.0, width, 1.0)
-    chosen = dict.fromkeys([0])
-    columns = range(values.shape[1])
-    for column in columns:
-        chosen |= dict.fromkeys([int(np.argmin(values[:, column])), int(np.argmax(values[:, column]))])
-    for one, other in combinations(columns, 2):
+    low, high = column_ends(values, scratch)
+    columns = values.shape[1]
+    ends = np.concatenate([-np.eye(columns), np.eye(columns)])
+    corners = np.zeros((0, columns))
+    for one, other in combinations(range(columns), 2):
         for signs in product((-1.0, 1.0), repeat=2):
-            chosen[_farthest(scaled[:, [one, other]], np.array(signs))] = None
-            # In the unit that both may have: the one that comes nearest to being larger than the other.
-            chosen[_farthest(values[:, [one, other]], np.array(signs))] = None
-    return list(chosen)
-
-
-def _farthest(points: FloatArray, direction: npt.NDArray[np.float64]) -> int:
-    return int(np.argmax(points @ direction))
+            corner = np.zeros((1, columns))
+            corner[0, [one, other]] = signs
+            corners = np.concatenate([corners, corner])
+    origin = np.zeros(columns)
+    same = np.ones(columns)
+    chosen = [0, *farthest_rows(values, ends, origin, same, scratch)]
+    chosen += farthest_rows(values, corners, low, high - low, scratch)
+    # In the unit that both may have: the one that comes nearest to being larger than the other.
+    chosen += farthest_rows(values, corners, origin, same, scratch)
+    return list(dict.fromkeys(chosen))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,8 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweep.row_model import solved_poses
 from cosserat_casadi.sweep.sampling import representative_rows
+from cosserat_casadi.sweep.scratch import Scratch
+from cosserat_casadi.sweep.table import Table
 from cosserat_casadi.sweep.variants import Variants
 
 CHECKED = 6
@@ -78,7 +80,7 @@ class Choice:
         )
 
 
-def choose(variants: Variants, values: FloatArray, samples: int, progress: Progress) -> Choice:
+def choose(variants: Variants, table: Table, samples: int, progress: Progress) -> Choice:
     """The smallest discretisation found that meets the tolerance on rows that stand for all.
 
     A scene that fixes modes, nodes or rotation is taken at its word. Rows without an equilibrium do not take part,
@@ -86,14 +88,14 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
 
     Args:
         variants: scenes and inputs of the table.
-        values: of the table, shape (rows, columns).
+        table: the rows.
         samples: rows to look at.
         progress: told what is being done.
     """
     accuracy = variants.entries[0].scene.accuracy
     if accuracy.fixed:
         return Choice(None)
-    rows = representative_rows(values, samples)
+    rows = representative_rows(table.values, samples, table.scratch)
     scenes: dict[str, Scene] = {}
     cases = []
     for row in rows:
@@ -121,8 +123,9 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
 def check(
     variants: Variants,
     choice: Choice,
-    converged: npt.NDArray[np.bool_],
+    outcomes: npt.NDArray[np.int64],
     poses: FloatArray,
+    scratch: Scratch,
     progress: Progress,
 ) -> list[dict[str, Any]]:
     """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
@@ -130,20 +133,21 @@ def check(
     Args:
         variants: scenes and inputs of the table.
         choice: the discretisation.
-        converged: which rows hold an equilibrium, shape (rows,).
+        outcomes: how rows ended, 0 where they hold an equilibrium, shape (rows,).
         poses: of their tips and bodies, shape (rows, 7 tips and bodies).
+        scratch: where arrays with an entry for each row lie.
         progress: told what is being done.
 
     Returns:
         for each row its number from 0, the estimated error, how far its poses lie from those found in Python, relative
         to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
     """
-    candidates = np.flatnonzero(converged)
+    candidates = scratch.joined(_converged(outcomes, poses, scratch), 4)
     if not candidates.size:
         return []
     # Rows whose first tip lies at the corners of the workspace, where the rods are bent most.
-    positions = poses[candidates, :3]
-    rows = candidates[representative_rows(positions, CHECKED)].tolist()
+    chosen = representative_rows(candidates[:, 1:], CHECKED, scratch)
+    rows = [int(row) for row in candidates[chosen, 0]]
     models: dict[str, Model] = {}
     checked = []
     for done, row in enumerate(rows):
@@ -153,7 +157,7 @@ def check(
         if text not in models:
             models[text] = build(scene)
         solution = solve(models[text], variants.inputs_of_row(row))
-        entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
+        entry: dict[str, Any] = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
             entry["error_estimate"] = solution.error_estimate
             entry["difference"] = pose_difference(poses[row], solution)
@@ -161,6 +165,13 @@ def check(
         checked.append(entry)
     progress("Checking rows", len(rows), len(rows))
     return checked
+
+
+def _converged(outcomes: npt.NDArray[np.int64], poses: FloatArray, scratch: Scratch) -> Iterator[FloatArray]:
+    """Numbers of the rows that hold an equilibrium, and the positions of their first tips, block by block."""
+    for block in scratch.blocks(len(outcomes)):
+        converged = np.flatnonzero(outcomes[block] == 0)
+        yield np.column_stack([block.start + converged, poses[block, :3][converged]])
 
 
 def pose_difference(poses: FloatArray, solution: Solution) -> float:

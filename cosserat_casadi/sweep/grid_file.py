@@ -21,6 +21,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import shown
+from cosserat_casadi.sweep.scratch import MEMORY, Scratch
 
 MOST_ROWS = 20_000_000
 """Rows of the largest grid that is made."""
@@ -60,8 +61,13 @@ def read_tables(path: Path) -> dict[str, Any]:
     return tables
 
 
-def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatArray]:
+def grid(tables: Mapping[str, Any], where: str, scratch: Scratch = MEMORY) -> tuple[tuple[str, ...], FloatArray]:
     """Columns and rows of a grid given as tables; those who call the file name it by ``where``.
+
+    Args:
+        tables: of the file.
+        where: what a refusal calls it.
+        scratch: where the rows are to lie.
 
     Raises:
         SceneError: with every fault.
@@ -74,7 +80,7 @@ def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatA
     if problems:
         raise SceneError(*problems)
     seed = int(tables.get("seed", 0))
-    return tuple(axes), _product(axes, samples, seed)
+    return tuple(axes), _product(axes, samples, seed, scratch)
 
 
 def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatArray, tuple[str, ...]]:
@@ -232,26 +238,32 @@ def _samples(tables: Mapping[str, Any], where: str, random: bool, problems: list
     return samples if isinstance(samples, int) and samples > 0 else 1
 
 
-def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int) -> FloatArray:
+def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int, scratch: Scratch) -> FloatArray:
     """Every combination, shape (rows, columns); draws run slowest."""
     rng = np.random.default_rng(seed)
-    fixed = {}
-    drawn = {}
-    for name, axis in axes.items():
+    sizes = [len(axis) for axis in axes.values() if not isinstance(axis, _Random)]
+    combinations = math.prod(sizes)
+    values = scratch.array((samples * combinations, len(axes)))
+    # The last column runs fastest: how many rows each number of a column stays for.
+    stays = combinations
+    for column, axis in enumerate(axes.values()):
         if isinstance(axis, _Random):
-            drawn[name] = axis.draw(rng, samples)
-        else:
-            fixed[name] = axis
-    combinations = math.prod(map(len, fixed.values()))
-    meshes = np.meshgrid(*fixed.values(), indexing="ij")
-    mesh_of = dict(zip(fixed, meshes, strict=True))
-    columns = []
-    for name in axes:
-        if name in drawn:
-            columns.append(np.repeat(drawn[name], combinations))
-        else:
-            columns.append(np.tile(mesh_of[name].ravel(), samples))
-    return np.column_stack(columns)
+            drawn = _drawn(axis, rng, samples, scratch)
+            for rows in scratch.blocks(len(values)):
+                values[rows, column] = drawn[np.arange(rows.start, rows.stop) // combinations]
+            continue
+        stays //= len(axis)
+        for rows in scratch.blocks(len(values)):
+            values[rows, column] = axis[np.arange(rows.start, rows.stop) // stays % len(axis)]
+    return values
+
+
+def _drawn(axis: _Random, rng: np.random.Generator, samples: int, scratch: Scratch) -> FloatArray:
+    """The draws of a random column, shape (samples,)."""
+    drawn = scratch.array((samples,))
+    for rows in scratch.blocks(samples):
+        drawn[rows] = axis.draw(rng, rows.stop - rows.start)
+    return drawn
 
 
 def _pairs(axes: Mapping[str, FloatArray | _Random], factors: tuple[str, ...], samples: int, seed: int) -> FloatArray:

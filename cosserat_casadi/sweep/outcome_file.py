@@ -182,6 +182,7 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
                     cells[truth] = "true" if row[truth] else "false"
             cells.insert(swept_count, LABELS[number])
             yield cells
+        sweep.scratch.let_go()
 
 
 def _write_dataset(sweep: Sweep, folder: Path) -> None:
@@ -200,6 +201,7 @@ def _write_parquet(sweep: Sweep, rows: range, path: Path) -> None:
     with pyarrow.parquet.ParquetWriter(path, table.schema) as writer:
         writer.write_table(table)
         for block in others:
+            sweep.scratch.let_go()
             writer.write_table(_arrow_table(sweep, block))
 
 

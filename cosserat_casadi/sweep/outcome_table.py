@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.sweep.scratch import MEMORY, Scratch
 
 ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
 """How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
@@ -34,6 +35,7 @@ class Sweep:
         values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
         outcomes: how each row ended, as its place in LABELS, shape (rows,).
         record: what was computed, how and how well, as plain data: the file beside the results; empty without it.
+        scratch: where values and outcomes lie.
     """
 
     swept: tuple[str, ...]
@@ -41,6 +43,7 @@ class Sweep:
     values: FloatArray
     outcomes: npt.NDArray[np.int64]
     record: dict[str, Any] = field(repr=False)
+    scratch: Scratch = field(default=MEMORY, repr=False)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -60,10 +63,8 @@ class Sweep:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows ended in each way."""
-        counted = Counter(self.outcomes.tolist())
-        # In the order of LABELS, whichever came first.
-        numbers = sorted(counted)
-        return {LABELS[number]: counted[number] for number in numbers}
+        counted = np.bincount(self.outcomes).tolist()
+        return {LABELS[number]: count for number, count in enumerate(counted) if count}
 
     @property
     def holds(self) -> bool:
@@ -83,7 +84,7 @@ class Sweep:
         # A row without an equilibrium in Python has no error, and so cannot be within the tolerance.
         errors = [np.inf if error is None else error for error in errors]
         within_tolerance = all(error <= tolerance for error in errors)
-        return within_tolerance and not self.missed.any() and bool(self.converged.any())
+        return within_tolerance and not self.missed_count and LABELS[0] in self.counts
 
     @property
     def tolerance_binds(self) -> bool:
@@ -96,6 +97,28 @@ class Sweep:
         if WITHIN not in self.found:
             return np.zeros(len(self.values), dtype=bool)
         return np.asarray(self.converged & (self[WITHIN] == 0.0))
+
+    @property
+    def missed_count(self) -> int:
+        """How many rows these are."""
+        return sum(int(part.missed.sum()) for _, part in self.parts())
+
+    @property
+    def worst(self) -> tuple[int, float, int]:
+        """How many converged rows have an estimate of their error, the largest of these, and its row; NaN of none."""
+        known, largest, row = 0, np.nan, 0
+        for first, part in self.parts():
+            errors = np.where(part.converged & np.isfinite(part[ERROR]), part[ERROR], -np.inf)
+            known += int(np.isfinite(errors).sum())
+            at = int(errors.argmax())
+            if np.isfinite(errors[at]) and not errors[at] <= largest:
+                largest, row = float(errors[at]), first + at
+        return known, largest, row
+
+    def parts(self) -> Iterator[tuple[int, Sweep]]:
+        """The rows in blocks, each with the number of its first row: one number for each of all takes memory."""
+        for rows in self.scratch.blocks(len(self.values)):
+            yield rows.start, replace(self, values=self.values[rows], outcomes=self.outcomes[rows])
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).

@@ -31,6 +31,7 @@ from cosserat_casadi.sweep.outcome_file import check_output, read_record, read_s
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweep.scratch import Scratch
 from cosserat_casadi.sweep.shards import Shard, named, shard_files
 from cosserat_casadi.sweep.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweep.table import Table, read_table, table_of
@@ -41,6 +42,9 @@ from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chu
 IN_LANES_FROM = 1_250_000
 """Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it. For
 a wire with 12 unknowns gcc takes 4.0 s longer, and a row takes 3.4 µs less (``benchmarks/row_cost.py``)."""
+
+LET_GO = 64
+"""Chunks whose inputs or results are in memory at once."""
 
 SAMPLES = 12
 """Rows that the discretisation is chosen on, unless said otherwise."""
@@ -83,9 +87,15 @@ class Plan:
             self.estimate_errors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
-        # The array itself: its bytes would be a copy of the table.
-        digest.update(np.ascontiguousarray(self.table.values, dtype="<f8").data)
+        # Block by block: the bytes of all would be a copy of the table.
+        for block in self.scratch.blocks(len(self.table.values)):
+            digest.update(np.ascontiguousarray(self.table.values[block], dtype="<f8").data)
         return digest.hexdigest()
+
+    @property
+    def scratch(self) -> Scratch:
+        """Where arrays with an entry for each row lie."""
+        return self.table.scratch
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -198,11 +208,12 @@ def sweep_scene(
         ExportError: there is no C compiler, or it fails.
         ClusterError: the cluster cannot be used.
     """
-    if isinstance(table, Mapping):
-        table = table_of(table)
-    elif not isinstance(table, Table):
-        table = read_table(Path(table))
     file = None if output is None else Path(output)
+    scratch = Scratch.beside(file)
+    if isinstance(table, Mapping):
+        table = table_of(table, scratch)
+    elif not isinstance(table, Table):
+        table = read_table(Path(table), scratch=scratch)
     plan = plan_sweep(scene, table, file, samples, stability=stability, estimate_errors=estimate_errors)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
@@ -421,7 +432,7 @@ def _choice(plan: Plan, progress: Progress) -> Choice:
     if plan.scene.tubes:
         # Each row of tubes has as many steps as its own tolerance asks for.
         return Choice(None)
-    return choose(plan.variants, plan.table.values, plan.samples, progress)
+    return choose(plan.variants, plan.table, plan.samples, progress)
 
 
 def _solve_rest(
@@ -439,6 +450,9 @@ def _solve_rest(
     tasks = _tasks(plan, choice, rest, progress)
     for chunk, results in machine.run(tasks):
         store.add(chunk.number, results)
+        if chunk.number % LET_GO == 0:
+            # Inputs were read for it.
+            plan.scratch.let_go()
         count += len(results)
         progress("Sweeping", count, total)
 
@@ -505,23 +519,29 @@ def _sweep(
     swept = len(plan.table.columns)
     result_names = plan.columns[swept:]
     result_columns = [plan.results.index(name) for name in result_names]
+    scratch = plan.scratch
     count = len(plan.table.values)
-    values = np.empty((count, len(plan.columns)))
-    values[:, :swept] = plan.table.values
-    outcomes = np.empty(count, dtype=np.int64)
+    values = scratch.array((count, len(plan.columns)))
+    outcomes = scratch.array((count,), np.int64)
     # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
     chunk_of = {chunk.number: chunk for chunk in work}
     for number, results in answered:
         rows = chunk_of[number].rows
         outcomes[rows] = results[:, 0]
         values[rows, swept:] = results[:, result_columns]
-    converged = outcomes == 0
+        if number % LET_GO == 0:
+            scratch.let_go()
+    judged = None
     if plan.stability and not plan.scene.tubes:
-        judged = rows_with_potential(plan.variants, work)
-        values[~judged, -len(STABILITY) :] = np.nan
-    if plan.estimate_errors:
-        estimate, verdict = (plan.columns.index(name) for name in ERRORS)
-        values[:, verdict] = _within_tolerance(plan.scene, converged, values[:, estimate])
+        judged = rows_with_potential(plan.variants, work, scratch)
+    estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
+    for block in scratch.blocks(count):
+        values[block, :swept] = plan.table.values[block]
+        if judged is not None:
+            values[block, -len(STABILITY) :][~judged[block]] = np.nan
+        if verdict is not None:
+            converged = outcomes[block] == 0
+            values[block, verdict] = _within_tolerance(plan.scene, converged, values[block, estimate])
     checked = []
     # Rows of tubes are within tolerance each, or do not converge.
     if not plan.scene.tubes:
@@ -529,8 +549,8 @@ def _sweep(
         # The outcome, first of a row of results, has no column of numbers; poses cannot be swept.
         first = swept + len(JUDGED) - 1
         poses = values[:, first : first + posed * len(POSE)]
-        checked = check(plan.variants, choice, converged, poses, progress)
-    sweep = Sweep(swept=plan.table.columns, found=result_names, values=values, outcomes=outcomes, record={})
+        checked = check(plan.variants, choice, outcomes, poses, scratch, progress)
+    sweep = Sweep(plan.table.columns, result_names, values, outcomes, {}, scratch)
     # The record counts the outcomes of the sweep that it belongs to.
     sweep.record.update(_record(plan, choice, sweep, checked))
     return sweep
@@ -546,7 +566,7 @@ def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: Fl
 
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
     sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
-    missed = {"missed": int(sweep.missed.sum())} if plan.estimate_errors else {}
+    missed = {"missed": sweep.missed_count} if plan.estimate_errors else {}
     return {
         "schema": 1,
         "sweep": plan.identity,

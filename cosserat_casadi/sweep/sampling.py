@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.sweep.scratch import MEMORY, Scratch
 
 SEED = 20
 """Of the random rows: the same table gives the same sample."""
@@ -15,35 +16,66 @@ MOST_CORNERS = 3
 """Columns up to which every corner of the box of a table is looked for."""
 
 
-def representative_rows(values: FloatArray, count: int) -> list[int]:
+def representative_rows(values: FloatArray, count: int, scratch: Scratch = MEMORY) -> list[int]:
     """Rows that a discretisation is chosen on, ascending.
 
     Args:
         values: of the table, shape (rows, columns).
         count: rows wanted; two thirds may be corners, the others are drawn at random.
+        scratch: where the values lie.
     """
     rng = np.random.default_rng(SEED)
-    scaled = _scaled(values)
-    columns = scaled.shape[1]
+    low, high = column_ends(values, scratch)
+    # Columns that vary, each over its range.
+    varies = np.flatnonzero(high > low)
+    columns = len(varies)
     if columns <= MOST_CORNERS:
         signs = list(product((1.0, -1.0), repeat=columns))
         corners = np.array(signs).reshape(2**columns, columns)
     else:
         corners = rng.choice([-1.0, 1.0], (2**MOST_CORNERS, columns))
     most_corners = max(1, 2 * count // 3)
+    directions = np.zeros((len(corners[:most_corners]), values.shape[1]))
+    directions[:, varies] = corners[:most_corners]
     # Nearest to a corner is what lies farthest in its direction.
-    chosen = {int(np.argmax(scaled @ corner)) for corner in corners[:most_corners]}
-    drawn = rng.permutation(len(values)).tolist()
-    missing = max(0, count - len(chosen))
-    chosen.update(drawn[:missing])
+    chosen = set(farthest_rows(values, directions, low, high - low, scratch))
+    missing = min(max(0, count - len(chosen)), len(values))
+    # A permutation of all rows would have a number for each.
+    chosen.update(rng.choice(len(values), missing, replace=False).tolist())
     return sorted(chosen)
 
 
-def _scaled(values: FloatArray) -> FloatArray:
-    """Columns that vary, each over its range, from -1 to 1."""
-    low = values.min(axis=0)
-    high = values.max(axis=0)
-    varies = high > low
-    width = (high - low)[varies]
-    scaled: FloatArray = 2 * (values[:, varies] - low[varies]) / width - 1
-    return scaled
+def column_ends(values: FloatArray, scratch: Scratch) -> tuple[FloatArray, FloatArray]:
+    """Least and largest value of each column."""
+    low = np.full(values.shape[1], np.inf)
+    high = -low
+    for block in scratch.blocks(len(values)):
+        low = np.minimum(low, values[block].min(axis=0))
+        high = np.maximum(high, values[block].max(axis=0))
+    return low, high
+
+
+def farthest_rows(
+    values: FloatArray, directions: FloatArray, origin: FloatArray, units: FloatArray, scratch: Scratch
+) -> list[int]:
+    """The row that lies farthest in each direction, the first one of several.
+
+    Args:
+        values: shape (rows, columns).
+        directions: shape (k, columns).
+        origin: that columns count from, shape (columns,).
+        units: of the columns, shape (columns,); a column of unit 0 is one that does not vary.
+        scratch: where the values lie.
+    """
+    lengths = np.where(units > 0.0, units, 1.0)
+    farthest = np.full(len(directions), -np.inf)
+    rows = np.zeros(len(directions), dtype=np.int64)
+    for block in scratch.blocks(len(values)):
+        scaled = (values[block] - origin) / lengths
+        along = scaled @ directions.T
+        best = along.argmax(axis=0)
+        reached = along[best, np.arange(len(directions))]
+        ahead = reached > farthest
+        farthest = np.where(ahead, reached, farthest)
+        rows = np.where(ahead, block.start + best, rows)
+    return [int(row) for row in rows]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.number_table import read_numbers, shortened
+from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
 from cosserat_casadi.sweep.grid_file import grid, paired_draws, read_tables
+from cosserat_casadi.sweep.scratch import BLOCK, MEMORY, Scratch
 
 
 @dataclass(frozen=True)
@@ -24,47 +26,73 @@ class Table:
         columns: names such as ``push.force.x`` or ``wire.section.radius``.
         values: shape (rows, columns), SI units.
         where: what a refusal calls it.
-        lines: the line of each row in the file; without one rows are counted from 1.
+        lines: the line of each row in the file, shape (rows,); without one rows are counted from 1.
         factors: columns whose Sobol indices the rows are drawn for; see :func:`sobol_table`.
+        scratch: where arrays with an entry for each row lie.
     """
 
     columns: tuple[str, ...]
     values: FloatArray
     where: str
-    lines: tuple[int, ...] | None = None
+    lines: FloatArray | None = None
     factors: tuple[str, ...] = ()
+    scratch: Scratch = MEMORY
 
     def where_of(self, row: int) -> str:
         """What a refusal calls a row."""
         if self.lines is None:
             return f"{self.where}, row {row + 1}"
-        return f"{self.where}, line {self.lines[row]}"
+        return f"{self.where}, line {int(self.lines[row])}"
 
 
-def read_table(path: Path, *, sobol: bool = False) -> Table:
+def read_table(path: Path, *, sobol: bool = False, scratch: Scratch = MEMORY) -> Table:
     """The rows of a grid (``.toml``) or of a CSV file with a header.
 
     Args:
         path: the file.
         sobol: whether the random columns of a grid are drawn for their Sobol indices.
+        scratch: where the rows are to lie.
 
     Raises:
         SceneError: with every fault.
+        WriteError: the disc has no room for them.
     """
     if path.suffix.lower() == ".toml":
         tables = read_tables(path)
-        return _sobol_table(tables, str(path)) if sobol else Table(*grid(tables, str(path)), str(path))
+        if sobol:
+            return _sobol_table(tables, str(path))
+        columns, values = grid(tables, str(path), scratch)
+        return Table(columns, values, str(path), scratch=scratch)
     if sobol:
         remedy = "give a grid in TOML with random columns"
         raise SceneError(Problem(str(path), "holds rows of its own; for Sobol indices they are drawn", remedy))
-    header, values, lines, problems = read_numbers(path)
+    header, rows = begun_rows(path)
+    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
+    # A column of lines in front.
+    numbers = scratch.joined(_blocks(path, header, rows, problems), 1 + len(header))
     if problems:
         raise SceneError(*shortened(problems, str(path)))
-    return Table(tuple(header), values, str(path), tuple(lines))
+    return Table(tuple(header), numbers[:, 1:], str(path), numbers[:, 0], scratch=scratch)
 
 
-def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
+def _blocks(
+    path: Path, header: list[str], rows: Iterator[tuple[int, list[str]]], problems: list[Problem]
+) -> Iterator[FloatArray]:
+    """Blocks of rows, line and numbers of each; faults go to the problems."""
+    while several := list(islice(rows, BLOCK)):
+        numbers = np.full((len(several), 1 + len(header)), np.nan)
+        for values, (line, row) in zip(numbers, several, strict=True):
+            values[0] = line
+            problems += fill(values[1:], f"{path}, line {line}", header, row)
+        yield numbers
+
+
+def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) -> Table:
     """The rows of arrays by column; a single number is that of every row.
+
+    Args:
+        columns: the arrays.
+        scratch: where the rows are to lie.
 
     Raises:
         SceneError: there is no row, lengths differ, or a value is not a finite number.
@@ -90,7 +118,10 @@ def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
         raise SceneError(*problems)
     count = max(lengths)
     full_columns = [np.broadcast_to(array, count) for array in arrays.values()]
-    return Table(tuple(arrays), np.column_stack(full_columns), "table")
+    rows = scratch.array((count, len(arrays)))
+    for block in scratch.blocks(count):
+        rows[block] = np.column_stack([column[block] for column in full_columns])
+    return Table(tuple(arrays), rows, "table", scratch=scratch)
 
 
 def sobol_table(columns: Mapping[str, Any], samples: int, seed: int = 0) -> Table:

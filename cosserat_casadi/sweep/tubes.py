@@ -18,7 +18,7 @@ from cosserat_casadi.spelling import closest
 from cosserat_casadi.sweep.outcome_table import ENDINGS
 from cosserat_casadi.sweep.row_model import error_numbers
 from cosserat_casadi.sweep.table import Table
-from cosserat_casadi.sweep.variants import Variant, Variants
+from cosserat_casadi.sweep.variants import Variant, Variants, all_rows
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs
@@ -45,13 +45,16 @@ def tube_variants(scene: Scene, table: Table) -> Variants:
     """
     robot = robot_of(scene)
     problems = [*_unknown_columns(robot, table)]
-    inputs = np.tile(robot.inputs, (len(table.values), 1))
+    inputs = table.scratch.array((len(table.values), robot.inputs.size))
     if not problems:
-        inputs[:, [robot.input_index(column) for column in table.columns]] = table.values
+        indices = [robot.input_index(column) for column in table.columns]
+        for block in table.scratch.blocks(len(inputs)):
+            inputs[block] = robot.inputs
+            inputs[block, indices] = table.values[block]
         problems += _refused_rows(robot, inputs, table)
     if problems:
         raise SceneError(*shortened(problems, table.where))
-    every = Variant(scene, np.arange(len(table.values)))
+    every = Variant(scene, all_rows(table))
     return Variants(scene, (every,), inputs, InputLayout(()), (), (), np.zeros((len(inputs), 0)))
 
 

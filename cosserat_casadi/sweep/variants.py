@@ -28,6 +28,7 @@ from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweep.arguments import accepts_parameters, argument_columns, extreme_rows
+from cosserat_casadi.sweep.sampling import farthest_rows
 from cosserat_casadi.sweep.table import Table
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
@@ -74,8 +75,9 @@ class Variants:
 
     def scene_of_row(self, row: int) -> Scene:
         """The scene of a row, whose numbers are all constants."""
-        holders = (entry for entry in self.entries if row in entry.rows)
-        scene = next(holders).scene
+        # One scene has all rows: to look for one among them would take memory for each.
+        holders = self.entries if len(self.entries) == 1 else [e for e in self.entries if row in e.rows]
+        scene = holders[0].scene
         if not self.arguments:
             return scene
         return _overridden(scene_tables(scene.baked()), self.arguments, self.p[row], scene.input_names())
@@ -100,20 +102,26 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     index_of = column_indices(layout)
     input_columns = [k for k, column in enumerate(table.columns) if column in index_of]
     parameter_columns = [k for k, column in enumerate(table.columns) if column not in index_of]
-    inputs = np.tile(layout.pack(), (len(table.values), 1))
+    inputs = table.scratch.array((len(table.values), layout.size))
     indices = [index_of[table.columns[k]] for k in input_columns]
-    inputs[:, indices] = table.values[:, input_columns]
+    for block in table.scratch.blocks(len(inputs)):
+        inputs[block] = layout.pack()
+        inputs[block, indices] = table.values[block, input_columns]
     parameters = tuple(table.columns[k] for k in parameter_columns)
     reserved = any(_is_reserved(name) for name in parameters)
     tables = scene_tables(free)
-    argument_indices = [] if reserved else argument_columns(tables, table.columns, parameter_columns, table.values)
+    argument_indices = (
+        [] if reserved else argument_columns(tables, table.columns, parameter_columns, table.values, table.scratch)
+    )
     arguments = tuple(table.columns[k] for k in argument_indices)
-    p = table.values[:, argument_indices]
+    p = table.scratch.array((len(table.values), len(arguments)))
+    for block in table.scratch.blocks(len(p)):
+        p[block] = table.values[block, argument_indices]
     problems = list(_set_twice(free, [*layout.names, *parameters], table))
     problems += _refused_inputs(free, layout, inputs, table)
     if arguments:
         free = scene_from_dict({**tables, "parameters": list(arguments)})
-        problems += _refused_rows(free, table, argument_indices)
+        problems += _refused_rows(free, table, arguments, p)
     others = [k for k in parameter_columns if k not in argument_indices]
     entries = list(_entries(free, table, others, problems))
     if problems:
@@ -151,14 +159,12 @@ def _is_named_as_parameter(tables: Mapping[str, Any], name: str) -> bool:
     return False
 
 
-def _refused_rows(scene: Scene, table: Table, columns: Sequence[int]) -> Iterator[Problem]:
-    """Faults of the rows that are refused first, if any is."""
-    names = [table.columns[k] for k in columns]
-    values = table.values[:, columns]
+def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: FloatArray) -> Iterator[Problem]:
+    """Faults of the rows that are refused first, if any is, for these values of some columns."""
     tables = scene_tables(scene.baked())
     joints_move = any(_moves_joints(tables, name) for name in names)
     known = set[str]()
-    for row in extreme_rows(values):
+    for row in extreme_rows(values, table.scratch):
         try:
             changed = _overridden(tables, names, values[row])
             if joints_move:
@@ -234,7 +240,7 @@ def _entries(
             check_constraints(scene)
         except SceneError as error:
             problems += error.problems
-        yield Variant(scene, np.arange(len(table.values)))
+        yield Variant(scene, all_rows(table))
         return
     reserved = [table.columns[k] for k in parameter_columns if _is_reserved(table.columns[k])]
     for column in reserved:
@@ -242,6 +248,14 @@ def _entries(
         problems.append(Problem(table.where, problem, "change it with --set for all rows"))
     if not reserved:
         yield from _scenes(scene_tables(scene), table, parameter_columns, problems)
+
+
+def all_rows(table: Table) -> npt.NDArray[np.int64]:
+    """Numbers of the rows of a table."""
+    rows = table.scratch.array((len(table.values),), np.int64)
+    for block in table.scratch.blocks(len(rows)):
+        rows[block] = np.arange(block.start, block.stop)
+    return rows
 
 
 def _is_reserved(column: str) -> bool:
@@ -313,12 +327,14 @@ def _refused_inputs(
     for name, entries in layout.slices.items():
         values = inputs[:, entries]
         if name.endswith(".base.quaternion"):
-            zero_rows = np.flatnonzero(~np.any(values, axis=1))
-            if zero_rows.size:
-                where = table.where_of(int(zero_rows[0]))
-                yield Problem(f"{where}, {name}", "must not be zero")
+            for block in table.scratch.blocks(len(values)):
+                zero_rows = np.flatnonzero(~np.any(values[block], axis=1))
+                if zero_rows.size:
+                    where = table.where_of(block.start + int(zero_rows[0]))
+                    yield Problem(f"{where}, {name}", "must not be zero")
+                    break
         elif values.shape[1] == 1:
-            yield from _refused_numbers(scene, name, values[:, 0], table)
+            yield from _refused_numbers(scene, name, values, table)
 
 
 def _refused_numbers(
@@ -329,9 +345,9 @@ def _refused_numbers(
 ) -> Iterator[Problem]:
     """A number such as a tension is refused where the scene refuses it; all between two that it takes are taken."""
     tables = scene_tables(scene)
-    extremes = (int(np.argmin(values)), int(np.argmax(values)))
-    for row in dict.fromkeys(extremes):
+    ends = np.array([[-1.0], [1.0]])
+    for row in dict.fromkeys(farthest_rows(values, ends, np.zeros(1), np.ones(1), table.scratch)):
         try:
-            scene_from_dict(tables, [f"{name}={float(values[row])!r}"])
+            scene_from_dict(tables, [f"{name}={float(values[row, 0])!r}"])
         except SceneError as error:
             yield from (_of_table(problem, table, row) for problem in error.problems)

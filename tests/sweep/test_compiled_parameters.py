@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import SceneError, solve, sweep_scene
 from cosserat_casadi.model.build import build
 from cosserat_casadi.sweep.arguments import extreme_rows
+from cosserat_casadi.sweep.scratch import MEMORY
 from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.sweep.variants import variants_of
 from tests.scenes import push, rod, scene
@@ -125,7 +126,7 @@ def test_rows_that_the_scene_refuses_are_named() -> None:
 
 def test_extreme_rows_hold_every_corner_of_two_columns() -> None:
     values = np.random.default_rng(1).uniform(size=(500, 4))
-    rows = extreme_rows(values)
+    rows = extreme_rows(values, MEMORY)
     for one in range(4):
         for other in range(one):
             assert int(np.argmax(values[:, one] - values[:, other])) in rows

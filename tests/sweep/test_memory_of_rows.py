@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import errno
+import mmap
+import pickle
+import subprocess
+import sys
+import tempfile
 import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,19 +15,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
+from cosserat_casadi.files import WriteError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep import run
 from cosserat_casadi.sweep.outcome_file import write_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweep.scratch import Scratch
 from cosserat_casadi.sweep.shards import Shard
 from cosserat_casadi.sweep.store import Store, StoreChangedError
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.sweep.table import read_table, table_of
+from tests.conftest import ROOT
 from tests.sweep.conftest import PLANAR
 
 ROWS = 40_000
+
+FEW = 4_000
 
 
 class Constant:
@@ -36,14 +47,20 @@ class Constant:
         return results
 
 
-@pytest.fixture(autouse=True)
-def rows_take_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def answers_at_once(replace: Any) -> None:
+    """Replace what solves rows."""
+
     def tasks(plan: Plan, choice: Any, rest: Any, progress: Any) -> Iterator[tuple[Any, Any]]:
         for chunk in rest:
             yield chunk, [(Constant(len(plan.results)), plan.variants.given(chunk.rows))]
 
-    monkeypatch.setattr(run, "_tasks", tasks)
-    monkeypatch.setattr(run, "check", lambda *_: [])
+    replace(run, "_tasks", tasks)
+    replace(run, "check", lambda *_: [])
+
+
+@pytest.fixture(autouse=True)
+def rows_take_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    answers_at_once(monkeypatch.setattr)
 
 
 @pytest.fixture
@@ -62,12 +79,113 @@ def plan(tmp_path: Path) -> Plan:
 
 
 def test_results_have_their_place_once(plan: Plan, peak: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the table is in memory, as arrays that Python gives are."""
     # The file takes a block of rows at once, however many there are.
     monkeypatch.setattr(run, "write_sweep", lambda *_: None)
     found = run_sweep(plan, cores=1)
     # Beside the results themselves: outcomes, the verdicts on errors, and some chunks at once.
     assert peak() < 1.5 * found.values.nbytes
     assert_array_equal(found["rod.x"], found["push.force.x"])
+
+
+def swept(rows: int, over: Path, output: Path) -> int:
+    """A whole sweep from the file of its table to that of its results; how many rows converged."""
+    table = read_table(over, scratch=Scratch.beside(output))
+    found = run_sweep(plan_sweep(PLANAR, table, output), cores=1)
+    assert found.missed_count == 0
+    known, largest, row = found.worst
+    assert (known, row) == (rows, int(np.argmax(table.values[:, 0])))
+    assert_allclose(largest, 1e-4, rtol=1e-12, atol=0)
+    return found.counts["converged"]
+
+
+def grid_of_rows(rows: int, file: Path) -> Path:
+    """A grid, which names its rows in two lines."""
+    forces = f'"push.force.x" = {{ from = -1e-4, to = 1e-4, count = {rows // 100} }}\n'
+    file.write_text(forces + '"push.force.z" = { from = -1.0, to = 1.0, count = 100 }\n')
+    return file
+
+
+def list_of_rows(rows: int, file: Path) -> Path:
+    """A table with a line for each row."""
+    with file.open("w") as stream:
+        stream.write("push.force.x\n")
+        stream.writelines(f"{force!r}\n" for force in np.linspace(-1e-4, 1e-4, rows).tolist())
+    return file
+
+
+@pytest.mark.parametrize(("written", "suffix"), [(grid_of_rows, ".toml"), (list_of_rows, ".csv")])
+def test_four_times_the_rows_take_no_more_memory(
+    written: Any, suffix: str, peak: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for a few bytes of each row in the places of chunks: what it has on disc are some two hundred."""
+    for module in ("scratch", "table", "outcome_file"):
+        monkeypatch.setattr(f"cosserat_casadi.sweep.{module}.BLOCK", 512)
+    # What writing takes is looked at apart.
+    monkeypatch.setattr(run, "write_sweep", lambda *_: None)
+    peaks = []
+    for rows in (FEW, 4 * FEW):
+        over = written(rows, tmp_path / f"over-{rows}{suffix}")
+        tracemalloc.reset_peak()
+        assert swept(rows, over, tmp_path / f"{rows}.csv") == rows
+        peaks.append(peak())
+    few, many = peaks
+    assert many - few < 8 * 3 * FEW
+    assert many < 1.1 * few
+    assert not list(tmp_path.glob("*.part"))
+
+
+@pytest.mark.parametrize(("written", "suffix"), [(grid_of_rows, ".toml"), (list_of_rows, ".csv")])
+def test_a_table_on_disc_is_that_in_memory(
+    written: Any, suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    over = written(700, tmp_path / f"over{suffix}")
+    monkeypatch.setattr("cosserat_casadi.sweep.scratch.BLOCK", 64)
+    in_memory = read_table(over)
+    on_disc = read_table(over, scratch=Scratch.beside(tmp_path / "rows.csv"))
+    assert_array_equal(on_disc.values, in_memory.values)
+    assert on_disc.where_of(650) == in_memory.where_of(650)
+    plans = [plan_sweep(PLANAR, table) for table in (in_memory, on_disc, pickle.loads(pickle.dumps(on_disc)))]
+    assert len({plan.identity for plan in plans}) == 1
+    assert_array_equal(plans[1].variants.inputs, plans[0].variants.inputs)
+    assert list(tmp_path.iterdir()) == [over]
+
+
+RESIDENT = """
+import resource, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[3])
+from tests.sweep.test_memory_of_rows import answers_at_once, grid_of_rows, swept
+rows, folder = int(sys.argv[1]), Path(sys.argv[2])
+answers_at_once(setattr)
+swept(rows, grid_of_rows(rows, folder / "over.toml"), folder / "rows.csv")
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(mmap, "MADV_DONTNEED"), reason="the system takes pages when memory is short")
+def test_a_process_does_not_grow_with_its_rows(tmp_path: Path) -> None:
+    """Pages of files on disc too: what is let go leaves the process."""
+    sizes = []
+    for rows in (2 * ROWS, 8 * ROWS):
+        folder = tmp_path / str(rows)
+        folder.mkdir()
+        command = [sys.executable, "-c", RESIDENT, str(rows), str(folder), str(ROOT)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        sizes.append(1024 * int(done.stdout))
+    few, many = sizes
+    assert many < 1.05 * few
+
+
+def test_a_full_disc_is_told_before_a_page_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> Any:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", full)
+    with pytest.raises(WriteError, match="No space left on device"):
+        Scratch.beside(tmp_path / "rows.csv").array((10, 2))
 
 
 def test_a_shard_keeps_no_results_in_memory(plan: Plan, peak: Any) -> None:

@@ -29,6 +29,7 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweep.outcome_file import record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweep.scratch import Scratch
 from cosserat_casadi.sweep.shards import Shard
 from cosserat_casadi.sweep.sobol import sobol_indices
 from cosserat_casadi.sweep.table import Table, read_table
@@ -152,7 +153,7 @@ def _check_table(
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
     with collect_problems(problems):
-        table = read_table(over, sobol=sobol)
+        table = read_table(over, sobol=sobol, scratch=Scratch.beside(output))
     if scene is None or table is None:
         # Without them the output is all that can still be looked at.
         problems.extend(output_problems(output, None))

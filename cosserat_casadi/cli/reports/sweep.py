@@ -117,16 +117,13 @@ def _error_sentences(sweep: Sweep) -> Iterator[str]:
     """How many converged rows miss the tolerance, and what to do; nothing where no row has an estimate."""
     if ERROR not in sweep.found:
         return
-    errors = sweep[ERROR][sweep.converged]
-    known = errors[np.isfinite(errors)]
-    if not known.size:
+    known, largest, row = sweep.worst
+    if not known:
         return
     tolerance = sweep.record["tolerance"]
-    largest = float(known.max())
-    missed = int(sweep.missed.sum())
+    missed = sweep.missed_count
     # Counted from 1, as a user counts.
-    worst = 1 + int(np.nanargmax(np.where(sweep.converged, sweep[ERROR], np.nan)))
-    error = f"Estimated error of {counted(len(known), 'converged row')} at most {largest:.1e} (row {worst})"
+    error = f"Estimated error of {counted(known, 'converged row')} at most {largest:.1e} (row {1 + row})"
     if not sweep.tolerance_binds:
         yield f"{error}; the scene fixes what they are computed with, and asks for no tolerance."
     elif not missed:
