@@ -143,6 +143,7 @@ def test_commands_run(line: str, tmp_path: Path) -> None:
     run_command(line, tmp_path)
 
 
+@pytest.mark.usefixtures("quick_gcc")
 def test_exported_folder_is_compiled_as_the_pages_say(tmp_path: Path) -> None:
     pages = (ROOT / "README.md", DOCS / "c-interface.md")
     lines = [line for page in pages for text in blocks(page, "sh") for line in text.splitlines() if "gcc" in line]
