@@ -71,6 +71,15 @@ def quick_compiler(workshop: Path) -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def quick_gcc(workshop: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lines of pages that call gcc find the compiler of the tests by this name: it does not optimise."""
+    folder = workshop / "named"
+    folder.mkdir(exist_ok=True)
+    once(folder / "gcc", lambda path: path.symlink_to(workshop / "cc"))
+    monkeypatch.setenv("PATH", os.pathsep.join([str(folder), os.environ["PATH"]]))
+
+
 def _write_compiler(path: Path) -> None:
     """A script that has the last word on optimisation, and compiles single sources with the quickest compiler.
 

@@ -9,6 +9,7 @@ import pytest
 from cosserat_casadi import parse_scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.pages import DOCS, blocks, run_python
 
 PAGE = DOCS / "control.md"
@@ -31,6 +32,27 @@ def test_the_page_leads_to_the_compiled_stage() -> None:
     assert "compiled_stage" in section.split("```python")[1]
 
 
-@pytest.mark.parametrize("code", blocks(PAGE, "python"))
+LONG = {
+    'inverse_scene(read_scene("examples/finger_to_point.toml"))': "control/test_inverse.py",
+    'compiled_stage(model, "wire_stage"': "codegen/test_stage.py",
+    "import rockit": "control/test_rockit.py",
+}
+"""What a block holds that takes a second or more, and the file that has quick tests of it."""
+
+
+def python_blocks() -> list[object]:
+    """Blocks of Python, the long ones marked slow."""
+    texts = blocks(PAGE, "python")
+    return mostly_slow(texts, quick=[text for text in texts if not any(words in text for words in LONG)])
+
+
+def test_every_long_block_is_on_the_page() -> None:
+    texts = blocks(PAGE, "python")
+    for words, file in LONG.items():
+        assert any(words in text for text in texts), words
+        assert (ROOT / "tests" / file).is_file(), file
+
+
+@pytest.mark.parametrize("code", python_blocks())
 def test_python_of_the_page_runs(code: str) -> None:
     run_python(code)

@@ -54,6 +54,7 @@ def whole_lines(text: str) -> list[str]:
     return [re.split(r" +#", line)[0] for line in text.replace("\\\n", " ").splitlines()]
 
 
+@pytest.mark.usefixtures("quick_gcc")
 @pytest.mark.parametrize("page", mostly_slow(MADE, quick=["guide.md"]))
 def test_the_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

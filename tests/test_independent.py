@@ -62,7 +62,7 @@ SCENES: dict[str, Scene] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", mostly_slow(SCENES, quick=list(SCENES)[::2]))
 def test_solution_vs_initial_value_integration(name: str) -> None:
     wanted = SCENES[name]
     solution = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))

@@ -44,6 +44,7 @@ LONG = (
     "cosserat sweep examples/concentric_tubes.toml",
     "cosserat tune examples/nitinol_wire.toml --set",
     "cosserat export examples/tendon_robot_move.toml",
+    "cosserat export examples/concentric_tubes.toml",
     "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",
     "cosserat path examples/loaded_tubes.toml",
@@ -67,6 +68,7 @@ LONG_PYTHON = {
     "table = solve(build(": "contact/test_contact.py",
     "stability_margin(model, parameters=True)": "control/test_margin.py",
     "examples/felt_loads.toml": "estimation/test_estimate.py",
+    "snap = path.events[0]": "tubes/test_tube_robots.py",
     "turn = robot.track(": "tubes/test_tubes_in_c.py",
 }
 """What a block holds that takes as long, and the file that has quick tests of it."""
@@ -141,6 +143,7 @@ def test_commands_run(line: str, tmp_path: Path) -> None:
     run_command(line, tmp_path)
 
 
+@pytest.mark.usefixtures("quick_gcc")
 def test_exported_folder_is_compiled_as_the_pages_say(tmp_path: Path) -> None:
     pages = (ROOT / "README.md", DOCS / "c-interface.md")
     lines = [line for page in pages for text in blocks(page, "sh") for line in text.splitlines() if "gcc" in line]

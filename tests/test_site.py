@@ -139,6 +139,7 @@ def test_faults_of_a_page_are_seen(tmp_path: Path, visit: Visit) -> None:
     assert any("nowhere.png does not load" in fault for fault in visit.faults)
 
 
+@pytest.mark.slow
 def test_formulas_are_drawn_in_the_font_of_the_site(site: Path, visit: Visit) -> None:
     visit.window.goto((site / "theory.html").as_uri())
     assert visit.window.evaluate("document.fonts.ready.then(() => document.fonts.check('16px Formulas', 'ξ'))")
@@ -149,6 +150,7 @@ def test_formulas_are_drawn_in_the_font_of_the_site(site: Path, visit: Visit) ->
     assert tallest > 50
 
 
+@pytest.mark.slow
 def test_search_finds_pages_on_a_site_that_no_server_serves(site: Path, visit: Visit) -> None:
     visit.window.goto((site / "index.html").as_uri())
     visit.window.keyboard.press("f")
@@ -160,6 +162,7 @@ def test_search_finds_pages_on_a_site_that_no_server_serves(site: Path, visit: V
     assert visit.faults == []
 
 
+@pytest.mark.slow
 def test_gallery_shows_pictures_scenes_and_pages_that_move(site: Path, visit: Visit) -> None:
     visit.window.goto((site / "gallery" / "index.html").as_uri())
     card = visit.window.locator(".gallery li", has_text="Plastic strip")
@@ -176,6 +179,7 @@ def test_gallery_shows_pictures_scenes_and_pages_that_move(site: Path, visit: Vi
 # What needs no browser
 
 
+@pytest.mark.slow
 def test_contents_of_the_site_are_those_of_the_contents_page(site: Path) -> None:
     page = (site / "index.html").read_text()
     for file in (ROOT / "docs").glob("*.md"):

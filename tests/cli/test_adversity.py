@@ -243,6 +243,7 @@ def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
         assert "dunn" in shown
 
 
+@pytest.mark.slow
 def test_units_are_written_in_plain_letters(folder: Path) -> None:
     _, shown, _ = ended(start(["solve", "wire.toml"], folder, UNREADY))
     assert "m^3" in shown

@@ -141,6 +141,7 @@ def test_fmu_is_valid(fmu):
     assert validate_fmu(str(fmu)) == []
 
 
+@pytest.mark.slow
 def test_same_model_gives_the_same_sources_and_description(model, fmu, tmp_path):
     again = write_fmu(model, tmp_path / "again.fmu", "finger")
     first = zipfile.ZipFile(fmu)

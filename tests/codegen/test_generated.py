@@ -149,8 +149,8 @@ def generated(pytestconfig: pytest.Config) -> Path:
     return FOLDER
 
 
-LARGE = {"six_rod_platform"}
-"""Folders that take tens of seconds to write and compile: `make test-slow` checks them."""
+LARGE = {"six_rod_platform", "follower_reissner"}
+"""Folders that take seconds to write and compile, and are like others: `make test-slow` checks them."""
 
 
 @pytest.fixture(params=[pytest.param(name, marks=[pytest.mark.slow] * (name in LARGE)) for name in GENERATED])

@@ -97,6 +97,7 @@ def test_rows_that_fail_leave_their_neighbours_alone(planar: Libraries) -> None:
     assert_array_equal(found[sound], planar.together.solve(inputs[sound]))
 
 
+@pytest.mark.slow
 def test_tendons_are_the_same() -> None:
     library = libraries(scene(push(), accuracy=SMALL, actuators=[TENDON]))
     inputs = np.column_stack([pushes(14, 0.5), np.linspace(0.0, 4.0, 14)])

@@ -26,10 +26,11 @@ from tests.codegen.motions import (
     start_of,
 )
 
+CABLE = pytest.param("given length", marks=pytest.mark.slow)
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, "given length", DRIVEN]
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN]
 """Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
 
 
@@ -40,16 +41,17 @@ def test_steps_vs_python(motion_library: MotionLibrary, family: str) -> None:
     assert_same_steps(made, drive(made.model, 2e-3, 8))
 
 
-@pytest.mark.parametrize("family", ["given length", DRIVEN])
+@pytest.mark.parametrize("family", ["kirchhoff", CABLE, DRIVEN])
 def test_steps_with_accelerations_of_inputs_vs_python(motion_library: MotionLibrary, family: str) -> None:
-    """A cable, a base and a length along a path of second degree in each step."""
+    """Forces, a cable, a base and a length along a path of second degree in each step."""
     made = motion_library(family)
     driven = accelerated(made.model, 2e-3, 4)
     assert_same_steps(made, driven)
-    # The path matters: without the accelerations the rods are elsewhere.
+    # The path matters: without the accelerations the rods are elsewhere, by ten thousand times what the steps agree to
+    # even where only a force is accelerated.
     straight = compiled_steps(made, start_of(made.model), replace(driven, accelerations=0.0 * driven.accelerations))
     end = compiled_steps(made, start_of(made.model), driven)[-1].state
-    assert np.abs(straight[-1].state.x - end.x).max() > 1e-6
+    assert np.abs(straight[-1].state.x - end.x).max() > 1e-8
 
 
 def assert_same_steps(made: Exported, driven: Drive) -> None:
@@ -88,7 +90,7 @@ def test_steps_to_the_default_tolerance_are_as_near_as_they_say(motion_library: 
     assert sum(step.iterations for step in near) < sum(step.iterations for step in exact)
 
 
-@pytest.mark.parametrize("family", ["fixed joint", DRIVEN, "given length"])
+@pytest.mark.parametrize("family", ["fixed joint", DRIVEN, CABLE])
 def test_loops_stay_closed(motion_library: MotionLibrary, family: str) -> None:
     """After 200 steps, constraints are open by no more than 1e-10 of the length."""
     made = motion_library(family)
@@ -291,7 +293,7 @@ def test_equations_of_motion_vs_python(motion_library: MotionLibrary, family: st
         assert_allclose(ours.full(), theirs.full(), rtol=1e-12, atol=1e-14)
 
 
-@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length", DRIVEN])
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", CABLE, DRIVEN])
 def test_derivatives_by_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
     drawn = moving_scenes.drawn_state(made.model)
@@ -323,7 +325,7 @@ def test_units_of_the_residual(motion_library: MotionLibrary) -> None:
     assert described["order"] == 3
 
 
-@pytest.mark.parametrize("family", ["kirchhoff", "given length"])
+@pytest.mark.parametrize("family", ["kirchhoff", CABLE])
 def test_several_steps_are_steps_one_by_one(motion_library: MotionLibrary, family: str) -> None:
     """To the last bit, with inputs that move: states, inputs and rates."""
     made = motion_library(family)

@@ -31,7 +31,7 @@ def test_special_and_random_numbers_under_sanitizers(motion_library: MotionLibra
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length"])
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", pytest.param("given length", marks=pytest.mark.slow)])
 def test_very_many_numbers_under_sanitizers(motion_library: MotionLibrary, family: str) -> None:
     fuzz(motion_library(family), 3000)
 

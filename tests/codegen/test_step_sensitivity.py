@@ -16,10 +16,11 @@ from cosserat_casadi.numerics.step import TimeStep, stages_of
 from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
+CABLE = pytest.param("given length", marks=pytest.mark.slow)
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, "given length", DRIVEN]
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN]
 
 DT = 4e-3
 
@@ -125,7 +126,7 @@ def test_sensitivity_vs_differences(motion_library: MotionLibrary, family: str) 
     assert_sensitivity_of_differences(made, drive(made.model, DT, 1))
 
 
-@pytest.mark.parametrize("family", ["given length", DRIVEN])
+@pytest.mark.parametrize("family", ["kirchhoff", CABLE, DRIVEN])
 def test_sensitivity_with_accelerations_of_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
     assert_sensitivity_of_differences(made, accelerated(made.model, DT, 1))

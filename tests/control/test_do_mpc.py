@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,9 +24,12 @@ from tests.control.quasi_static import (
     robot_with_parameters,
 )
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # it says which of its own extras are not installed
-    do_mpc = pytest.importorskip("do_mpc")
+
+def imported() -> Any:
+    """The package do_mpc, as late as the tests that use it: a process that runs others need not wait for it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it says which of its own extras are not installed
+        return pytest.importorskip("do_mpc")
 
 
 MODULUS = "finger.material.youngs_modulus"
@@ -53,6 +57,7 @@ def assert_plan_is(model: Model, near: Solution, modulus: float | None, expected
 
     Its terminal cost sees no algebraic state: the last of one more stage is the arrival, by a weight in time.
     """
+    do_mpc = imported()
     described = do_mpc.model.Model("discrete", symvar_type="MX")
     tensions = described.set_variable("_x", "tensions", shape=(3, 1))
     rates = described.set_variable("_u", "rates", shape=(3, 1))
@@ -92,6 +97,7 @@ def test_do_mpc_vs_nlp_in_motion() -> None:
     """Unknowns of a stage are algebraic states of a discrete system, the equations of motion their equation."""
     wanted = swing.task()
     stage = wanted.stage
+    do_mpc = imported()
     described = do_mpc.model.Model("discrete", symvar_type="MX")
     state = described.set_variable("_x", "state", shape=(stage.state_size, 1))
     tensions = described.set_variable("_x", "tensions", shape=(2, 1))

@@ -37,6 +37,7 @@ def not_compiled(stage: MotionStage, name: str) -> CompiledMotionStage:
     return CompiledMotionStage(stage.equations, poses)
 
 
+@pytest.mark.slow
 def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     """To the end of the move, with a payload that the model does not have."""
     monkeypatch.setattr(with_motion, "compiled_motion_stage", not_compiled)

@@ -245,6 +245,7 @@ def test_gymnasium_finds_no_fault_in_a_base_that_slides(on_slide):
     check_env(on_slide, skip_render_check=True)
 
 
+@pytest.mark.slow
 def test_a_base_moves_with_a_rate_that_does_not_jump(on_slide):
     """Half way between the last two actions at the end of a period, with the rate that leads from one to the other."""
     on_slide.reset(seed=0)

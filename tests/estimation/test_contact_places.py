@@ -108,6 +108,7 @@ def test_places_are_consistent_over_many_cases() -> None:
     assert_consistent(1000, "kirchhoff")
 
 
+@pytest.mark.slow
 def test_a_place_vs_a_search_without_derivatives() -> None:
     """The same maximum by scipy's least squares with differences on the solver in Python, and the same covariance."""
     model = build(touched().with_unknowns())

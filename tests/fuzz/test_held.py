@@ -42,6 +42,7 @@ def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
     assert not alike(replace(coarse, x=-coarse.x), fine)
 
 
+@pytest.mark.slow
 def test_a_rod_that_no_level_resolves_says_so_and_is_held_to_its_shape(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = solved(PLAIN, {"tolerance": 1e-9})
     # The equilibrium is decided on 15 modes, which then do not do: what is known of fewer is kept.

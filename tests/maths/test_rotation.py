@@ -38,6 +38,14 @@ def by_name(names=tuple(VECTORS)):
     return pytest.mark.parametrize("v", [VECTORS[name] for name in names], ids=names)
 
 
+def by_length():
+    """As by_name, with every second case among the slow tests: derivatives of all orders take long."""
+    cases = [
+        pytest.param(v, id=name, marks=pytest.mark.slow if k % 2 else ()) for k, (name, v) in enumerate(VECTORS.items())
+    ]
+    return pytest.mark.parametrize("v", cases)
+
+
 def np_hat(v):
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
 
@@ -299,17 +307,17 @@ def test_rotation_exp_vs_scipy(v):
     assert_allclose(R @ full(rotations.rotation_exp(ca.DM(-v))), np.eye(3), rtol=0, atol=2e-15)
 
 
-@by_name()
+@by_length()
 def test_rotation_exp_derivatives(v, check_derivatives):
     check_derivatives(rotations.rotation_exp, lambda x: expm(np_hat(x)), v)
 
 
-@by_name()
+@by_length()
 def test_left_tangent_derivatives(v, check_derivatives):
     check_derivatives(rotations.left_tangent, np_left_tangent, v)
 
 
-@by_name()
+@by_length()
 def test_left_tangent_inverse_derivatives(v, check_derivatives):
     check_derivatives(rotations.left_tangent_inverse, lambda x: np.linalg.inv(np_left_tangent(x)), v)
 

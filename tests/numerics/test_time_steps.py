@@ -333,6 +333,7 @@ def test_two_stages_are_controlled_too() -> None:
         assert abs(end.x[0] - exact[0, 0]) < 5 * tolerance
 
 
+@pytest.mark.slow
 def test_van_der_pol_costs_no_more_than_radau_of_scipy() -> None:
     mu = 1000.0
     equations = explicit(

@@ -16,6 +16,7 @@ def export(*arguments: str) -> Ended:
     return cosserat(*EXPORT_COMMAND.split()[1:], *arguments, cwd=ROOT)
 
 
+@pytest.mark.slow
 def test_a_page_is_written_beside_no_folder(tmp_path: Path) -> None:
     wasm_compiler()
     done = export("--page", str(tmp_path / "strip.html"))

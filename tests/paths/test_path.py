@@ -13,6 +13,7 @@ from scipy.special import ellipe, ellipk
 from cosserat_casadi import Model, SceneError, build, discretise, follow_path, follow_scene_path, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
+from tests.families import mostly_slow
 from tests.pose_errors import distance_between
 from tests.scenes import HOOK, push, rod, scene
 
@@ -50,7 +51,7 @@ def test_euler_column_buckles_at_eulers_load_and_is_unstable_beyond() -> None:
     assert np.array_equal(path.stable, path.factor < 1 / 12)
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
 @pytest.mark.parametrize("ratio", [1.5, 9.1])
 def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None:
     path = follow_path(column(strain), "push.force", [0, 0, -ratio * CRITICAL], branch=True)

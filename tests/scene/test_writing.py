@@ -72,7 +72,7 @@ def test_odd_titles(title: str) -> None:
     assert tomllib.loads(scene_text(wanted))["title"] == title
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=50)
 @given(st.text(st.characters(codec="utf-8"), max_size=60))
 @example('\x7f\\\x7f"')
 def test_any_title(title: str) -> None:
