@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.motion_parts import MotionInC
-from cosserat_casadi.codegen.motion_sources import MOTION_FILES, WITHOUT, motion_words
+from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
@@ -72,7 +72,7 @@ VERBATIM = frozenset(
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
-PLAIN_BUILD: dict[str, Any] = {"plain_build": True, "more_sources": "", "more_compiled": "", "more_headers": ""}
+PLAIN_BUILD = dict.fromkeys(("more_sources", "more_compiled", "more_headers"), "")
 """Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 RANGES_OF_RODS = (
@@ -200,17 +200,15 @@ def _batch_words(sizes: dict[str, Any], rows: InLanes | None) -> dict[str, Any]:
     if rows is None:
         return {
             "batch": render("batch.c.in", {**sizes, "solve": "solver_solve"}),
-            "batch_types": "",
             "batch_workspace": f"{sizes['name']}_workspace",
-            "batch_config": "",
             "batch_stack": "",
         }
     words = {**sizes, **rows.words}
     return {
+        **rows.words,
+        "in_lanes": True,
         "batch": render("batch_in_lanes.c.in", words),
-        "batch_types": render("batch_workspace.h.in", words),
         "batch_workspace": f"{sizes['name']}_batch_workspace",
-        "batch_config": render("batch_config.h.in", words),
         "batch_stack": f", {sizes['name']}_solve_batch {rows.words['lanes_stack_kb']} kB",
     }
 
@@ -227,9 +225,8 @@ def _words(
     sizes = _sizes(model, names, generated)
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
-    in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
-    errors = error_words(render, sizes, model, names)
-    sizes |= errors
+    in_motion = {} if motion is None else motion_words(render, sizes, model, names, motion)
+    sizes |= error_words(model, names)
     sizes |= _batch_words(sizes, rows)
     functions = public_functions(model, names)
     weights = model.discrete.unknowns.step_weights
@@ -299,7 +296,8 @@ def _judged_paths(model: Model, names: Names) -> str:
 
 
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
-    room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
+    own = (in_motion.get("motion_reals", 0), in_motion.get("motion_integers", 0))
+    room = (sizes["kernel_reals"] + own[0], sizes["kernel_integers"] + own[1])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
     extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"

@@ -12,7 +12,6 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
-from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
@@ -139,12 +138,6 @@ def _words(
         "max_reuses": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
-        **WITHOUT_ERRORS,
-        "further_config": render("tubes_config.h.in", basics),
-        "parameter_config": "",
-        "rate_of_parameters": "",
-        "add_rate_of_parameters": "",
-        "batch_config": "",
         "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
