@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+INCLUDED = re.compile(r"@\{include (\S+)\}\n")
+"""A part of a template that is a template too."""
+
 SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.DOTALL)
 """Lines of a template without sections in them: ``@{if word}`` or ``@{if not word}``, the lines, ``@{end}``."""
 
@@ -17,10 +20,11 @@ def render(template: str, words: dict[str, Any]) -> str:
     Parts that it includes, ``@{include part}``, and sections whose word is true, or false as they ask, stay.
     """
     text = resource("templates", template)
-    whole = re.sub(r"@\{include (\S+)\}\n", lambda part: resource("templates", part[1]), text)
-    while SECTION.search(whole):
-        whole = SECTION.sub(lambda found: found[3] if bool(words.get(found[2])) != bool(found[1]) else "", whole)
-    return fill(whole, words)
+    while INCLUDED.search(text):
+        text = INCLUDED.sub(lambda part: resource("templates", part[1]), text)
+    while SECTION.search(text):
+        text = SECTION.sub(lambda found: found[3] if bool(words.get(found[2])) != bool(found[1]) else "", text)
+    return fill(text, words)
 
 
 def fill(text: str, words: Mapping[str, Any]) -> str:

@@ -121,7 +121,6 @@ def _words(
     return {
         **basics,
         **dense_words(render, basics),
-        "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
         **input_words(model, names, RANGES),
@@ -138,7 +137,8 @@ def _words(
         "max_reuses": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
-        "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
+        **ROWS_OF_INPUTS,
+        "batch_solve": "tubes_solve",
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
         "first_tube": int(np.argmax(robot.translations(robot.inputs))),
