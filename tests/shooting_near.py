@@ -1,15 +1,29 @@
-"""The equilibrium near a solution of the package by shooting, in the package's own words for poses and wrenches."""
+"""Scenes and solutions of the package beside the shooting of the tests, which reads tables and shares no code."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.testing import assert_allclose
 from numpy.typing import ArrayLike
 
-from cosserat_casadi import Solution
+from cosserat_casadi import Scene, Solution
 from cosserat_casadi.bench.reference import RodState
 from cosserat_casadi.model.watched import watched_sections
-from tests.reference.shooting import solve_by_shooting
+from tests.reference import shooting
+from tests.reference.shooting import Tip, solve_by_shooting
+
+
+def integrate(scene: Scene, force: ArrayLike, moment: ArrayLike) -> Tip:
+    """The scene's only rod integrated from its base, where the clamp exerts this force and moment on it."""
+    return shooting.integrate(tables_of(scene), np.concatenate([force, moment]))
+
+
+def tables_of(scene: Scene) -> dict[str, Any]:
+    """Tables of a scene file."""
+    tables: dict[str, Any] = scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    return tables
 
 
 def shoot(solution: Solution, X: ArrayLike | None = None) -> RodState:
@@ -28,7 +42,7 @@ def shoot(solution: Solution, X: ArrayLike | None = None) -> RodState:
     assert_allclose(solution.inputs, model.pack(), rtol=0, atol=0)
     clamp = solution.base_wrench()
     truth = solve_by_shooting(
-        model.scene.model_dump(mode="json", by_alias=True, exclude_unset=True),
+        tables_of(model.scene),
         samples=watched_sections(model.scene, rod.name) if X is None else X,
         base_wrench=np.concatenate([clamp.force, clamp.moment]),
     )

@@ -70,8 +70,8 @@ from cosserat_casadi.scene.rod_records import SectionRecord
 from cosserat_casadi.scene.target_records import TargetRecord
 from cosserat_casadi.scene.values import Direction, Positive, Size, Vector
 from tests.families import mostly_slow
-from tests.initial_value import integrate
 from tests.registration import registered
+from tests.shooting_near import integrate
 
 STIFFNESS = 3.0
 ANCHOR = np.array([0.15, 0.05, 0.25])

@@ -20,9 +20,9 @@ from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from tests.families import mostly_slow
-from tests.initial_value import integrate
 from tests.pose_errors import distance_between, pose_error
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
+from tests.shooting_near import integrate
 
 BASE = {"position": [0.1, -0.2, 0.3], "quaternion": [0.5, 0.5, -0.5, 0.5]}
 TUBE = {

@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.motion_parts import MotionInC
-from cosserat_casadi.codegen.motion_sources import MOTION_FILES, WITHOUT, motion_words
+from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
@@ -73,7 +73,7 @@ VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
-PLAIN_BUILD: dict[str, Any] = {"plain_build": True, "more_sources": "", "more_compiled": "", "more_headers": ""}
+PLAIN_BUILD = dict.fromkeys(("more_sources", "more_compiled", "more_headers"), "")
 """Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 RANGES_OF_RODS = (
@@ -200,23 +200,15 @@ def library_sources(
     }
 
 
-def _batch_words(sizes: dict[str, Any], rows: InLanes | None) -> dict[str, Any]:
+def _batch_words(name: str, rows: InLanes | None) -> dict[str, Any]:
     """Words of the function for many load cases, which are solved side by side or one after the other."""
     if rows is None:
-        return {
-            "batch": render("batch.c.in", {**sizes, "solve": "solver_solve"}),
-            "batch_types": "",
-            "batch_workspace": f"{sizes['name']}_workspace",
-            "batch_config": "",
-            "batch_stack": "",
-        }
-    words = {**sizes, **rows.words}
+        return {"batch_solve": "solver_solve", "batch_workspace": f"{name}_workspace", "batch_stack": ""}
     return {
-        "batch": render("batch_in_lanes.c.in", words),
-        "batch_types": render("batch_workspace.h.in", words),
-        "batch_workspace": f"{sizes['name']}_batch_workspace",
-        "batch_config": render("batch_config.h.in", words),
-        "batch_stack": f", {sizes['name']}_solve_batch {rows.words['lanes_stack_kb']} kB",
+        **rows.words,
+        "in_lanes": True,
+        "batch_workspace": f"{name}_batch_workspace",
+        "batch_stack": f", {name}_solve_batch {rows.words['lanes_stack_kb']} kB",
     }
 
 
@@ -232,10 +224,9 @@ def _words(
     sizes = _sizes(model, names, generated)
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
-    in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
-    errors = error_words(render, sizes, model, names)
-    sizes |= errors
-    sizes |= _batch_words(sizes, rows)
+    in_motion = {} if motion is None else motion_words(render, sizes, model, names, motion)
+    sizes |= error_words(model, names)
+    sizes |= _batch_words(names.name, rows)
     functions = public_functions(model, names)
     weights = model.discrete.unknowns.step_weights
     return {
@@ -245,7 +236,8 @@ def _words(
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
-        "judged_paths": _judged_paths(model, names),
+        "paths": 0 if model.path_stretch is None else model.path_stretch.size1_out(0),
+        "vanished": VANISHED,
         **status_words(names),
         **input_words(model, names),
         **result_struct_words(model, names),
@@ -294,16 +286,9 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
     }
 
 
-def _judged_paths(model: Model, names: Names) -> str:
-    """What looks at the paths of tendons where a solve has ended; nothing of it where no strain changes one."""
-    if model.path_stretch is None:
-        return resource("templates", "no_paths.c.in")
-    words = {"name": names.name, "paths": model.path_stretch.size1_out(0), "vanished": VANISHED}
-    return render("path_stretch.c.in", words)
-
-
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
-    room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
+    own = (in_motion.get("motion_reals", 0), in_motion.get("motion_integers", 0))
+    room = (sizes["kernel_reals"] + own[0], sizes["kernel_integers"] + own[1])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
     extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
@@ -343,7 +328,7 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
     }
 
 
-def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES_OF_RODS) -> dict[str, str]:
+def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES_OF_RODS) -> dict[str, Any]:
     """What the templates say of the inputs of a model: macros, struct, ranges, table, default values.
 
     Args:
@@ -355,9 +340,7 @@ def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES
     if model.inputs.size:
         lower, upper = ranges_of_inputs(model.scene, model.inputs)
         ends = {"lower": _ends(lower, names), "upper": _ends(upper, names)}
-        named = {"name": names.name, "MACRO": names.macro, "ranges": ranges, **ends}
-        words["inputs_struct"] += render("ranges.h.in", named)
-        words["inputs_functions"] += render("ranges.c.in", named)
+        words |= {"has_inputs": True, "ranges": ranges, **ends}
     return words
 
 
@@ -368,7 +351,7 @@ def _ends(values: FloatArray, names: Names) -> str:
     return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
 
 
-def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, str]:
+def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, Any]:
     """What the templates say of inputs as they are in the manifest: macros, struct, table, default values."""
     macros = list[str]()
     rows = list[str]()
@@ -383,12 +366,9 @@ def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, s
         rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {listed(entry['value'])} |")
     values = [number for entry in entries for number in entry["value"]]
     polynomial = any(entry["shape"][1] > 1 for entry in entries)
-    named = {"name": names.name, **input_struct_words(names, entries)}
     return {
         "input_macros": "\n".join(macros) or "/* This scene leaves none free. */",
-        # C has no struct without members.
-        "inputs_struct": render("inputs.h.in", named) if entries else "\n",
-        "inputs_functions": render("inputs.c.in", named) if entries else "\n",
+        **input_struct_words(names, entries),
         "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
         "defaults": ", ".join(initialiser(value, names) for value in values) or "0",

@@ -41,17 +41,6 @@ SINGLE = {
 STAGES = 2
 """Stages of the method, which step.c is written for."""
 
-WITHOUT: Words = {
-    "motion": "",
-    "motion_types": "",
-    "motion_members": "",
-    "motion_header": "",
-    "further_config": "",
-    "motion_reals": 0,
-    "motion_integers": 0,
-}
-"""Words of a library without motions."""
-
 
 def motion_words(render: Render, basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
     """Words of a library with motions."""
@@ -65,7 +54,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
     # Displacements are measured by the scene's own numbers, whatever the parameters are.
     lengths = np.where(model.discrete.unknowns.differential, displacements(model.at()), 0.0)
     words = {
-        **basics,
+        "in_motion": True,
         **_limits(),
         **_method(),
         **motion_status_words(names),
@@ -82,14 +71,9 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "elimination_tables": _elimination_tables(fronts, whole),
     }
     return {
-        "motion": render("motion.c.in", words),
-        "motion_types": render("motion_types.h.in", words),
-        "motion_members": render("motion_workspace.h.in", words),
-        "motion_header": render("motion.h.in", words),
-        "further_config": render("motion_config.h.in", words),
-        "in_motion": True,
+        **words,
         "load_room": max(len(model.scene.loads), 1),
-        "motion_reals": _workspace_reals(model, motion, words),
+        "motion_reals": _workspace_reals(model, motion, {**basics, **words}),
         "motion_integers": 3 * model.size + 1,
     }
 

@@ -31,15 +31,6 @@ WITHOUT: Words = {
     "inner": "",
     "inner_equations": "",
     "pose_adapters": "",
-    "solved_tangent": "",
-    "rate_of_parameters": "",
-    "add_rate_of_parameters": "",
-    "parameter_header": "",
-    "parameter_config": "",
-    "parameter_members": "",
-    "parameter_functions": "",
-    "demo_parameters": "",
-    "readme_parameters": "",
     "parameter_reals": 0,
 }
 """Words of a library without parameters, beside those that depend on the library."""
@@ -61,37 +52,25 @@ def parameter_words(render: Render, basics: Words, model: Model, names: Names, *
         return {
             **WITHOUT,
             "solver_inputs": f"{names.macro}_INPUTS",
-            "unloaded_tangent": render("unloaded_tangent.c.in", basics),
             "pose_derivatives": _listed_lines(functions),
         }
     entries = parameter_entries(model)
-    words = {**basics, **_described(entries, names), **parameter_struct_words(names, entries)}
-    in_motion = render("parameters_in_motion.c.in", words) if dynamics else ""
+    words = {**_described(entries, names), **parameter_struct_words(names, entries)}
     adapters = [f"derivatives_of_{function}" for function in functions]
     rendered = [
-        render("pose_adapter.c.in", {**words, "adapter": adapter, "function": function})
+        render("pose_adapter.c.in", {**basics, "adapter": adapter, "function": function})
         for adapter, function in zip(adapters, functions, strict=True)
     ]
     return {
+        **words,
         **_arguments(names),
+        "with_parameters": True,
         "passed": ", parameters",
         "inner": "stacked_",
         "inner_equations": "stacked_",
         "solver_inputs": f"({names.macro}_INPUTS + {names.macro}_PARAMETERS)",
-        "unloaded_tangent": "",
-        "solved_tangent": render("solved_tangent.c.in", words),
-        "rate_of_parameters": render("rate_of_parameters.c.in", words),
-        "add_rate_of_parameters": render("add_rate_of_parameters.c.in", words),
         "pose_adapters": "".join(rendered),
         "pose_derivatives": _listed_lines(adapters),
-        "parameter_header": render("parameters.h.in", words),
-        "parameter_config": _with_motion(render, "parameters{}_config.h.in", words, dynamics),
-        "parameter_members": _with_motion(render, "parameters{}_workspace.h.in", words, dynamics),
-        "parameter_functions": render("parameters.c.in", {**words, "motion_with_parameters": in_motion}),
-        "parameter_rows": words["parameter_rows"],
-        "with_parameters": True,
-        "demo_parameters": f"static const real parameters[] = {names.macro}_PARAMETER_DEFAULTS;\n",
-        "readme_parameters": f"  {names.name}_real parameters[] = {names.macro}_PARAMETER_DEFAULTS;\n",
         "parameter_reals": _workspace_reals(basics, dynamics),
     }
 
@@ -112,12 +91,6 @@ def _arguments(names: Names) -> Words:
         "given_of_row": "stack(inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS, work->stacked)",
         "parameters_in_readme": f", const {real} *parameters",
     }
-
-
-def _with_motion(render: Render, template: str, words: Words, dynamics: bool) -> str:
-    """A template, and that of motions behind it."""
-    statics = render(template.format(""), words)
-    return statics + render(template.format("_in_motion"), words) if dynamics else statics
 
 
 def _described(entries: list[dict[str, Any]], names: Names) -> Words:

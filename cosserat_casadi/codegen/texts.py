@@ -7,19 +7,24 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-SECTION = re.compile(r"^@\{if (\w+)\}\n(.*?)^@\{end\}\n", re.MULTILINE | re.DOTALL)
-"""Lines of a template that stay where a word is true: ``@{if word}``, the lines, ``@{end}``."""
+INCLUDED = re.compile(r"@\{include (\S+)\}\n")
+"""A part of a template that is a template too."""
+
+SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.DOTALL)
+"""Lines of a template without sections in them: ``@{if word}`` or ``@{if not word}``, the lines, ``@{end}``."""
 
 
 def render(template: str, words: dict[str, Any]) -> str:
     """A template of this package with its words filled in.
 
-    Parts that it includes, ``@{include part}``, and sections whose word is true stand in the text.
+    Parts that it includes, ``@{include part}``, and sections whose word is true, or false as they ask, stay.
     """
     text = resource("templates", template)
-    whole = re.sub(r"@\{include (\S+)\}\n", lambda part: resource("templates", part[1]), text)
-    held = SECTION.sub(lambda section: section[2] if words.get(section[1]) else "", whole)
-    return fill(held, words)
+    while INCLUDED.search(text):
+        text = INCLUDED.sub(lambda part: resource("templates", part[1]), text)
+    while SECTION.search(text):
+        text = SECTION.sub(lambda found: found[3] if bool(words.get(found[2])) != bool(found[1]) else "", text)
+    return fill(text, words)
 
 
 def fill(text: str, words: Mapping[str, Any]) -> str:

@@ -22,6 +22,7 @@ from cosserat_casadi.control.lifted_problem import LiftedProblem
 from cosserat_casadi.control.target_errors import wanted_poses
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.broyden import solved
 
 MOST_TURNS = 15
 """Turns before the search is given up: near ones take three to six."""
@@ -92,9 +93,8 @@ def _linearised(problem: LiftedProblem, x: FloatArray, change: FloatArray) -> _L
     wanted = wanted_poses(problem.targets)
     found = problem.errors(x, change, problem.origin, wanted)
     errors, errors_by_x, errors_by_change = (part.full() for part in found)
-    try:
-        follows = np.linalg.solve(stiffness, np.column_stack([residual, by_input]))
-    except np.linalg.LinAlgError:
+    follows = solved(stiffness, np.column_stack([residual, by_input]))
+    if follows is None:
         return None
     balanced = errors[:, 0] - errors_by_x @ follows[:, 0]
     moved = errors_by_change - errors_by_x @ follows[:, 1:]

@@ -22,6 +22,7 @@ from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touch
 from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.numerics.broyden import solved
 from cosserat_casadi.numerics.complementarity import least_pushes
 
 MOST_TURNS = 50
@@ -109,11 +110,8 @@ def _stiffened(stiffness: FloatArray, allowed: ConstrainedVariations) -> FloatAr
 
 def _pushes(stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray) -> FloatArray | None:
     """Forces of a turn, none of which pulls, and at which no gap closes, shape (m,); None where none are found."""
-    try:
-        answers = np.linalg.solve(stiffness, np.column_stack([-residual, gradients.T]))
-    except np.linalg.LinAlgError:
-        return None
-    if not np.all(np.isfinite(answers)):
+    answers = solved(stiffness, np.column_stack([-residual, gradients.T]))
+    if answers is None:
         return None
     straight_on = answers[:, 0]
     by_force = answers[:, 1:]
@@ -135,11 +133,8 @@ def _balanced(
     bordered[:size, :size] = stiffness
     bordered[:size, size:] = -gradients.T
     bordered[size:, :size] = gradients
-    try:
-        answer = np.linalg.solve(bordered, -np.concatenate([residual, gaps]))
-    except np.linalg.LinAlgError:
-        return None
-    return answer[:size], answer[size:]
+    answer = solved(bordered, -np.concatenate([residual, gaps]))
+    return None if answer is None else (answer[:size], answer[size:])
 
 
 def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid: frozenset[int]) -> Touches:

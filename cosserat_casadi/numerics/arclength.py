@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import dense
+from cosserat_casadi.numerics.broyden import dense, shortest_step
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.newton import relative_norm
 
@@ -216,7 +216,7 @@ class Curve:
             bordered = np.vstack([self.derivative(y), plane.normal])
             if self.rows is not None:
                 off_curve = self.rows * off_curve
-            step = _shortest_step(bordered, np.append(off_curve, off_plane), self.singular)
+            step = shortest_step(bordered, np.append(off_curve, off_plane), self.singular)
             if step is None:
                 return None
             y = y + step
@@ -292,14 +292,3 @@ def null_space(derivative: FloatArray, singular: float = SINGULAR) -> FloatArray
     rounding = singular * max(largest, 1e-300)
     rank = int(np.sum(values > rounding))
     return np.asarray(rows[rank:].T)
-
-
-def _shortest_step(matrix: FloatArray, residual: FloatArray, singular: float) -> FloatArray | None:
-    """Newton's step; singular values at rounding are left out, so that a neutral direction is not moved along."""
-    if not np.all(np.isfinite(matrix)):
-        return None
-    solution = np.linalg.lstsq(matrix, -residual, rcond=singular)[0]
-    step = np.asarray(solution)
-    if not np.all(np.isfinite(step)):
-        return None
-    return step

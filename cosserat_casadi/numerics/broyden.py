@@ -123,9 +123,33 @@ def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
     if not np.all(np.isfinite(residual)):
         return None
     step = _regular_step(jacobian, residual)
-    if step is None:
-        step = _shortest_step(jacobian, residual)
-    return _finite_or_none(step)
+    return shortest_step(jacobian, residual) if step is None else _finite_or_none(step)
+
+
+def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
+    """Solution of a dense linear system, shape as the right-hand sides; None where it has no finite one."""
+    try:
+        solution = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return None
+    return _finite_or_none(np.asarray(solution, dtype=np.float64))
+
+
+def shortest_step(jacobian: FloatArray, residual: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
+    """The step of least norm among those that solve the equations best: along a neutral direction nothing moves.
+
+    Args:
+        jacobian: shape (n, m).
+        residual: shape (n,).
+        singular: share of the largest singular value below which one is zero.
+
+    Returns:
+        shape (m,); None where a number is not finite.
+    """
+    if not np.all(np.isfinite(jacobian)):
+        return None
+    solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=singular)
+    return _finite_or_none(np.asarray(solution, dtype=np.float64))
 
 
 def dense(jacobian: Jacobian) -> FloatArray:
@@ -157,12 +181,6 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
     if not condition <= 1.0 / SINGULAR:
         return None
     return np.asarray(solutions[:, 0], dtype=np.float64)
-
-
-def _shortest_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """The least-squares step of least norm."""
-    solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)
-    return np.asarray(solution, dtype=np.float64)
 
 
 def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:

@@ -9,8 +9,8 @@ import numpy as np
 from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from tests.catalogue.cases import Table, twisted_column, twisted_ring
-from tests.initial_value import integrate
 from tests.pose_errors import pose_error
+from tests.shooting_near import integrate
 
 BRACKET = 1e-6
 """Relative distance, to both sides of a reference, at which an eigenvalue is looked at.

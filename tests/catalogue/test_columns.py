@@ -15,7 +15,7 @@ from cosserat_casadi import build, discretise, follow_path, read_scene, solve
 from tests.catalogue import cases
 from tests.catalogue.checks import fine_model
 from tests.conftest import ROOT
-from tests.initial_value import integrate
+from tests.shooting_near import integrate
 
 
 @pytest.mark.parametrize(("weight", "stable"), [(7.837, True), (7.838, False)])

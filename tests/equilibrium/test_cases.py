@@ -14,8 +14,8 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Solution, read_scene, solve_scene
 from tests.conftest import case_files
 from tests.families import mostly_slow
-from tests.initial_value import integrate
 from tests.pose_errors import angle_between, distance_between
+from tests.shooting_near import integrate
 
 RODS = case_files("rods")
 pytestmark = pytest.mark.skipif(not RODS, reason="the reference cases are not beside this checkout")

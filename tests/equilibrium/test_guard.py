@@ -14,9 +14,9 @@ from scipy.optimize import root
 from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
-from tests.initial_value import integrate
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene
+from tests.shooting_near import integrate
 
 UNIT = {"planar": {"bending_y": 1.0}, "kirchhoff": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}}
 

@@ -29,9 +29,9 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
-from tests.initial_value import integrate
 from tests.reference.held_scenes import held_scene
 from tests.scenes import WEIGHT, push, rod, scene
+from tests.shooting_near import integrate
 
 CRITICAL = np.pi**2 / 4
 """Euler's load of a clamped-free column, in EI/L²."""

@@ -116,16 +116,12 @@ def solve_by_shooting(
         ValueError: the scene holds what shooting does not know.
         NoEquilibriumError: where the path ends, as at a limit load, or no equilibrium is near the base wrench.
     """
-    unknown_kinds = {entry["kind"] for table in TABLES for entry in scene.get(table, [])} - KNOWN
-    if unknown_kinds:
-        raise ValueError(f"shooting does not know {', '.join(sorted(unknown_kinds))}")
-    problem = _Problem(rod_of(scene))
+    problem = _problem(scene)
     start, end = _start(problem, scene, start_moment)
     if base_wrench is None:
         near, steps = _follow(problem, end, start)
     else:
-        # The rod's own wrench at its base is opposite to that of the clamp.
-        near, steps = -np.asarray(base_wrench, dtype=float) / problem.wrench_units, 0
+        near, steps = _unknown(problem, base_wrench), 0
     unknown, residual = _polish(problem, end, near)
     if base_wrench is not None and _relative(unknown - near, near) > NEAR:
         raise NoEquilibriumError("no equilibrium is near the base wrench")
@@ -143,6 +139,44 @@ def solve_by_shooting(
         _problem=problem,
         _unknown=unknown,
     )
+
+
+@dataclass(frozen=True)
+class Tip:
+    """Pose of the tip, and the wrench that is left there once its loads are taken off, world axes, N and N m."""
+
+    position: Array
+    rotation: Array
+    force_left: Array
+    moment_left: Array
+
+
+def integrate(scene: dict[str, Any], base_wrench: ArrayLike) -> Tip:
+    """The rod of a scene integrated from its base, where the clamp exerts this force and moment on it, N and N m."""
+    problem = _problem(scene)
+    unknown = _unknown(problem, base_wrench)
+    (before,) = problem.march(unknown, 1.0, [1.0], FINE)
+    tip = problem.beyond(before, 1.0)
+    left = np.concatenate([tip.n[0], tip.m[0]]) * problem.wrench_units
+    position = problem.rod.base_position + problem.rod.length * tip.r[0]
+    return Tip(position, tip.R[0], left[:3], left[3:])
+
+
+def _problem(scene: dict[str, Any]) -> _Problem:
+    """The rod of a scene.
+
+    Raises:
+        ValueError: the scene holds what shooting does not know.
+    """
+    unknown_kinds = {entry["kind"] for table in TABLES for entry in scene.get(table, [])} - KNOWN
+    if unknown_kinds:
+        raise ValueError(f"shooting does not know {', '.join(sorted(unknown_kinds))}")
+    return _Problem(rod_of(scene))
+
+
+def _unknown(problem: _Problem, base_wrench: ArrayLike) -> Array:
+    """The rod's wrench at its base, without unit: opposite to that of the clamp, N and N m."""
+    return -np.asarray(base_wrench, dtype=float) / problem.wrench_units
 
 
 # The initial value problem

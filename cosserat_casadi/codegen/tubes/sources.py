@@ -12,7 +12,6 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
-from cosserat_casadi.codegen.error_sources import WITHOUT as WITHOUT_ERRORS
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
@@ -123,7 +122,6 @@ def _words(
     return {
         **basics,
         **dense_words(render, basics),
-        "judged_paths": resource("templates", "no_paths.c.in"),
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
         **input_words(model, names, RANGES),
@@ -140,13 +138,8 @@ def _words(
         "max_reuses": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
-        **WITHOUT_ERRORS,
-        "further_config": render("tubes_config.h.in", basics),
-        "parameter_config": "",
-        "rate_of_parameters": "",
-        "add_rate_of_parameters": "",
-        "batch_config": "",
-        "batch": render("batch.c.in", {**basics, **ROWS_OF_INPUTS, "solve": "tubes_solve"}),
+        **ROWS_OF_INPUTS,
+        "batch_solve": "tubes_solve",
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
         "first_tube": int(np.argmax(robot.translations(robot.inputs))),

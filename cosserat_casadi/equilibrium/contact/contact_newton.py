@@ -13,6 +13,7 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.broyden import solved
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 
 HELD_STEPS = 6
@@ -59,7 +60,7 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
         least = norm
         if _narrowest(equations, z) < COLLAPSED:
             break
-        step = _step(equations.jacobian(z, equations.given), -residual)
+        step = solved(equations.jacobian(z, equations.given), -residual)
         if step is None:
             break
         z = z + _share(equations, z, step) * step
@@ -81,19 +82,11 @@ def _held(equations: ContactEquations, start: FloatArray) -> tuple[FloatArray | 
         if relative_norm(residual, z) <= HELD_ENOUGH:
             return z, number
         jacobian = equations.jacobian(z, equations.given)
-        step = _step(jacobian[np.ix_(rows, known)], -residual)
+        step = solved(jacobian[np.ix_(rows, known)], -residual)
         if step is None:
             return None, number
         z[known] += step
     return z, HELD_STEPS
-
-
-def _step(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
-    try:
-        step = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        return None
-    return np.asarray(step) if np.isfinite(step).all() else None
 
 
 def _widths(equations: ContactEquations, z: FloatArray) -> FloatArray:
