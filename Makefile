@@ -4,6 +4,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Small matrices: a second BLAS thread only takes the other worker's core.
 export OPENBLAS_NUM_THREADS := 1
+# What Python has compiled serves the other processes of a run, and the next run.
+unexport PYTHONDONTWRITEBYTECODE
 STAMP := $(VENV)/.installed
 
 .PHONY: help demo gallery test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
@@ -26,7 +28,8 @@ help:
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	# Compiled when it is imported: most modules of these packages never are.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[test]'
 	@touch $@
 
 demo: $(STAMP)

@@ -30,14 +30,13 @@ from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.program import Program, Times
-from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
 from cosserat_casadi.maths.pose_change import change_size
-from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.pose_errors import pose_error
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
+from tests.shooting_near import shoot
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
 FOLDER = Path(__file__).parents[1] / "build" / "dial"
@@ -154,11 +153,9 @@ def judged(row: Row, solution: Solution, truth: Tip, followed: Tip | None, refer
 
 def true_tip(near: Solution) -> tuple[Tip, str]:
     """Tip of shooting that starts at the clamp's wrench of a solution; that of a far finer solution where it fails."""
-    basis, base = near.model.discrete.rods[ROD], near.base_wrench(ROD)
-    values = load_values(near.model.scene, near.model.inputs, near.inputs)
     try:
-        state = shoot(near.model.scene, basis.properties, values, [1.0], np.concatenate([base.force, base.moment]))
-    except ShootingError:
+        state = shoot(near, [1.0])
+    except NoEquilibriumError:
         return tip(far_finer(near)), "finer"
     return (state.position[0] / state.length, state.rotation[0]), "shooting"
 

@@ -12,6 +12,9 @@ import pytest
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 """Programs that are looked for."""
 
+PATIENCE = 60_000
+"""Milliseconds that a condition of a page is waited for: twenty times what a browser takes on an idle machine."""
+
 
 @contextmanager
 def browser() -> Iterator[Any]:

@@ -38,6 +38,11 @@ LONG = (
     "cosserat tune examples/nitinol_wire.toml --tolerance",
     "cosserat estimate examples/",
     "cosserat identify examples/wire_from_shapes.toml",
+    "cosserat path examples/concentric_tubes.toml",
+    "cosserat simulate examples/seaweed.toml",
+    "cosserat solve examples/rod_on_table.toml",
+    "cosserat sweep examples/concentric_tubes.toml",
+    "cosserat tune examples/nitinol_wire.toml --set",
     "cosserat export examples/tendon_robot_move.toml",
     "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",
@@ -51,8 +56,20 @@ LONG = (
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 
-LONG_PYTHON = ("environment = ReachEnvironment(", "examples/robot_leans_on_wall.toml")
-"""What a block holds that takes as long: tests/environments and tests/contact have quick tests of it."""
+LONG_PYTHON = {
+    "environment = ReachEnvironment(": "environments/test_reach.py",
+    "examples/robot_leans_on_wall.toml": "contact/test_contact_of_assemblies.py",
+    'name = "stone"': "contact/test_split_lines.py",
+    "examples/finger_on_finger.toml": "contact/test_exact_contact_on_bodies.py",
+    "examples/bouncing_rod.toml": "motion/test_exact_contact_in_motion.py",
+    "examples/rod_lies_down.toml": "motion/test_rods_that_lie_down.py",
+    "found = rod.track(": "codegen/test_contact_in_c.py",
+    "table = solve(build(": "contact/test_contact.py",
+    "stability_margin(model, parameters=True)": "control/test_margin.py",
+    "examples/felt_loads.toml": "estimation/test_estimate.py",
+    "turn = robot.track(": "tubes/test_tubes_in_c.py",
+}
+"""What a block holds that takes as long, and the file that has quick tests of it."""
 
 LANGUAGES = {"python", "sh", "toml", "c", "csv", "text"}
 
@@ -86,8 +103,9 @@ def _is_long(code: str) -> bool:
 
 def test_every_long_block_is_on_a_page() -> None:
     texts = [text for page in RUN_HERE for text in blocks(page, "python")]
-    for words in LONG_PYTHON:
+    for words, file in LONG_PYTHON.items():
         assert any(words in text for text in texts), words
+        assert (ROOT / "tests" / file).is_file(), file
 
 
 @pytest.mark.parametrize("code", python_blocks())
@@ -103,7 +121,9 @@ def test_one_program_runs(name: str) -> None:
 
 def run_lines() -> list[object]:
     """Commands that tests run, those of many seconds marked slow."""
-    cases = [case for case in of_all("commands") if not case.values[0].startswith(SLOW_TO_RUN)]
+    # What several pages say is run once.
+    once = {case.values[0]: case for case in reversed(of_all("commands"))}
+    cases = [case for line, case in reversed(once.items()) if not line.startswith(SLOW_TO_RUN)]
     return [
         pytest.param(*case.values, id=case.id, marks=pytest.mark.slow if case.values[0].startswith(LONG) else ())
         for case in cases
@@ -121,9 +141,11 @@ def test_commands_run(line: str, tmp_path: Path) -> None:
     run_command(line, tmp_path)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/c-interface.md"])
-def test_exported_folder_is_compiled_as_the_page_says(page: str, tmp_path: Path) -> None:
-    (line,) = [line for text in blocks(ROOT / page, "sh") for line in text.splitlines() if "gcc" in line]
+def test_exported_folder_is_compiled_as_the_pages_say(tmp_path: Path) -> None:
+    pages = (ROOT / "README.md", DOCS / "c-interface.md")
+    lines = [line for page in pages for text in blocks(page, "sh") for line in text.splitlines() if "gcc" in line]
+    assert len(lines) == len(pages)
+    (line,) = set(lines)
     shutil.copytree(ROOT / "generated" / "nitinol_wire", tmp_path / "wire")
     assert line.startswith("(cd wire && ")
     done = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -28,14 +28,16 @@ SEED = 31
 SAMPLES = 16
 """Random corners that are solved, and random points too; as many fresh points are tried in the end."""
 
+SAMPLES_IN_CONTACT = 2
+"""The same in exact contact, where a solve takes seconds. Which contacts are closed is found anew at each point."""
+
 
 @dataclass(frozen=True)
 class Choice:
     """A discretisation for ranges of inputs and parameters, or for load cases.
 
     Attributes:
-        scene: the scene with this discretisation fixed; where the tolerance is met, with the ranges that it was chosen
-            for.
+        scene: the scene with this discretisation fixed, and the ranges that it was chosen for.
         model: of that scene.
         ranges: what it was chosen for, entry by entry.
         solves: points of the ranges, or load cases, that were solved on it, or on fewer modes if these already left an
@@ -82,7 +84,7 @@ def choose(
     ranges: Given | None = None,
     tolerance: float | None = None,
     progress: Progress | None = None,
-    samples: int = SAMPLES,
+    samples: int | None = None,
     *,
     cases: Sequence[Values] | None = None,
 ) -> Choice:
@@ -96,7 +98,8 @@ def choose(
             parameter; for all else see :func:`cosserat_casadi.accuracy.ranges.input_ranges`.
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many points are solved.
-        samples: random corners that are tried, and as many random points, beside the ends of each range.
+        samples: random corners that are tried, and as many random points, beside the ends of each range; by default 16,
+            and 2 in exact contact.
         cases: inputs and parameters by name, at least one case, in place of ranges; what a case does not name keeps the
             scene's value.
 
@@ -109,7 +112,7 @@ def choose(
         scene = with_accuracy(scene, tolerance=tolerance)
     if cases is None:
         search = _Search(scene, input_ranges(scene, ranges), progress)
-        search.begin(samples)
+        search.begin(_default_samples(scene) if samples is None else samples)
         more = search.more
     else:
         if not cases:
@@ -124,6 +127,10 @@ def choose(
     else:
         answers = search.modes.refined(more)
     return search.verdict(answers, every=cases is not None)
+
+
+def _default_samples(scene: scenes.Scene) -> int:
+    return SAMPLES_IN_CONTACT if scene.touches_exactly else SAMPLES
 
 
 @dataclass
@@ -237,7 +244,7 @@ class _Search:
         within = largest is not None and largest <= self.scene.accuracy.tolerance
         locked = self.modes.locked(answers)
         met = within and not locked and not (every and failed)
-        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described if met else ())
+        fixed = fixed_by_rod(self.scene, chosen, self.ranges.described)
         return Choice(
             scene=fixed,
             model=build(fixed, chosen),

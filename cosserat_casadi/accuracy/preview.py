@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.locking import motion, residual_by_inputs
+from cosserat_casadi.equilibrium.locking import degrees_of_freedom, motion, residual_by_inputs
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -27,7 +27,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
 from cosserat_casadi.numerics.neutral import regular, regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -241,12 +240,11 @@ class Preview:
 
     def _has_ample_freedom(self, kept: Mask) -> bool:
         """Whether so many coordinates are free that nothing can lock; so where nothing is constrained."""
-        discrete = self.model.discrete
-        multipliers = [entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
-        constraints = sum(entries.stop - entries.start for entries in multipliers)
-        # Each constraint has a multiplier among the unknowns, and takes one coordinate's freedom.
-        free = int(kept.sum()) - 2 * constraints
-        return not multipliers or free >= AMPLE_FREEDOM * max(len(discrete.bodies), 1)
+        freedom = degrees_of_freedom(self.model)
+        if freedom is None:
+            return True
+        dropped = int(np.count_nonzero(~kept))
+        return freedom - dropped >= AMPLE_FREEDOM * max(len(self.model.discrete.bodies), 1)
 
     @cached_property
     def _pushes(self) -> FloatArray:

@@ -139,8 +139,7 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
     layout = case_layout(scene)
     asked = _entries(layout, given or {}, Origin.ASKED, "--range")
     in_table = _entries(layout, scene.ranges, Origin.RANGES, "ranges")
-    chosen_for = dict(_column_and_ends(text) for text in scene.accuracy.chosen_for or ())
-    chosen = _entries(layout, chosen_for, Origin.CHOSEN_FOR, "accuracy.chosen_for")
+    chosen = _entries(layout, scene.accuracy.chosen_ranges, Origin.CHOSEN_FOR, "accuracy.chosen_for")
     known = {**(chosen or _bounded(scene, layout)), **in_table, **asked}
     if not chosen:
         without = [k for k in range(layout.inputs.size) if k not in known]
@@ -158,13 +157,6 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
 def ranges_of_cases(layout: CaseLayout, rows: FloatArray) -> CaseRanges:
     """What load cases, shape (count, size of a case), range over."""
     return CaseRanges(layout, rows.min(axis=0), rows.max(axis=0), (Origin.ASKED,) * rows.shape[1])
-
-
-def _column_and_ends(text: str) -> tuple[str, tuple[float, float]]:
-    """Column and ends of ``column=low:high``."""
-    column, _, ends = text.rpartition("=")
-    low, _, high = ends.partition(":")
-    return column, (float(low), float(high))
 
 
 def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> Entries:

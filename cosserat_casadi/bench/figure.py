@@ -10,10 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.bench.grid import DIAL
-from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.pareto import front
+from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.bench.reference import Reference
-from cosserat_casadi.bench.table import reference_words
 from cosserat_casadi.plots.figure import figure_class, write_figure
 
 STYLES = {
@@ -61,7 +59,7 @@ def _diagram(title: str, reference: Reference, rows: Sequence[Measurement]) -> A
     axes.grid(which="minor", axis="x", alpha=0.12)
     axes.legend(fontsize=9, framealpha=0.9, loc="best")
     figure.suptitle(title or "Untitled scene", fontsize=12, fontweight="bold")
-    axes.set_title(f"Errors against {reference_words(reference)}", fontsize=8.5, color="0.3", wrap=True)
+    axes.set_title(f"Errors against {reference.method}", fontsize=8.5, color="0.3", wrap=True)
     return figure
 
 

@@ -17,7 +17,6 @@ from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.program import FLAGS
 from cosserat_casadi.bench.record import CSV, JSON, fingerprint, output_problems, read_rows, write_json, write_rows
 from cosserat_casadi.bench.session import Session, richer_candidates
-from cosserat_casadi.bench.shooting import check_scipy
 from cosserat_casadi.bench.table import print_bench, print_strains
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
@@ -67,7 +66,7 @@ def make_plan(
     Raises:
         SceneError: with every fault of the options, or of the table found in the folder; or the scene has obstacles
             or tubes.
-        CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
+        CosseratError: a figure is wanted, and matplotlib is missing.
     """
     refuse_tubes(scene)
     refuse_obstacles(scene, "a bench")
@@ -85,7 +84,6 @@ def make_plan(
         problems.append(Problem("--quick", "stands beside --points", "give one of the two"))
     if problems:
         raise SceneError(*problems)
-    check_scipy()
     if output is not None:
         figure_class()
     rows = [] if output is None else read_rows(output, fingerprint(scene))

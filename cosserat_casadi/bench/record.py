@@ -17,8 +17,7 @@ from typing import Any, get_type_hints
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.pareto import front
+from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.scene.writing import scene_text

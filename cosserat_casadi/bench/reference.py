@@ -1,4 +1,7 @@
-"""What errors are measured against: an independent solution of the same scene, found in the same run."""
+"""What errors are measured against: a far finer discretisation of the same scene, solved in the same run.
+
+The tests hold it to shooting on every scene that shooting knows.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +12,13 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import NoReferenceError
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.model.watched import watched_sections
 
 FINEST = 1e-10
@@ -28,8 +30,22 @@ MORE_MODES = 6
 MORE_NODES = 8
 """Intervals that the finest discretisation has more than one and a half times as many."""
 
-AGREEMENT = 1e-6
-"""Largest distance of the two references, relative to the length: beyond, neither is believed."""
+
+@dataclass(frozen=True)
+class RodState:
+    """What of a rod is compared: poses of sections, and the wrench of its clamp.
+
+    Attributes:
+        length: undeformed length, m.
+        position: shape (k, 3), m.
+        rotation: shape (k, 3, 3), world_R_section.
+        base_wrench: force and moment of the clamp on the rod about the base point, world axes, shape (6,), N and N m.
+    """
+
+    length: float
+    position: FloatArray
+    rotation: FloatArray
+    base_wrench: FloatArray
 
 
 @dataclass(frozen=True)
@@ -57,17 +73,12 @@ class Reference:
     """The solution that stands for the truth.
 
     Attributes:
-        method: how it was found, in words.
+        method: which discretisation it is, in words.
         rods: each rod's sections and clamp.
-        distance: pose distance to the finest discretisation, which bounds the error of both; None where that is
-            the reference itself.
-        start: the finest discretisation's solution.
     """
 
     method: str
     rods: dict[str, RodState]
-    distance: float | None
-    start: Solution
 
     def errors(self, solution: Solution) -> Errors:
         """How far a solution is from the reference."""
@@ -75,22 +86,23 @@ class Reference:
 
 
 def find_reference(scene: scenes.Scene) -> Reference:
-    """Shooting where it knows the scene, else the finest discretisation.
+    """A solution far finer than any that is measured.
 
     Raises:
-        NoReferenceError: the scene has no equilibrium that is found, or two references disagree.
+        NoReferenceError: the solver reaches no equilibrium of the scene.
     """
-    finest = _finest(scene)
-    fine = states(finest)
-    try:
-        shot = _shot(finest, fine)
-    except ShootingError as failed:
-        return Reference(f"{_words(finest)}; not shooting: {failed}", fine, None, finest)
-    disagreement = distance(shot, fine).pose
-    if disagreement > AGREEMENT:
-        message = f"shooting and the finest discretisation are {disagreement:.1e} apart: neither is believed"
-        raise NoReferenceError(message)
-    return Reference("shooting, DOP853 at 1e-13", shot, disagreement, finest)
+    plain = with_tolerance(scene, FINEST)
+    near = solve_rods(plain)
+    if not near.converged:
+        raise NoReferenceError(f"no reference was found: {near.message}")
+    chosen = near.model.discretisation.values()
+    modes = max(max(d.modes) for d in chosen) + MORE_MODES
+    nodes = 3 * max(d.nodes for d in chosen) // 2 + MORE_NODES
+    model = build(plain, discretise(plain, modes, nodes, "magnus8"))
+    finest = solve(model, start=prolong(near, model), estimate_error=False)
+    if not finest.converged:
+        raise NoReferenceError(f"no reference was found: {finest.message}")
+    return Reference(f"a far finer discretisation, {modes} modes and {nodes} intervals", states(finest))
 
 
 def states(solution: Solution) -> dict[str, RodState]:
@@ -144,39 +156,6 @@ def _wrench_distance(truth: RodState, approximation: RodState) -> float:
     if size > 0:
         return error / size
     return error
-
-
-def _finest(scene: scenes.Scene) -> Solution:
-    """A solution far finer than any that is measured."""
-    plain = with_tolerance(scene, FINEST)
-    near = solve_rods(plain)
-    if not near.converged:
-        raise NoReferenceError(f"no reference was found: {near.message}")
-    chosen = near.model.discretisation.values()
-    modes = max(max(d.modes) for d in chosen) + MORE_MODES
-    nodes = 3 * max(d.nodes for d in chosen) // 2 + MORE_NODES
-    model = build(plain, discretise(plain, modes, nodes, "magnus8"))
-    finest = solve(model, start=prolong(near, model), estimate_error=False)
-    if not finest.converged:
-        raise NoReferenceError(f"no reference was found: {finest.message}")
-    return finest
-
-
-def _shot(finest: Solution, fine: dict[str, RodState]) -> dict[str, RodState]:
-    model = finest.model
-    values = load_values(model.scene, model.inputs, finest.inputs)
-    rods = {}
-    for name, discrete_rod in model.discrete.rods.items():
-        sections = list(watched_sections(model.scene, name))
-        # Shooting starts from the clamp's wrench, and so stays on the branch.
-        start = fine[name].base_wrench
-        rods[name] = shoot(model.scene, discrete_rod.properties, values, sections, start)
-    return rods
-
-
-def _words(finest: Solution) -> str:
-    chosen = next(iter(finest.model.discretisation.values()))
-    return f"the finest discretisation, {max(chosen.modes)} modes and {chosen.nodes} intervals"
 
 
 def with_tolerance(scene: scenes.Scene, tolerance: float) -> scenes.Scene:

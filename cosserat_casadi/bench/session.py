@@ -76,11 +76,7 @@ class Session:
 
     def facts(self) -> dict[str, Any]:
         """What a reader of the rows must know, as data."""
-        reference = {
-            "method": self.reference.method,
-            "distance_to_finest": self.reference.distance,
-        }
-        return {"reference": reference, "strain_models": self.model_distances}
+        return {"reference": {"method": self.reference.method}, "strain_models": self.model_distances}
 
     @property
     def model_distances(self) -> dict[str, float]:

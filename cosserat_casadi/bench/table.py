@@ -9,9 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.bench.measurement import Measurement
+from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.bench.motion_times import MotionCost
-from cosserat_casadi.bench.pareto import front
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
 from cosserat_casadi.model.operation_cost import Price
@@ -55,18 +54,11 @@ def print_bench(console: Console, title: str, reference: Reference, rows: Sequen
     columns = WIDE if console.width >= ROOM else NARROW
     console.print(_table(rows, columns))
     console.print("● on the front: nothing measured is both more exact and faster. Times are of compiled C.")
-    console.print(f"Errors are against {escape(reference_words(reference))}.", highlight=False)
+    console.print(f"Errors are against {escape(reference.method)}.", highlight=False)
     for row in rows:
         if row.note:
             note = escape(f"{row.name}: {row.note}")
             console.print(f"[dim]{note}[/]", highlight=False)
-
-
-def reference_words(reference: Reference) -> str:
-    """What errors are measured against, and how far that is from the finest discretisation."""
-    if reference.distance is None:
-        return reference.method
-    return f"{reference.method}; {reference.distance:.0e} from the finest discretisation"
 
 
 def print_strains(console: Console, model_distances: dict[str, float]) -> None:

@@ -11,6 +11,8 @@ import typer
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import are_one_file, check_writable
+from cosserat_casadi.model.load_cases import case_layout, ends_by_column
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.reading import files_read
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).", show_default=False)]
@@ -19,6 +21,24 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scene, such as push.force=[0.2,0,0]."),
 ]
+
+Ranges = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--range", metavar="COLUMN=LOW:HIGH", help="Range of an input or a parameter that modes are chosen for."
+    ),
+]
+
+
+def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[float, float]]:
+    """Lower and upper end by column of what ``--range`` asks for.
+
+    Raises:
+        SceneError: with every fault: what is no input or parameter, has no two finite ends, or stands twice.
+    """
+    if not ranges:
+        return {}
+    return ends_by_column(ranges, case_layout(scene))
 
 
 def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json") -> None:

@@ -52,6 +52,14 @@ class AnswerInfo(Info):
     _fields_ = (("error_estimate", ctypes.c_double),)
 
 
+def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """What :class:`JudgedAnswer` takes from the struct; arguments as for :func:`answer_words`."""
+    return {
+        **answer_words(info, outcomes),
+        "error_estimate": None if info.error_estimate < 0 else info.error_estimate,
+    }
+
+
 class StabilityInfo(ctypes.Structure):
     """The struct in C that says what eigenvalues mean."""
 
@@ -121,17 +129,15 @@ class CompiledAnswer:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompiledSolution(CompiledAnswer):
-    """What the solver in C found.
+class JudgedAnswer(CompiledAnswer):
+    """How a call ended whose answer may know its error.
 
     Attributes:
-        x: unknowns; the last equilibrium on the way where it did not converge.
         error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
             lengths of cables over the length; 1 where it is not known, None where it was not estimated.
         tolerance: wanted error of the scene; None where no tolerance has a meaning.
     """
 
-    x: FloatArray
     error_estimate: float | None = None
     tolerance: float | None = None
 
@@ -145,6 +151,17 @@ class CompiledSolution(CompiledAnswer):
         if self.error_estimate is None:
             return None
         return self.error_estimate <= self.tolerance
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompiledSolution(JudgedAnswer):
+    """What the solver in C found.
+
+    Attributes:
+        x: unknowns; the last equilibrium on the way where it did not converge.
+    """
+
+    x: FloatArray
 
 
 @dataclass(frozen=True)
@@ -164,9 +181,4 @@ class Sensitivity:
 
 def solution_of(x: FloatArray, info: AnswerInfo, tolerance: float | None = None) -> CompiledSolution:
     """A solution from its unknowns and the struct beside them."""
-    return CompiledSolution(
-        **answer_words(info, OUTCOMES),
-        x=x,
-        error_estimate=None if info.error_estimate < 0 else info.error_estimate,
-        tolerance=tolerance,
-    )
+    return CompiledSolution(**judged_words(info, OUTCOMES), x=x, tolerance=tolerance)

@@ -12,13 +12,11 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources, kernels
-from cosserat_casadi.codegen.library import library_sources
-from cosserat_casadi.codegen.memory import largest_room
+from cosserat_casadi.codegen.library import LEAST_MISFIT, library_sources
 from cosserat_casadi.codegen.names import model_names
-from cosserat_casadi.codegen.parameters import given_size, input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import loaded, to_compile
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -198,25 +196,6 @@ class EstimatorLibrary:
         return results
 
 
-def _residual_by_unknown(model: Model, indices: Sequence[int]) -> ca.Function:
-    """(x, inputs) ↦ derivatives of the residual with the numbers that are found; behind the inputs stand parameters."""
-    by_all = with_parameters_behind_inputs(input_jacobian(model))
-    x, inputs = by_all.mx_in()
-    by_found = by_all(x, inputs)[:, list(indices)]
-    return ca.Function("by_unknown", [x, inputs], [by_found], ["x", "inputs"], ["by_unknown"])
-
-
-def _passed_parameters(model: Model) -> dict[str, str]:
-    """Arguments by which the functions of a library with parameters take them, and give derivatives with them."""
-    arguments = {
-        "parameters": ", room->inputs + OWN_INPUTS",
-        "trial_parameters": ", room->trial_inputs + OWN_INPUTS",
-        "x_by_parameters": ", room->d_x_d_inputs + N * OWN_INPUTS",
-        "no_poses": ", 0",
-    }
-    return arguments if model.parameters.size else dict.fromkeys(arguments, "")
-
-
 def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int]) -> EstimatorLibrary:
     """Sources of the solver of a model with a function that estimates inputs.
 
@@ -234,29 +213,18 @@ def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int
     generated = kernel_sources(kernels(model, names, parts), names)
     arguments = measured.mx_in()
     value = ca.Function("value", arguments, measured.call(arguments)[:1])
-    own = [
-        kernel(model, value, f"{NAME}_k_difference"),
-        kernel(model, measured, f"{NAME}_k_measured"),
-        kernel(model, _residual_by_unknown(model, indices), f"{NAME}_k_by_unknown"),
-    ]
-    of_measurements = kernel_sources(own, names, f"{NAME}_measured")
+    own = [kernel(model, value, f"{NAME}_k_difference"), kernel(model, measured, f"{NAME}_k_measured")]
+    generated |= kernel_sources(own, names, f"{NAME}_measured")
     words = {
         "name": names.name,
-        "MACRO": names.macro,
         "unknowns": len(indices),
         "indices": numbers(list(indices)),
-        "inputs": given_size(model),
-        **_passed_parameters(model),
         "rows": measured.size1_out(0),
         "sections": measured.nnz_in(2),
         "measured": measured.nnz_in(3),
-        "reals": largest_room(of_measurements, "W") + 1,
-        "integers": largest_room(of_measurements, "IW") + 1,
     }
-    files = {
-        **library_sources(model, names, parts, generated, None),
-        **generated,
-        **of_measurements,
-        f"{NAME}_estimate.c": render("estimate.c.in", words),
-    }
+    files = {**library_sources(model, names, parts, generated, None), **generated}
+    # A part of the library's own source: it uses the solver's linear algebra.
+    files[f"{NAME}.c"] += render("estimate.c.in", words)
+    files[LEAST_MISFIT] = resource("c", LEAST_MISFIT)
     return EstimatorLibrary(to_compile(files), len(indices), measured.size1_out(0), model.size)

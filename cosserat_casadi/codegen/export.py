@@ -100,7 +100,7 @@ def export(
         files = tube_files(model, chosen, error_estimate)
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
-        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
+        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate, verified)
     else:
         files = folder_files(
             model,

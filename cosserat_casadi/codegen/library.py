@@ -45,6 +45,7 @@ from cosserat_casadi.model.path_stretch import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
@@ -62,16 +63,18 @@ SHARED = (
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
-VERBATIM = frozenset({*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS})
-"""Files of the folder ``c`` that the library's own source includes, as they are."""
+LEAST_MISFIT = "least_misfit.c"
+SECOND_VARIATION = "second_variation.c"
+VERBATIM = frozenset(
+    {*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, *lanes.FILES, *FOURS, LEAST_MISFIT, SECOND_VARIATION}
+)
+"""Files of the folder ``c`` that sources of a library include, as they are."""
 
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
 
-PLAIN_BUILD = dict.fromkeys(
-    ("cmake_options", "cmake_definitions", "cmake_dependencies", "motion_cmake", "more_sources", "more_headers"), ""
-)
-"""Words of the build file of a folder that knows neither float nor OpenMP, and has no more sources."""
+PLAIN_BUILD: dict[str, Any] = {"plain_build": True, "more_sources": "", "more_compiled": "", "more_headers": ""}
+"""Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
 RANGES_OF_RODS = (
     "a tension not below zero and a length above, and by the bounds of the scene. The\n"
@@ -112,6 +115,7 @@ ROLES = {
     "lanes_linear.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
+    "second_variation.c": "eigenvalues over admissible variations, the same in every folder; included",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_demo.c": "solves once, times it, prints JSON",
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
@@ -151,7 +155,8 @@ def library_sources(
         rows: what solves batches side by side, where the folder has it.
         budget: what a turn of a control loop may take by default.
     """
-    words = _words(model, names, parts, generated, _accuracy_note(model, error_estimate, verified), motion, rows)
+    accuracy = accuracy_words(model.scene, error_estimate, verified)
+    words = _words(model, names, parts, generated, accuracy, motion, rows)
     words |= {
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
@@ -168,8 +173,6 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
-    for part in ("cmake_options", "cmake_definitions", "cmake_dependencies"):
-        words[part] = render(f"{part}.in", words)
     words["more_compiled"] = ""
     if rows is not None:
         words["more_sources"] += f" {name}_lanes.c"
@@ -219,7 +222,7 @@ def _words(
     names: Names,
     parts: Assembled | None,
     generated: Mapping[str, str],
-    accuracy_note: str,
+    accuracy: dict[str, str],
     motion: MotionInC | None,
     rows: InLanes | None,
 ) -> dict[str, Any]:
@@ -234,6 +237,7 @@ def _words(
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
+        **dict.fromkeys(("of_rods", "with_axes"), True),
         **_solver_constants(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
@@ -258,8 +262,7 @@ def _words(
         "version": version("cosserat-casadi"),
         **version_words(),
         "casadi_version": ca.CasadiMeta.version(),
-        "accuracy_note": accuracy_note,
-        "accuracy_comment": _wrapped(comment(accuracy_note)),
+        **accuracy,
     }
 
 
@@ -450,14 +453,26 @@ def _file_rows(
     if not derivatives:
         absent.add("{name}_derivatives.c")
     if not stability:
-        absent |= {"{name}_stability.c", "{name}_stability.h"}
+        absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 
 
-def _accuracy_note(model: Model, error_estimate: float | None, verified: Verified | None) -> str:
-    tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
-    if not model.scene.accuracy.binds:
+def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, str]:
+    """What a README, and the comment at the top of a header, say of the error that the discretisation leaves.
+
+    Args:
+        scene: what is exported.
+        error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
+        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+    """
+    note = _accuracy_note(scene, error_estimate, verified)
+    return {"accuracy_note": note, "accuracy_comment": _wrapped(comment(note))}
+
+
+def _accuracy_note(scene: Scene, error_estimate: float | None, verified: Verified | None) -> str:
+    tolerance = f"The scene asks for a tip pose within {scene.accuracy.tolerance:g} of the length."
+    if not scene.accuracy.binds:
         tolerance = "The scene fixes what it is computed with, and asks for no tolerance."
     if verified is not None:
         return f"{tolerance} {verified.sentence}"

@@ -27,6 +27,7 @@ from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 MANIFEST = "manifest.json"
@@ -144,11 +145,18 @@ def manifest(
         **_output_entries(model),
         "unknowns": unknown_entries(model),
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
-        "tolerance": model.scene.accuracy.tolerance,
-        "tolerance_binds": model.scene.accuracy.binds,
+        **accuracy_entries(model.scene, error_estimate, verified),
+        "functions": [_function_entry(kernel, known) for kernel in kernels],
+    }
+
+
+def accuracy_entries(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, Any]:
+    """The tolerance of a scene, and the error that its discretisation leaves; arguments as for :func:`manifest`."""
+    return {
+        "tolerance": scene.accuracy.tolerance,
+        "tolerance_binds": scene.accuracy.binds,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
         **({} if verified is None else {"verified": verified.plain()}),
-        "functions": [_function_entry(kernel, known) for kernel in kernels],
     }
 
 

@@ -47,8 +47,6 @@ WITHOUT: Words = {
     "motion_members": "",
     "motion_header": "",
     "further_config": "",
-    "motion_cmake": "",
-    "motion_readme": "",
     "motion_reals": 0,
     "motion_integers": 0,
 }
@@ -89,8 +87,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "motion_members": render("motion_workspace.h.in", words),
         "motion_header": render("motion.h.in", words),
         "further_config": render("motion_config.h.in", words),
-        "motion_cmake": render("motion_cmake.in", words),
-        "motion_readme": render("motion_readme.md.in", words),
+        "in_motion": True,
         "load_room": max(len(model.scene.loads), 1),
         "motion_reals": _workspace_reals(model, motion, words),
         "motion_integers": 3 * model.size + 1,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.library import SINGLE
+from cosserat_casadi.codegen.library import SECOND_VARIATION, SINGLE
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.judge import ASIDE
 from cosserat_casadi.equilibrium.stability import DEPENDENT, ZERO, variations
 from cosserat_casadi.errors import ExportError, Problem
@@ -23,9 +23,9 @@ AT_TIMES = (
 )
 
 
-def stability_files(name: str) -> tuple[str, str]:
-    """Names of the sources of the stability of a library: source and header."""
-    return f"{name}_stability.c", f"{name}_stability.h"
+def stability_files(name: str) -> tuple[str, str, str]:
+    """Names of the sources of the stability of a library: source, header, and the file that the source includes."""
+    return f"{name}_stability.c", f"{name}_stability.h", SECOND_VARIATION
 
 
 def check_stability(model: Model) -> None:
@@ -40,7 +40,7 @@ def check_stability(model: Model) -> None:
 
 
 def stability_sources(model: Model, names: Names) -> dict[str, str]:
-    """Source and header of the stability of equilibria by file name.
+    """Sources and header of the stability of equilibria by file name.
 
     Args:
         model: what is exported.
@@ -69,14 +69,24 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
         **_parameter_words(model, names),
         "potential_note": ALWAYS if everywhere else AT_TIMES,
     }
-    source, header = stability_files(names.name)
-    return {source: render("stability.c.in", words), header: render("stability.h.in", words)}
+    source, header, algorithm = stability_files(names.name)
+    return {
+        source: render("stability.c.in", words),
+        header: render("stability.h.in", words),
+        algorithm: resource("c", algorithm),
+    }
 
 
 def _parameter_words(model: Model, names: Names) -> dict[str, str]:
     """The argument of parameters where there are some, as in the library's own header and source."""
     if not model.parameters.size:
-        return {"parameters": "", "passed": "", "units_note": ""}
+        return dict.fromkeys(("parameters", "passed", "member", "given", "units_note"), "")
     argument = f"const {names.name}_real *parameters"
     units_note = " of the scene's own numbers, whatever the parameters"
-    return {"parameters": f", {argument}", "passed": ", parameters", "units_note": units_note}
+    return {
+        "parameters": f", {argument}",
+        "passed": ", at->parameters",
+        "member": "  const real *parameters;\n",
+        "given": "parameters, ",
+        "units_note": units_note,
+    }

@@ -7,12 +7,19 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+SECTION = re.compile(r"^@\{if (\w+)\}\n(.*?)^@\{end\}\n", re.MULTILINE | re.DOTALL)
+"""Lines of a template that stay where a word is true: ``@{if word}``, the lines, ``@{end}``."""
+
 
 def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in, and the parts that it includes: ``@{include part}``."""
+    """A template of this package with its words filled in.
+
+    Parts that it includes, ``@{include part}``, and sections whose word is true stand in the text.
+    """
     text = resource("templates", template)
     whole = re.sub(r"@\{include (\S+)\}\n", lambda part: resource("templates", part[1]), text)
-    return fill(whole, words)
+    held = SECTION.sub(lambda section: section[2] if words.get(section[1]) else "", whole)
+    return fill(held, words)
 
 
 def fill(text: str, words: Mapping[str, Any]) -> str:

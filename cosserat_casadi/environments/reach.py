@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.accuracy.choose import choose
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
@@ -28,7 +29,10 @@ from cosserat_casadi.control.decision_variables import DecisionVariables, decisi
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.records import HashedTable
 
 DRAWS = 20
 """Random inputs that are tried for a target before it counts as out of reach."""
@@ -78,7 +82,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
     Targets are tips of equilibria at random inputs within the bounds, whose stability is not asked for;
     ``options={"target": …}`` of :meth:`reset` names one.
 
-    The model is built and compiled: seconds the first time, then it is taken from the cache.
+    Modes and nodes are chosen for these ranges, unless the scene fixes them. The model is built and compiled: seconds
+    the first time, then it is taken from the cache.
 
     Args:
         scene: a scene, or the path of its file, with a range in ``[[bounds]]`` for every input that acts. Its
@@ -94,6 +99,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         library: its compiled folder.
         period: between two actions, s.
         dt: length of a step of the integrator, s.
+        error_estimate: the largest estimated error of an equilibrium within the bounds, over the length of the rod;
+            None where the scene fixes its modes. What modes and steps leave in motion is not estimated.
 
     Raises:
         SceneError: the scene is faulty, has no such rod, or an input that acts has no range.
@@ -116,7 +123,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
         described = (scene if isinstance(scene, Scene) else read_scene(Path(scene))).baked()
         self.rod = _rod_name(described, rod)
-        self.model = build(described, solve_rods(described).model.discretisation, moving=True)
+        discretisation, self.error_estimate = _chosen(described)
+        self.model = build(described, discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
         self._moves = _moving_entries(self.model)
         self._late = self._moves[self._acting.indices]
@@ -232,6 +240,17 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
 
     def _info(self, tip: FloatArray, status: str) -> dict[str, Any]:
         return {"status": status, "distance": self._distance(tip)}
+
+
+def _chosen(scene: Scene) -> tuple[Mapping[str, Discretisation], float | None]:
+    """The discretisation of every rod, and the largest estimated error of an equilibrium within the bounds."""
+    if scene.accuracy.fixed:
+        return discretise(scene), None
+    # What no action moves keeps its value.
+    acting = dict.fromkeys(bound.input for bound in scene.bounds)
+    ranges = {name: pairs for name, pairs in scene.ranges.items() if name in acting}
+    choice = choose(scene.model_copy(update={"inputs": tuple(acting), "ranges": HashedTable(ranges)}))
+    return choice.model.discretisation, choice.error_estimate
 
 
 def _rod_name(scene: Scene, rod: str | None) -> str:

@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.neutral import regular_inverse
@@ -139,9 +140,20 @@ def _tolerance_note(solution: Solution) -> str:
 def remedy(solution: Solution) -> str:
     """The remedy for an answer whose error is above the tolerance."""
     accuracy = solution.model.scene.accuracy
-    if accuracy.fixed and not accuracy.chosen_for:
+    if accuracy.fixed_by_hand:
         return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+    if _is_in_chosen_ranges(solution):
+        return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
     return "the modes were chosen for other inputs: choose them for the range of these inputs."
+
+
+def _is_in_chosen_ranges(solution: Solution) -> bool:
+    """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
+    ranges = solution.model.scene.accuracy.chosen_ranges
+    indices = column_indices(solution.model.inputs)
+    if not ranges or not ranges.keys() <= indices.keys():
+        return False
+    return all(low <= solution.inputs[indices[column]] <= high for column, (low, high) in ranges.items())
 
 
 def answer_error(solution: Solution) -> AnswerError:

@@ -99,6 +99,13 @@ def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
     return np.concatenate([part.full().ravel() for part in model.watched(x, inputs)])
 
 
+NOT_KNOWN = (
+    "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
+    "inputs, and an equilibrium tells."
+)
+"""Sentence where there is no equilibrium at which to look."""
+
+
 def locking_sentence(locked: Sequence[str]) -> str:
     """A sentence for modes that leave these inputs no motion; empty without such inputs."""
     if not locked:
@@ -115,7 +122,7 @@ def may_be_locked(model: Model) -> bool:
     False in exact contact too, whose forces are inputs of another model for every arrangement.
     """
     scene = model.scene
-    if scene.touches_exactly or not scene.accuracy.fixed or scene.accuracy.chosen_for:
+    if scene.touches_exactly or not scene.accuracy.fixed_by_hand:
         return False
     return degrees_of_freedom(model) is not None
 

@@ -87,10 +87,12 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
         SceneError: with what the scene says of the first corner that it refuses, for each unknown.
     """
     sides: list[tuple[int, float]] = []
-    for entry in layout.own:
+    for entry in (*layout.own, *layout.shared):
         if not entry.of_input:
             lower, upper, _, _ = entry.limits()
-            sides += list(zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True))
+            ends = zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True)
+            # What all rows share has a prior, and need have no bounds.
+            sides += [(index, end) for index, end in ends if np.isfinite(end)]
     corners = [[side] for side in sides]
     corners += [list(pair) for pair in combinations(sides, 2) if pair[0][0] != pair[1][0]]
     problems: dict[str, Problem] = {}

@@ -89,7 +89,11 @@ class Consistency:
 
 
 def consistency(
-    squares: FloatArray, freedom: npt.NDArray[np.int64], shared: float, residuals: dict[str, FloatArray]
+    squares: FloatArray,
+    freedom: npt.NDArray[np.int64],
+    shared: float,
+    residuals: dict[str, FloatArray],
+    shared_freedom: int = 0,
 ) -> Consistency:
     """How well rows go together with a model.
 
@@ -99,10 +103,11 @@ def consistency(
         shared: squared deviations of the numbers that all rows share from their priors; each has one, so that they
             add no freedom.
         residuals: by the name of a sensor its deviations in all rows, those not measured left out.
+        shared_freedom: how many of the shared numbers a bound holds: they were not fitted, and their priors stay.
     """
     found = np.isfinite(squares)
     total = float(squares[found].sum()) + shared
-    left = int(freedom[found].sum())
+    left = int(freedom[found].sum()) + shared_freedom
     bias = {name: _mean_deviation(values) for name, values in residuals.items() if len(values) > 1}
     by_row = np.array([chi_square_deviations(*row) for row in zip(squares.tolist(), freedom.tolist(), strict=True)])
     return Consistency(total, left, chi_square_deviations(total, left), by_row, bias)

@@ -161,18 +161,23 @@ def _consistency(
     sensors: Sequence[str],
 ) -> Consistency:
     """How well some rows, in which data and priors determine every unknown, go together with the model."""
+    own = len(layout.own_labels)
     priors = int(np.count_nonzero(layout.own_limits.weight))
-    freedom = np.count_nonzero(table.weights, axis=1) + priors - len(layout.own_labels)
+    # A number that a bound holds is not fitted to the data.
+    fitted = np.count_nonzero(~layout.own_limits.at_end(found.unknowns[:, :own]), axis=1)
+    freedom = np.count_nonzero(table.weights, axis=1) + priors - fitted
     squares = np.where(rows, 2 * found.cost, np.nan)
     residuals: dict[str, list[FloatArray]] = {}
     for column, name in enumerate(sensors):
         measured = rows & (table.weights[:, column] > 0.0)
         residuals.setdefault(name, []).append(found.residuals[measured, column])
     of_shared = 0.0
+    held = 0
     if shared is not None:
         of_shared = float(np.sum(layout.shared_limits.residual(shared.values) ** 2))
+        held = int(np.count_nonzero(layout.shared_limits.at_end(shared.values)))
     by_sensor = {name: np.concatenate(values) for name, values in residuals.items()}
-    return consistency(squares, freedom, of_shared, by_sensor)
+    return consistency(squares, freedom, of_shared, by_sensor, held)
 
 
 @dataclass(frozen=True)

@@ -158,6 +158,8 @@ def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[f
             problems.append(no_column("--range", column, indices))
         elif low is None or high is None:
             problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
+        elif indices[column] in bounds:
+            problems.append(Problem("--range", f"{column!r} has two ranges", "give one of them"))
         else:
             bounds[indices[column]] = (low, high)
     if problems:

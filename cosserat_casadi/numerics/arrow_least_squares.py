@@ -113,6 +113,11 @@ class Limits:
         """Differences from the expected values in standard deviations, shape as the values."""
         return (values - self.mean) * self.weight
 
+    def at_end(self, values: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which unknowns are at an end of their range, shape as the values."""
+        at_end: npt.NDArray[np.bool_] = (values <= self.lower) | (values >= self.upper)
+        return at_end
+
     def held(self, values: FloatArray, gradient: FloatArray) -> npt.NDArray[np.bool_]:
         """Which unknowns are at a bound that the descent would cross, shape as the values."""
         at_lower = (values <= self.lower) & (gradient > 0)

@@ -11,6 +11,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.codegen.texts import fill
 from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
@@ -28,13 +29,14 @@ SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 
-def export_page(solution: Solution, file: Path) -> Path:
+def export_page(solution: Solution, file: Path, asked: Given | None = None) -> Path:
     """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
 
     Args:
         solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
         file: path of the page.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
 
     Raises:
         ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
@@ -43,7 +45,7 @@ def export_page(solution: Solution, file: Path) -> Path:
     refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    facts = {**page_facts(solution), **asked_accuracy(solution)}
+    facts = {**page_facts(solution, asked=asked), **asked_accuracy(solution)}
     content = page_text(facts, [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_positions
@@ -39,23 +40,25 @@ STILL = 8
 """Every so many of the sampled points of an unloaded rod are kept."""
 
 
-def page_facts(solution: Solution, model: Model | None = None) -> dict[str, Any]:
+def page_facts(solution: Solution, model: Model | None = None, asked: Given | None = None) -> dict[str, Any]:
     """Facts of a scene for its page.
 
     Args:
         solution: the equilibrium at the scene's own inputs.
         model: the model whose inputs are moved; by default that of the solution, which is another one where contacts
             were found for it.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
     model = solution.model if model is None else model
     scene = model.scene
     shapes = rod_shapes(solution)
     points = _extent_points(solution, shapes.points)
+    of_inputs = sliders(model, asked)
     return {
         "title": scene.title or "Cosserat rods",
         "unknowns": model.size,
-        "sliders": [asdict(slider) for slider in sliders(model)],
-        "hand": [slider.index for slider in sliders(model) if slider.input in movable(model)],
+        "sliders": [asdict(slider) for slider in of_inputs],
+        "hand": [slider.index for slider in of_inputs if slider.input in movable(model)],
         "layout": drawn_layout(model),
         "poses": [*({"rod": rod} for rod in model.discrete.rods), *({"body": body.name} for body in scene.bodies)],
         "rods": {rod.name: _rod(scene, rod, i) for i, rod in enumerate(scene.rods)},

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cosserat_casadi.accuracy.fixing import with_accuracy
-from cosserat_casadi.accuracy.ranges import input_ranges
+from cosserat_casadi.accuracy.ranges import Given, input_ranges
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.input_fields import column_suffixes
 
@@ -33,17 +33,21 @@ class Slider:
     most: float
 
 
-def sliders(model: Model) -> list[Slider]:
+def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
     """A slider for each entry of the stacked inputs, in their order.
 
     Its ends are those of the range that modes are chosen for; an entry that keeps its value there has the range that it
     has in a scene whose modes are not chosen yet.
+
+    Args:
+        model: whose inputs are moved.
+        asked: ranges that are asked for, as of :func:`cosserat_casadi.choose`.
     """
     scene = model.scene
-    ranges = input_ranges(scene)
+    ranges = input_ranges(scene, asked)
     if scene.accuracy.chosen_for:
         open_scene = with_accuracy(scene, chosen_for=None)
-        ranges = ranges.where_still(input_ranges(open_scene))
+        ranges = ranges.where_still(input_ranges(open_scene, asked))
     made = []
     for entry, span in model.inputs:
         for k, suffix in zip(range(span.start, span.stop), column_suffixes(*entry.shape), strict=True):

@@ -110,6 +110,21 @@ shape = true
             yield Fault(("of_rods",), "stands without modes, nodes and rotation of the others", "give all three")
 
     @property
+    def chosen_ranges(self) -> dict[str, tuple[float, float]]:
+        """Lower and upper end of what modes and nodes were chosen for, by column; empty where nothing says so."""
+        ranges = {}
+        for text in self.chosen_for or ():
+            column, _, ends = text.rpartition("=")
+            low, _, high = ends.partition(":")
+            ranges[column] = (float(low), float(high))
+        return ranges
+
+    @property
+    def fixed_by_hand(self) -> bool:
+        """Whether the scene fixes modes, nodes or rotation, and no choice for ranges did."""
+        return self.fixed and self.chosen_for is None
+
+    @property
     def fixed(self) -> bool:
         """Whether the scene itself chooses modes, nodes or rotation."""
         if self.modes is not None or self.nodes is not None:

@@ -10,6 +10,7 @@ from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, sho
 from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import Rod
+from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
@@ -70,9 +71,10 @@ def _numbers(count: int) -> str:
 def owners_of(scene: SceneTables) -> Owners:
     """Owners of inputs by name, with their records where the kind is known."""
     owners = _causes(scene)
-    for name, (_, table) in scene.named("rods").items():
-        # Inputs of a load or an actuator hide those of a rod of the same name.
-        owners.setdefault(name, (Rod, table))
+    # Inputs of a load or an actuator hide those of a rod or a tube of the same name.
+    for key, record in (("rods", Rod), ("tubes", Tube)):
+        for name, (_, table) in scene.named(key).items():
+            owners.setdefault(name, (record, table))
     return owners
 
 
@@ -173,8 +175,9 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the magnitudes of actuators and loads: the free inputs where the scene lists none."""
-    return [
+    """Names of the free inputs where the scene lists none: all of tubes, and magnitudes of actuators and loads."""
+    of_tubes = [f"{name}.{field}" for name in scene.named("tubes") for field in Tube.inputs]
+    return of_tubes + [
         f"{name}.{field}"
         for name, (record, table) in _causes(scene).items()
         if record is not None

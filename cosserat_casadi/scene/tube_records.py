@@ -14,7 +14,7 @@ from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.rod_records import Material
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
-BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes")
+BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds")
 """Keys of a scene that may stand beside tubes."""
 
 LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
@@ -148,7 +148,8 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
     for key in scene.keys:
         if key not in BESIDE_TUBES:
             problem = "stands beside tubes, which are solved on their own"
-            yield Fault((key,), problem, f"leave it out; beside tubes may stand {', '.join(BESIDE_TUBES[1:4])}")
+            others = ", ".join(other for other in BESIDE_TUBES if other not in ("schema", "tubes"))
+            yield Fault((key,), problem, f"leave it out; beside tubes may stand {others}")
     accuracy = scene.get("accuracy")
     if isinstance(accuracy, Mapping):
         for key in OF_RODS:

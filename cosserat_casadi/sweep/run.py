@@ -255,6 +255,8 @@ def run_shard(
 ) -> int:
     """Do what is left of one shard of a sweep, and keep it beside the file of the results; returns its rows.
 
+    Where the file of the results has the whole sweep already nothing is done.
+
     Args:
         plan: of :func:`plan_sweep`, with an output.
         shard: which part.
@@ -266,16 +268,19 @@ def run_shard(
         SceneError: the file of the shard is of another sweep.
     """
     assert plan.output is not None, "a shard is kept in a file"
+    work = [chunk for chunk in chunks(plan.variants) if shard.has(chunk)]
+    count = sum(len(chunk.rows) for chunk in work)
+    if plan.finished:
+        return count
     told = progress or _ignore
     file = shard.file(plan.output)
     begun = Store(file).head()
     if begun is not None and begun["sweep"] != plan.identity:
         raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
-    work = [chunk for chunk in chunks(plan.variants) if shard.has(chunk)]
     with _machine(scheduler, cores) as machine, Store(file) as store:
         choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
         _solve_rest(plan, choice, machine, work, store, told)
-    return sum(len(chunk.rows) for chunk in work)
+    return count
 
 
 def _choice_of_others(plan: Plan, shard: Shard) -> Choice | None:

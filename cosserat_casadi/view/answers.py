@@ -52,5 +52,5 @@ def accuracy_of(solution: Solution | None) -> dict[str, Any]:
     text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
     if not solution.within_tolerance:
         text += " " + remedy(solution)
-    refines = not solution.within_tolerance and not accuracy.fixed and not solution.model.scene.touches_exactly
+    refines = not solution.within_tolerance and not accuracy.fixed_by_hand and not solution.model.scene.touches_exactly
     return {"within": solution.within_tolerance, "text": text, "refines": refines}

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.equilibrium.solution import Contact, Solution
@@ -33,9 +34,11 @@ class ContactSession:
 
     Attributes:
         first: the equilibrium at the scene's own inputs, with its contacts.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
 
     first: Solution
+    asked: Given | None = None
     model: Model = field(init=False)
     _present: Solution = field(init=False)
 
@@ -60,7 +63,7 @@ class ContactSession:
             "Derivatives, the ring at the tip, vibrations and motions are for scenes without it."
         )
         offered = {"hand": [], "motion": False, "modes": False, "derivatives": False}
-        return {**page_facts(self.first, self.model), **offered, "note": note}
+        return {**page_facts(self.first, self.model, self.asked), **offered, "note": note}
 
     def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs, whose contacts are tried from those of the last one on."""

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.fixing import unfixed
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
@@ -72,10 +74,12 @@ class ViewSession:
     Attributes:
         first: the equilibrium at the scene's own inputs.
         library: the compiled library of its model, with the picture.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
 
     first: Solution
     library: Compiled
+    asked: Given | None = None
     _inputs: FloatArray = field(init=False)
     _present: CompiledSolution | None = field(init=False, default=None)
 
@@ -90,7 +94,7 @@ class ViewSession:
     def facts(self) -> dict[str, Any]:
         """Facts of the scene for its page."""
         has_motion = self.first.model.scene.simulation is not None
-        return {**page_facts(self.first), "motion": has_motion, "modes": True}
+        return {**page_facts(self.first, asked=self.asked), "motion": has_motion, "modes": True}
 
     def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs: along the way from the last one, or anew where that leads nowhere."""
@@ -154,9 +158,8 @@ class ViewSession:
         model = self.first.model
         given = stacked_inputs(inputs)
         values = model.inputs.unpack(given)
-        accuracy = model.scene.accuracy
-        finer = accuracy.model_copy(update={"tolerance": REFINED_SHARE * accuracy.tolerance})
-        chosen = solve_rods(model.scene.model_copy(update={"accuracy": finer}), values).model.discretisation
+        finer = unfixed(model.scene, REFINED_SHARE * model.scene.accuracy.tolerance)
+        chosen = solve_rods(finer, values).model.discretisation
         refined = build(model.scene, chosen)
         coarse = replace(self.first, inputs=given, x=near)
         found = solve(refined, values, start=prolong(coarse, refined))
@@ -268,7 +271,7 @@ class ViewSession:
             return model.scene.bounds
         names = movable(model)
         ends: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name in names}
-        for slider in sliders(model):
+        for slider in sliders(model, self.asked):
             if slider.input in ends:
                 ends[slider.input][0].append(slider.least)
                 ends[slider.input][1].append(slider.most)
@@ -286,24 +289,27 @@ def is_compiled(scene: scenes.Scene) -> bool:
     return True
 
 
-def opened(solution: Solution, progress: Progress | None = None) -> ViewSession | ContactSession:
+def opened(
+    solution: Solution, progress: Progress | None = None, asked: Given | None = None
+) -> ViewSession | ContactSession:
     """A session of a solved scene, with its library compiled, or found compiled, where it has one.
 
     Args:
         solution: the equilibrium at the scene's own inputs.
         progress: told how far the compilation is.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
 
     Raises:
         ExportError: there is no C compiler, or it fails.
     """
     if not is_compiled(solution.model.scene):
-        return ContactSession(solution)
+        return ContactSession(solution, asked)
     with tempfile.TemporaryDirectory() as folder:
         # The compiled library lies in the cache: the sources are not needed any more.
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)
         library = load(sources, progress=progress)
     assert isinstance(library, Compiled)
-    return ViewSession(solution, library)
+    return ViewSession(solution, library, asked)
 
 
 def _packed(pictures: FloatArray) -> str:

@@ -87,7 +87,7 @@ def test_modes_follow_the_inputs_given() -> None:
     assert min(flat.model.discretisation["rod"].modes[1], turned.model.discretisation["rod"].modes[0]) > 2
 
 
-@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+@pytest.mark.parametrize("kind", mostly_slow(["clamped", "pinned"], quick=["clamped"]))
 def test_held_rod_is_right_between_its_ends(kind: str) -> None:
     """Its tip is right with any modes, so the tip must not be what is looked at."""
     held = {"rod": "rod", "kind": kind, "position": [0.2, 0.15, 0.6]}
@@ -158,7 +158,9 @@ WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "bo
 
 
 @pytest.mark.parametrize(
-    "magnitude", [{"force": [0.5, 0.0, 0.1]}, {"moment": [0.0, 0.1, 0.05]}], ids=["force", "moment"]
+    "magnitude",
+    [pytest.param({"force": [0.5, 0.0, 0.1]}, marks=pytest.mark.slow), {"moment": [0.0, 0.1, 0.05]}],
+    ids=["force", "moment"],
 )
 def test_foreseen_operations_of_spread_loads(magnitude: dict[str, list[float]]) -> None:
     """What a spread load adds is a good part of the whole, and seen."""
@@ -192,7 +194,7 @@ FOLLOWING = {**WIND, "force": [0.5, 0.0, 0.1]}
         ("reissner", 5, 8, (), True),
         ("kirchhoff", 5, 10, (FOLLOWING,), True),
         ("reissner", 5, 14, (FOLLOWING,), True),
-        ("kirchhoff", 4, 54, (FOLLOWING,), False),
+        pytest.param("kirchhoff", 4, 54, (FOLLOWING,), False, marks=pytest.mark.slow),
     ],
 )
 def test_loops_are_foreseen(
@@ -244,7 +246,7 @@ SHORT_ENOUGH = [("kirchhoff", 6, 15, "magnus6"), ("reissner", 4, 15, "magnus4")]
 """Strain, modes, intervals and integrator of rods that forces per length follow."""
 
 
-@pytest.mark.parametrize(("strain", "modes", "nodes", "transport"), SHORT_ENOUGH)
+@pytest.mark.parametrize(("strain", "modes", "nodes", "transport"), mostly_slow(SHORT_ENOUGH, quick=SHORT_ENOUGH[1:]))
 def test_forces_that_follow_take_no_products_of_columns(strain: str, modes: int, nodes: int, transport: str) -> None:
     """Beside a dead force they add products with the matrix of integration, once for all columns."""
     dead = {**FOLLOWING, "frame": "world"}

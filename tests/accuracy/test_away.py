@@ -105,6 +105,7 @@ def test_a_platform_is_not_locked() -> None:
     assert pushed[0] - resting[0] > 1e-5
 
 
+@pytest.mark.slow
 def test_a_platform_on_fixed_modes_is_told_to_be_locked() -> None:
     """With eighteen degrees of freedom too, none of which moves the plate; with two more in bending it moves."""
     for modes, freedom, locked in (([3, 3, 2], 18, True), ([4, 4, 2], 30, False)):

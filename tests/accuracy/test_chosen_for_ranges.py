@@ -129,6 +129,17 @@ def test_beyond_its_ranges_a_choice_says_what_to_do(chosen: Choice) -> None:
     assert "the modes were chosen for other inputs: choose them for the range of these inputs" in answer.message
 
 
+def test_inside_its_ranges_a_choice_that_missed_does_not_blame_the_scene() -> None:
+    """Modes that were chosen are no modes that the scene fixes, and these inputs are no other ones."""
+    few = {"tolerance": 1e-6, "modes": 1, "nodes": 6, "rotation": "magnus6", "chosen_for": ["push.force.x=-1:1"]}
+    model = build(scene(push(force=[0.9, 0.0, 0.0]), strain="planar", accuracy=few))
+    inside = solve(model)
+    assert inside.within_tolerance is False
+    assert "the modes were chosen for these inputs too: choose them for less" in inside.message
+    outside = solve(model, {"push.force": [1.1, 0.0, 0.0]})
+    assert "the modes were chosen for other inputs" in outside.message
+
+
 def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
     """No discretisation with half as many unknowns keeps the tolerance at a corner."""
     half = chosen.model.size // 2

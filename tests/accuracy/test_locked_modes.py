@@ -39,6 +39,19 @@ def test_modes_that_lock_are_beyond_all_bounds(platform: Model) -> None:
     assert np.all(np.isfinite(preview.mode_shift(free)))
 
 
+def test_cables_of_given_length_take_freedom_too() -> None:
+    """Where modes are dropped as where they are chosen: two bending modes and two cables leave nothing to move."""
+    cables = [
+        {"name": name, "kind": "tendon", "rod": "rod", "length": 0.79, "offset": [x, 0.0]}
+        for name, x in (("east", 0.02), ("west", -0.02))
+    ]
+    strains = ["bending_y", "extension"]
+    wire = scene(push(force=[0.0, 0.0, 0.0]), strain=strains, actuators=cables, inputs=["push.force"])
+    preview = Preview(solve(build(wire, discretise(wire, 4, 10)), estimate_error=False))
+    assert np.all(np.isinf(preview.mode_shift({"rod": (1, 1)})))
+    assert np.all(np.isfinite(preview.mode_shift({"rod": (3, 3)})))
+
+
 def test_derivatives_by_inputs_are_those_of_differences(platform: Model) -> None:
     solution = solve(platform, PUSH, estimate_error=False)
     derivatives = residual_by_inputs(platform, solution.x, solution.inputs)

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from tests.families import mostly_slow
 from tests.moving_scenes import DAMPING, drawn_state, symbols_of
 from tests.scenes import HOOK, STIFFNESS, push, rod, scene
 
@@ -101,7 +102,7 @@ def model_of(name: str, strain: str, **changes: Any) -> Model:
     return build(scene(push(), HOOK, strain=strain, accuracy={"modes": 2, "nodes": 5}, actuators=[table], **changes))
 
 
-@pytest.mark.parametrize("strain", ["planar", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "reissner"], quick=["reissner"]))
 @pytest.mark.parametrize("name", COURSES)
 def test_jacobian_vs_automatic_differentiation(name: str, strain: str) -> None:
     model = model_of(name, strain)

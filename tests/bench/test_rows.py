@@ -7,15 +7,13 @@ import json
 from dataclasses import replace
 from math import nan
 from pathlib import Path
-from typing import cast
 
 import pytest
 from rich.console import Console
 
-from cosserat_casadi import SceneError, Solution
+from cosserat_casadi import SceneError
 from cosserat_casadi.bench.grid import METHODS, candidates, distinct_methods, method_problems
-from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.pareto import front
+from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.bench.record import CSV, fingerprint, output_problems, read_rows, write_json, write_rows
 from cosserat_casadi.bench.reference import Reference
 from cosserat_casadi.bench.session import richer_candidates
@@ -126,7 +124,7 @@ def test_folder_that_cannot_take_files_is_refused_before_any_work(tmp_path: Path
 
 
 def test_table_of_a_narrow_terminal_is_whole() -> None:
-    reference = Reference("shooting", {}, None, cast(Solution, None))
+    reference = Reference("a far finer discretisation", {})
     for width, heading in ((80, "pose error"), (180, "VM solve, µs")):
         console = Console(record=True, width=width, file=io.StringIO())
         sized = replace(A, name="reissner dial 1e-06", modes="12 12 12 4 4 4", unknowns=48, jacobian_operations=3e5)

@@ -51,6 +51,15 @@ def test_solve_and_check_say_that_modes_are_locked(held: Path) -> None:
         assert "kinematically locked" not in free.stdout + free.stderr
 
 
+def test_check_says_where_it_cannot_be_known(held: Path) -> None:
+    """Without an equilibrium there is nothing at which to look whether modes are locked."""
+    done = cosserat("check", "held.toml", "--set", "wind.force=[1e9,0,0]", cwd=held)
+    assert done.returncode == 0, done.stderr
+    assert "constraints lock the modes that the scene fixes is not known: no equilibrium was found" in " ".join(
+        done.stdout.split()
+    )
+
+
 def test_an_export_of_locked_modes_says_so_and_does_not_end_well(held: Path) -> None:
     done = cosserat("export", "held.toml", "--output", "c", "--no-error-estimate", cwd=held)
     assert done.returncode == 3, done.stdout + done.stderr

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import read_scene
 from cosserat_casadi.motion.vibration_modes import modes_of_scene
+from cosserat_casadi.plots import modes_plot
 from tests.commands import Ended, cosserat
 
 SCENE = """
@@ -41,7 +42,8 @@ def blade(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_modes_are_printed_written_and_drawn(blade: Path) -> None:
+def test_modes_are_printed_written_and_drawn(blade: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modes_plot, "PERIOD_FRAMES", 4)
     files = ("--output", "m.json", "--plot", "m.png", "--animation", "m.gif")
     done = run_modes("blade.toml", "--count", "3", "--mode", "2", *files, cwd=blade)
     assert done.returncode == 0, done.stderr

@@ -155,7 +155,9 @@ def test_a_motion_may_start_from_a_result(folder: Path, command: Callable[..., i
     assert starts[1] is None
 
 
-@pytest.mark.parametrize("outcome", [MotionOutcome.STEP_TOO_SMALL, MotionOutcome.UNRESOLVED])
+@pytest.mark.parametrize(
+    "outcome", mostly_slow([MotionOutcome.STEP_TOO_SMALL, MotionOutcome.UNRESOLVED], quick=[MotionOutcome.UNRESOLVED])
+)
 def test_a_motion_that_ended_early_is_written_with_exit_code_3(
     folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str], outcome: MotionOutcome
 ) -> None:

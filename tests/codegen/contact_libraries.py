@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi import CompiledContact, CompiledContactSolution, Model, Scene, Solution, build, discretise, export
 from cosserat_casadi.maths.typing import FloatArray
-from tests.codegen.libraries import QUICK
+from tests.codegen.libraries import QUICK, compile_quickly
 from tests.scenes import rod, scene
 
 BAR = {"name": "bar", "kind": "capsule", "from": [0.5, -0.5, -0.08], "to": [0.5, 0.5, -0.08], "radius": 0.05}
@@ -50,8 +49,8 @@ class ContactLibrary:
         manifest = json.loads((self.folder / "manifest.json").read_text())
         name = manifest["name"]
         library = self.folder.parent / f"{name}.so"
-        sources = [str(self.folder / file) for file in (f"{name}.c", f"{name}_kernels.c")]
-        subprocess.run(["gcc", "-std=c99", *QUICK, "-shared", *sources, "-o", str(library), "-lm"], check=True)
+        sources = [self.folder / file for file in (f"{name}.c", f"{name}_kernels.c")]
+        compile_quickly("-std=c99", *QUICK, "-shared", *sources, "-o", library, "-lm")
         return CompiledContact(library, manifest)
 
 

@@ -150,17 +150,18 @@ class Exported:
         return made
 
     def warnings(self, *flags: str) -> str:
-        """What gcc says of the library's two sources."""
+        """What gcc says of the library's two sources as it reads them; it writes no object."""
         said = []
         for stem in (self.name, f"{self.name}_kernels"):
-            done = attempt("gcc", *GENERATED, *flags, "-c", self.folder / f"{stem}.c", "-o", self.scratch / "warned.o")
+            done = attempt("gcc", *GENERATED, *flags, "-fsyntax-only", self.folder / f"{stem}.c")
             assert done.returncode == 0, done.stderr
             said.append(done.stderr)
         return "".join(said)
 
     def link(self, sources: Sequence[Path | str], *flags: str, others: Sequence[Exported] = ()) -> Path:
         """A program of these sources and the library, or with ``-shared`` the library alone."""
-        objects = [path for one in (self, *others) for path in one.objects(*(f for f in flags if f != "-shared"))]
+        compiled = [flag for flag in flags if flag != "-shared" and not flag.startswith("-Wl,")]
+        objects = [path for one in (self, *others) for path in one.objects(*compiled)]
         target = self.scratch / f"{self.name}-{_digest([*flags, *map(str, [*sources, *objects])])}"
         include = [f"-I{one.folder}" for one in (self, *others)]
         once(target, lambda path: gcc("-std=c99", *flags, *include, *sources, *objects, "-lm", "-o", path))
@@ -219,8 +220,9 @@ def exported(name: str, recipe: HasModel, folder: Path) -> Exported:
 
 
 def _compile(source: Path, target: Path, *flags: str) -> None:
-    # Flags of one compiler may be none of another.
-    compiler = quickest_compiler() if flags == QUICK else "gcc"
+    # Flags of one compiler may be none of another; definitions of macros are those of both.
+    own = [flag for flag in flags if not flag.startswith("-D")]
+    compiler = quickest_compiler() if tuple(own) == QUICK else "gcc"
     run(compiler, "-std=c99", "-w", *flags, "-c", source, "-o", target)
 
 
@@ -231,6 +233,11 @@ def _digest(words: Sequence[str]) -> str:
 def gcc(*words: str | Path) -> None:
     """Run the compiler; what it says is the message of a failure."""
     run("gcc", *words)
+
+
+def compile_quickly(*words: str | Path) -> None:
+    """Run the compiler that takes least time over C that is run for its digits."""
+    run(quickest_compiler(), *words)
 
 
 def run(*words: str | Path, expect: int = 0, cwd: Path | None = None, timeout: float = 300) -> str:

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.acados import acados_functions
 from cosserat_casadi.control import radau
 from cosserat_casadi.maths.typing import FloatArray
 from tests.control.swing import STEP, arm, replayed, task
+from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES
 
 
@@ -45,7 +46,7 @@ def test_the_dae_vs_the_model(make: Callable[[], Model]) -> None:
     assert_allclose(value(x, xdot, u, z).full()[:, 0], expected, rtol=1e-11, atol=1e-12)
 
 
-@pytest.mark.parametrize("make", [arm, supported])
+@pytest.mark.parametrize("make", mostly_slow([arm, supported], quick=[supported]))
 def test_jacobians_vs_differentiated_expressions(make: Callable[[], Model]) -> None:
     model = make()
     dae = acados_expressions(model, "moving", moving=True)

@@ -13,7 +13,7 @@ from cosserat_casadi import Compiled, Discretisation, Model, build, export, load
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.names import scene_names
-from tests.codegen.libraries import QUICK, Recipe, gcc
+from tests.codegen.libraries import QUICK, Recipe, compile_quickly
 from tests.conftest import ROOT
 from tests.scenes import push, rod, scene
 
@@ -22,7 +22,7 @@ LOAD = {"name": "p", "kind": "tip_wrench", "rod": "b", "force": [0.2, 0.0, 0.1]}
 
 def compiled(model: Model, folder: Path, name: str, library: Path) -> Compiled:
     """The solver of an exported folder without the derivatives."""
-    gcc("-shared", *QUICK, folder / f"{name}.c", folder / f"{name}_kernels.c", "-lm", "-o", library)
+    compile_quickly("-shared", *QUICK, folder / f"{name}.c", folder / f"{name}_kernels.c", "-lm", "-o", library)
     described = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     return Compiled(library, described)
 

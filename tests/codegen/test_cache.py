@@ -16,18 +16,26 @@ from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.codegen import cache, compiler
 from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
 from cosserat_casadi.codegen.compiler import find_compiler
+from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
 needs_shell = pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
 
 
+@pytest.fixture(scope="module")
+def strip_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An exported folder that no test changes."""
+    given = scene(push(), strain="planar")
+    return export(build(given, discretise(given, 2, 3)), tmp_path_factory.mktemp("once") / "strip")
+
+
 @pytest.fixture
-def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def strip(strip_once: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An exported folder of a test's own beside an empty cache."""
     monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
     monkeypatch.setattr(compiler, "FLAGS", tuple("-O0" if flag == "-O2" else flag for flag in compiler.FLAGS))
-    given = scene(push(), strain="planar")
-    return export(build(given, discretise(given, 2, 3)), tmp_path / "strip")
+    return Path(shutil.copytree(strip_once, tmp_path / "strip"))
 
 
 def counting_compiler(tmp_path: Path) -> tuple[str, Path]:
@@ -145,7 +153,7 @@ def test_the_variable_names_the_folder(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @needs_compiler
-@pytest.mark.parametrize("damage", ["cut off", "empty", "text"])
+@pytest.mark.parametrize("damage", mostly_slow(["cut off", "empty", "text"], quick=["cut off"]))
 def test_a_damaged_library_is_compiled_anew(strip: Path, damage: str) -> None:
     first = load(strip).library
     sound = first.read_bytes()
@@ -197,14 +205,13 @@ def test_a_compiler_that_only_says_that_it_compiles(strip: Path, tmp_path: Path,
 
 @needs_shell
 def test_a_compiler_that_hangs_is_stopped(strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler, "LONGEST", 0.2)
+    monkeypatch.setattr(compiler, "LONGEST", 0.5)
     running = tmp_path / "running"
     hanging = script(tmp_path, f"sleep 1000 & echo $! >> {running}", "wait")
-    with pytest.raises(ExportError, match=r"was stopped: it had not compiled .*\.c after 0.2 s"):
+    with pytest.raises(ExportError, match=r"was stopped: it had not compiled .*\.c after 0.5 s"):
         load(strip, hanging)
-    # What it had started is stopped with it.
-    for number in map(int, running.read_text().split()):
-        assert not is_alive(number)
+    # What it had started is stopped with it; on a busy machine it had started nothing yet.
+    assert not any(is_alive(number) for number in started(running))
 
 
 @needs_shell
@@ -217,7 +224,12 @@ def test_an_interrupt_stops_compilers(strip: Path, tmp_path: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt):
         load(strip, hanging, progress=interrupted)
-    assert not running.exists() or not any(map(is_alive, map(int, running.read_text().split())))
+    assert not any(is_alive(number) for number in started(running))
+
+
+def started(file: Path) -> list[int]:
+    """Numbers of the processes that a script has written, none where it has not come so far."""
+    return [int(word) for word in file.read_text().split()] if file.exists() else []
 
 
 def is_alive(number: int) -> bool:

@@ -19,6 +19,7 @@ from cosserat_casadi.control import MotionStage, motion_stage, radau
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_load import cached, needs_compiler
 from tests.control.swing import arm
+from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, model_of, rod
 
 pytestmark = needs_compiler
@@ -56,7 +57,9 @@ def slopes_of(function: ca.Function, at: list[FloatArray]) -> list[ca.DM]:
 
 
 @pytest.mark.parametrize(
-    ("make", "longest"), [(arm, STRAIGHT), (arm, 0), (held, STRAIGHT)], ids=["straight", "loops", "with constraint"]
+    ("make", "longest"),
+    mostly_slow([(arm, STRAIGHT), (arm, 0), (held, STRAIGHT)], quick=[(arm, 0), (held, STRAIGHT)]),
+    ids=["straight", "loops", "with constraint"],
 )
 def test_stage_vs_plain(make: Callable[[], Model], longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (stage_module, motion_stage_module):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import CompiledContact, ExportError, build, discretise, export, load, read_scene, solve
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import (
     BAR,
@@ -21,7 +22,7 @@ from tests.codegen.contact_libraries import (
     on_table,
     over_bar,
 )
-from tests.codegen.libraries import C99, QUICK
+from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
 from tests.scenes import rod, scene
 
 LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
@@ -160,10 +161,10 @@ def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: Cont
     for library in (bar, table):
         name = library.folder.name
         for file in (f"{name}.c", f"{name}_demo.c"):
-            subprocess.run(["gcc", *LINT, "-c", library.folder / file, "-o", tmp_path / "object.o"], check=True)
+            gcc(*LINT, "-fsyntax-only", library.folder / file)
     kernels = bar.folder / "bar_kernels.c"
     objects = [bar.folder / "bar_demo.c", bar.folder / "bar.c", kernels]
-    subprocess.run(["gcc", "-std=c99", *QUICK, *objects, "-o", tmp_path / "demo", "-lm"], check=True)
+    compile_quickly("-std=c99", *QUICK, *objects, "-o", tmp_path / "demo", "-lm")
     printed = subprocess.run([tmp_path / "demo", "0", "0", "-5"], check=True, capture_output=True, text=True).stdout
     answer = json.loads(printed)
     assert answer["status"] == "converged"
@@ -176,6 +177,17 @@ def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
     """In contact and without, of a bar whose distance is chosen between its ends and its middle."""
     columns = (bar.folder / "bar_kernels_in_fours.h").read_text()
     assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
+
+
+def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp_path: Path) -> None:
+    """In header, README and manifest, as folders without contact do."""
+    verified = Verified(("push.force.z=-4:-2",), 7, 0.25, 0, False)
+    model = build(over_bar(), discretise(over_bar(), 2, 4))
+    folder = export(model, tmp_path / "verified", verified=verified)
+    assert json.loads((folder / "manifest.json").read_text())["verified"] == verified.plain()
+    for file in ("verified.h", "README.md"):
+        assert verified.sentence in " ".join((folder / file).read_text().split())
+    assert "was not estimated" in " ".join((bar.folder / "bar.h").read_text().split())
 
 
 def test_bytes_of_a_library(bar: ContactLibrary) -> None:

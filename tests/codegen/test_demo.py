@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.codegen.libraries import Exported, attempt, run
+from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
@@ -114,6 +115,6 @@ def test_what_does_not_converge_says_so(library: Library, words: list[str], stat
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed")
-@pytest.mark.parametrize("name", ["planar", "pair", "fixed"])
+@pytest.mark.parametrize("name", mostly_slow(["planar", "pair", "fixed"], quick=["pair"]))
 def test_demo_under_valgrind(library: Library, name: str) -> None:
     run("valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", library(name).demo, "--repeat", "2")

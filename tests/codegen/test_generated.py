@@ -39,7 +39,7 @@ from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.model.discretise import with_discretisation
-from tests.conftest import ROOT, c_flags
+from tests.conftest import ROOT, c_flags, quickest_compiler
 
 FOLDER = ROOT / "generated"
 
@@ -79,7 +79,7 @@ WITH_DERIVATIVES = {"nitinol_wire"}
 
 ANEW = "run `make generated` and commit what it writes"
 
-COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)
+COMPILER = shutil.which(quickest_compiler())
 
 
 def arithmetic() -> str:

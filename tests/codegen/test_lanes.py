@@ -180,6 +180,7 @@ def test_an_assembly_with_batches_is_refused(tmp_path: Path) -> None:
     assert not (tmp_path / "hand").exists()
 
 
+@pytest.mark.slow
 def test_the_command_refuses_batches_of_an_assembly(tmp_path: Path) -> None:
     example = ROOT / "examples" / "branching_rod.toml"
     done = cosserat("export", str(example), "--batches", "--output", "rod", cwd=tmp_path)

@@ -176,12 +176,18 @@ def test_optimum_with_the_residual_as_a_constraint(pair: Pair) -> None:
 # The compiled object
 
 
-@pytest.fixture
-def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An exported folder beside an empty cache."""
-    cached(tmp_path / "cache", monkeypatch)
+@pytest.fixture(scope="module")
+def strip_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An exported folder that no test changes."""
     given = scene(push(), strain="planar")
-    return export(build(given, discretise(given, 2, 4)), tmp_path / "strip", derivatives=True)
+    return export(build(given, discretise(given, 2, 4)), tmp_path_factory.mktemp("once") / "strip", derivatives=True)
+
+
+@pytest.fixture
+def strip(strip_once: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An exported folder of a test's own beside an empty cache."""
+    cached(tmp_path / "cache", monkeypatch)
+    return Path(shutil.copytree(strip_once, tmp_path / "strip"))
 
 
 def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:

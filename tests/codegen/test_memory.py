@@ -35,7 +35,7 @@ def stated(made: Exported) -> tuple[float, float]:
     return 1000 * float(found[2]), 1000 * float(found[1])
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar"]))
 def test_stack_and_workspace(library: Library, name: str) -> None:
     made = library(name)
     stack, workspace = measured(made, *QUICK)

@@ -14,10 +14,13 @@ from cosserat_casadi import Model, Scene, build, discretise, export, read_scene,
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.scene.writing import scene_tables
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS, Exported
+from tests.families import mostly_slow
 from tests.scenes import scene
 
+NAMES = ["planar", "thick", "tendons", "robot", "gripper", "loops"]
 
-@pytest.mark.parametrize("name", ["planar", "thick", "tendons", "robot", "gripper", "loops"])
+
+@pytest.mark.parametrize("name", mostly_slow(NAMES, quick=[name for name in NAMES if name != "gripper"]))
 def test_scene_builds_the_model_of_the_folder(library: Callable[[str], Exported], name: str) -> None:
     """Of the same size, and with the residual of the compiled one."""
     made = library(name)

@@ -61,7 +61,7 @@ def test_no_load_leaves_the_rod_as_it_is(library: Library, name: str) -> None:
     assert_allclose(found.x, 0.0, rtol=0, atol=0)
 
 
-FAST = {"follower_10", "shear_GA2P2", "wrench_C_prebent_twisted"}
+FAST = {"follower_10"}
 
 
 @pytest.mark.parametrize(

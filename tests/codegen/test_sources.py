@@ -30,7 +30,7 @@ FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail", "__cpu_model"}
 MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "pinned", "fixed", "tendons", "loops", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["pinned", "fixed", "robot"]))
 def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
     made = library(name)
     for stem in (name, f"{name}_demo"):
@@ -48,18 +48,17 @@ KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 @pytest.mark.parametrize("name", mostly_slow(KINDS, quick=["fixed", "robot"]))
-def test_solver_passes_every_lint_in_both_languages(
-    library: Library, name: str, language: str, single: bool, tmp_path: Path
-) -> None:
+def test_solver_passes_every_lint_in_both_languages(library: Library, name: str, language: str, single: bool) -> None:
+    """As compilers read it: what they warn of while they optimise, the test before sees."""
     made = library(name)
     if language == "c++20" and shutil.which("g++") is None:
         pytest.skip("g++ is not installed")
     compiler = ("g++", "-x", "c++") if language == "c++20" else ("gcc",)
     chosen = [f"-D{made.names.macro}_SINGLE"] if single else []
     for stem in (name, f"{name}_demo"):
-        run(*compiler, f"-std={language}", *LINT, *chosen, "-c", made.folder / f"{stem}.c", "-o", tmp_path / "o")
+        run(*compiler, f"-std={language}", *LINT, *chosen, "-fsyntax-only", made.folder / f"{stem}.c")
     # CasADi's own sources: they compile, whatever a compiler says of them.
-    run(*compiler, f"-std={language}", "-w", *chosen, "-c", made.folder / f"{name}_kernels.c", "-o", tmp_path / "o")
+    run(*compiler, f"-std={language}", "-w", *chosen, "-fsyntax-only", made.folder / f"{name}_kernels.c")
 
 
 CORTEX = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard")

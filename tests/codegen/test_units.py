@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
-from tests.codegen.libraries import HARNESS, Exported, run
+from tests.codegen.libraries import C99, HARNESS, Exported, gcc, run
+from tests.conftest import ROOT
 from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
@@ -30,3 +32,10 @@ def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:
     made = library(name)
     defaults = f"-DSOLVER_DEFAULTS={made.names.macro}_DEFAULTS"
     run(made.whole_program(harness, *SANITIZED, defaults, f"-I{HARNESS}"))
+
+
+@pytest.mark.parametrize("harness", ["units_misfit.c", "units_second_variation.c"])
+def test_algorithm_with_equations_of_the_test(harness: str, tmp_path: Path) -> None:
+    include = f"-I{ROOT / 'cosserat_casadi' / 'codegen' / 'c'}"
+    gcc(*C99, *SANITIZED, include, HARNESS / harness, "-lm", "-o", tmp_path / "units")
+    run(tmp_path / "units")

@@ -38,6 +38,7 @@ def test_rod_turned_past_a_vanished_path_vs_python(export_recipe: ExportRecipe) 
     assert made.compiled.solve(inputs).outcome is made.solve(inputs).outcome is Outcome.PATH_VANISHED
 
 
+@pytest.mark.slow
 def test_rod_in_contact_vs_python(tmp_path: Path) -> None:
     """Where a rod may touch an obstacle, here one far away."""
     far = {"name": "table", "kind": "plane", "point": [0, 0, -5.0], "normal": [0, 0, 1]}

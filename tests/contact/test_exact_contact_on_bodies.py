@@ -139,6 +139,7 @@ def _nothing_is_inside(solution: Solution) -> None:
     assert all(min(contact.ends) > 0.0 for contact in solution.contacts if contact.kind == "point")
 
 
+@pytest.mark.slow
 def test_a_bar_that_crosses_a_rod_in_space(crossed: Solution) -> None:
     """Forces and moments of both clamps and of the push are in balance, and so are those on each rod."""
     solution = crossed
@@ -362,6 +363,7 @@ def test_every_motion_that_keeps_the_contact_costs_energy(touching: Solution) ->
         assert abs(above - below) < 0.3 * (above + below)
 
 
+@pytest.mark.slow
 def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
     """The finger alone bends until its disk is at the other, which is straight: z = −0.05 and X from its x."""
     model = build(parse_scene(FINGERS))

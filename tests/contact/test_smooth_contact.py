@@ -563,6 +563,7 @@ width = 1e-3
 """
 
 
+@pytest.mark.slow
 def test_no_step_of_a_path_passes_through_a_thin_wire() -> None:
     """Steps of their own length would end behind it; the solve from a solution and the path end in front of it."""
     model = build(parse_scene(ROD + PUSH + WIRE))

@@ -120,6 +120,7 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert lifted.stable
 
 
+@pytest.mark.slow
 def test_a_load_inside_a_line_over_a_drum() -> None:
     """Along a drum the bending moment is constant, and so there is no shear force: each normal force is borne at once.
 

@@ -100,6 +100,7 @@ def test_scattered_starts_leave_a_local_minimum(tensions: list[float]) -> None:
     assert_allclose(again.solution.inputs, found.solution.inputs, rtol=0, atol=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "tensions", mostly_slow([[1.219, 0.0, 0.0, 0.0], [0.0, 10.917, 5.081, 0.0]], quick=[[0.0, 10.917, 5.081, 0.0]])
 )

@@ -134,6 +134,7 @@ def test_rows_start_from_their_nearest_neighbour(tmp_path: Path, monkeypatch: py
         assert_allclose(start, before, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_row_out_of_reach_leaves_the_others_alone(tmp_path: Path) -> None:
     given = wanted(bounds=BOUNDS)
     rows = [row[:3] for row in tips(given)]

@@ -186,7 +186,9 @@ def of_both(model: Model, width: float) -> tuple[ca.Function, ca.Function]:
     return ca.Function("first", [both], [value, gradient]), ca.Function("second", [both], [hessian])
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=SLOW if name == "fixed" else ()) for name in MODELS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=SLOW if name in ("fixed", "spherical") else ()) for name in MODELS]
+)
 def test_derivatives_vs_differences(name: str) -> None:
     """Exact to second order, where the round column has a double eigenvalue too."""
     model = MODELS[name]()

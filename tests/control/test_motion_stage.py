@@ -15,6 +15,7 @@ from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import end_of, stages_of
 from tests.codegen.test_load import cached, needs_compiler
 from tests.control.swing import LARGEST, RATE, STAGES, STEP, TENDONS, optimum, replayed, task
+from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, drawn_state, model_of
 
 METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2)]
@@ -64,7 +65,10 @@ def compare_with_the_simulator(family: str, method: Collocation) -> None:
     assert_allclose(stage.v(ca.DM(following)).full()[:, 0], end.v, rtol=1e-12, atol=1e-13)
 
 
-@pytest.mark.parametrize("method", [radau(1), radau(2), gauss(2)], ids=name_of)
+METHODS = [radau(1), radau(2), gauss(2)]
+
+
+@pytest.mark.parametrize("method", mostly_slow(METHODS, quick=METHODS[1:]), ids=name_of)
 def test_an_optimum_replays_in_the_simulator(method: Collocation) -> None:
     wanted = task(method)
     found = optimum(wanted)

@@ -49,6 +49,7 @@ def test_rockit_vs_nlp(method: Callable[[], object]) -> None:
     assert solve(model, dict(zip(model.inputs.names, pulled[-1], strict=True)), start=near).converged
 
 
+@pytest.mark.slow
 def test_rockit_vs_nlp_in_motion() -> None:
     """Stages are steps of a discrete system: next states are linear, unknowns of the stage are controls."""
     wanted = swing.task()

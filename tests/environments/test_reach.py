@@ -9,8 +9,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import parse_scene
+from cosserat_casadi import build, parse_scene, solve, solve_scene
 from cosserat_casadi.environments import REACH, ReachEnvironment
+from cosserat_casadi.environments.reach import _chosen
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
@@ -75,6 +76,19 @@ def test_it_is_made_by_name():
     observation, _ = made.reset(seed=1)
     assert made.observation_space.contains(observation)
     assert made.action_space.shape == (2,)
+
+
+def test_modes_are_chosen_for_where_the_actions_go():
+    """The abductor, which rests at the scene's own inputs, bends the finger out of its plane."""
+    text = SCENE.replace("modes = 1\nnodes = 4\n", "tolerance = 1e-5\n").replace("tension = 0.1", "tension = 0.0")
+    scene = parse_scene(text + BOUNDS)
+    pulled = {"abductor.tension": 0.5, "flexor.tension": 1.0}
+    own = solve_scene(scene).model.discretisation
+    assert solve(build(scene, own), pulled).error_estimate > 1e-5
+    discretisation, error = _chosen(scene)
+    assert error <= 1e-5
+    assert solve(build(scene, discretisation), pulled).error_estimate <= 1e-5
+    assert _chosen(parse_scene(SCENE + BOUNDS))[1] is None
 
 
 def test_start_is_the_equilibrium(environment):

@@ -9,14 +9,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, discretise, read_scene, solve, solve_scene
-from cosserat_casadi.bench.shooting import shoot
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.inputs import load_values
 from tests.conftest import CASES, ROOT
+from tests.families import mostly_slow
 from tests.pose_errors import pose_error
 from tests.scenes import push, scene
+from tests.shooting_near import shoot
 
 AWAY = CASES / "away"
 
@@ -65,7 +65,7 @@ def tendon_robot() -> Model:
     [
         {"north.tension": 9.0, "east.tension": 0.5},
         {"payload.force": [0.0, 0.5, 0.0]},
-        {"payload.force": [0.0, 2.0, 0.0]},
+        pytest.param({"payload.force": [0.0, 2.0, 0.0]}, marks=pytest.mark.slow),
     ],
 )
 def test_modes_of_a_planar_load_know_their_error_under_others(tendon_robot: Model, values: dict[str, Any]) -> None:
@@ -92,7 +92,7 @@ def test_a_grip_beside_the_plane_of_the_choice() -> None:
     assert aside.error_estimate > 1e3 * read.accuracy.tolerance
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", mostly_slow(range(3), quick=[0]))
 def test_robot_of_six_tendons(seed: int) -> None:
     read = read_scene(AWAY / "six_tendons.toml")
     # Those that the robot takes at its own inputs.
@@ -103,6 +103,7 @@ def test_robot_of_six_tendons(seed: int) -> None:
     assert away.within_tolerance is False
 
 
+@pytest.mark.slow
 def test_platform_that_its_modes_lock() -> None:
     read = read_scene(AWAY / "platform_locks.toml")
     model = build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
@@ -129,15 +130,9 @@ def test_estimate_of_a_rod_beside_shooting() -> None:
     pushed = scene(push(force=[3.0, 2.0, -1.0], moment=[0.0, 0.5, 0.3]))
     for modes in (2, 3, 4, 5):
         solution = solve(build(pushed, discretise(pushed, modes, 2 * modes + 4)))
-        clamp = solution.base_wrench()
-        start = np.concatenate([clamp.force, clamp.moment])
-        loads = load_values(pushed, solution.model.inputs, solution.inputs)
-        properties = solution.model.discrete.rods["rod"].properties
-        truth = shoot(pushed, properties, loads, [1.0], start)
+        truth = shoot(solution, [1.0])
         tip = solution.tip()
-        error = pose_error(
-            (tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), properties.length
-        )
+        error = pose_error((tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), truth.length)
         assert solution.error_estimate is not None
         assert LEAST * error < solution.error_estimate < MOST_ABOVE * error
 

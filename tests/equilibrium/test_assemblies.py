@@ -87,6 +87,7 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     assert (single.stable is not None) == (strain == "planar")
 
 
+@pytest.mark.slow
 def test_rod_carried_between_the_ends_vs_shooting() -> None:
     offset, turn = np.array([0.05, 0.02, 0.0]), [0.6, 0, 0.8, 0]
     push = np.array([0.9, 0.5, -0.4])

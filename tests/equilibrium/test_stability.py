@@ -286,6 +286,7 @@ def test_a_round_rod_that_a_pin_presses_together_is_neutral() -> None:
     assert solution.stable
 
 
+@pytest.mark.slow
 def test_a_round_rod_that_a_force_and_a_pin_press_together_is_neutral() -> None:
     """It lies in a plane, which turns about the axis; a force of the pin that stays behind turns it too far."""
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 2.0}

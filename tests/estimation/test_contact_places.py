@@ -187,6 +187,7 @@ def test_a_second_place_that_explains_a_row_is_told() -> None:
     assert float(cells.split(",")[-1]) == found.second.values[0, 1]
 
 
+@pytest.mark.slow
 def test_a_further_marker_leaves_one_place() -> None:
     found = half_circle_felt((0.5, 1.0))
     assert_allclose(found.values[0], [0.02, 2.0 / np.pi], rtol=0, atol=1e-5)

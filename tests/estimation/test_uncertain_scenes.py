@@ -225,6 +225,27 @@ def test_data_that_the_model_explains_are_not_doubted() -> None:
     assert found.warnings == () or not any("explain" in warning for warning in found.warnings)
 
 
+def test_a_number_that_a_bound_holds_is_not_fitted() -> None:
+    """Of a rod that nothing pushes half of the rows would pull: their force stays at its bound, zero."""
+    known = estimate(model_of({**FELT, "lower": 0.0}), shapes(BENDING, np.zeros(12), np.zeros(12), 4))
+    held = int(np.count_nonzero(known.values == 0.0))
+    assert 0 < held < 12
+    assert known.consistency.freedom == 12 * 12 + held
+    shared = estimate(model_of(FELT, {**ROUGHLY, "lower": 1.1 * BENDING}), rows(12))
+    assert shared.shared is not None
+    assert_allclose(shared.shared.values, 1.1 * BENDING, rtol=1e-12, atol=0)
+    assert shared.consistency.freedom == 12 * 12 + 1
+
+
+def test_bounds_of_what_all_rows_share_are_tried_beforehand() -> None:
+    """A place that all rows share, and that may come behind the next one."""
+    at = {"parameter": "hung.at", "prior": {"mean": 0.6, "sigma": 0.01}, "lower": 0.3, "upper": 0.95}
+    hook = {"name": "hook", "kind": "point_wrench", "rod": "rod", "at": 0.8, "force": [0.1, 0.0, 0.0]}
+    with pytest.raises(SceneError, match="must keep their order") as refusal:
+        estimate(model_of(FELT, at, loads=(hook,)), {})
+    assert "narrow lower and upper" in str(refusal.value)
+
+
 def test_data_that_the_model_does_not_explain_are_told() -> None:
     """Noise that is larger by an eighth than sigma says: each row looks sound by itself."""
     noisier = dict(rows(40)["shapes"])

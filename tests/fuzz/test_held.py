@@ -7,15 +7,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from cosserat_casadi import Outcome
 from cosserat_casadi.bench.reference import distance, states
-from cosserat_casadi.bench.shooting import shoot
 from cosserat_casadi.equilibrium.metrics import pose_distance
-from cosserat_casadi.model.watched import watched_sections
 from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
+from tests.shooting_near import shoot
 
 BUCKLED = 20
 """Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
@@ -66,12 +64,7 @@ def test_a_rod_that_no_level_resolves_says_so_and_is_held_to_its_shape(monkeypat
 def test_a_sharply_bent_rod_vs_shooting() -> None:
     solution = solved(SHARPEST, {"tolerance": 1e-9})
     assert solution.converged
-    (rod,) = solution.model.discrete.rods.values()
-    clamp = solution.base_wrench()
-    start = np.concatenate([clamp.force, clamp.moment])
-    sections = watched_sections(solution.model.scene, "rod")
-    truth = shoot(solution.model.scene, rod.properties, {}, sections, start)
-    errors = distance({"rod": truth}, states(solution))
+    errors = distance({"rod": shoot(solution)}, states(solution))
     assert solution.error_estimate is not None
     assert errors.pose <= solution.error_estimate <= 1e-9
 

@@ -17,6 +17,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import LoadRecord
+from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, State, Tables, drawn_state, rod, scene, symbols_of
 from tests.registration import forget
 
@@ -99,7 +100,9 @@ def massless() -> Tables:
     return scene(light, loads=[])
 
 
-@pytest.mark.parametrize("family", [*TRIED, "massless"])
+@pytest.mark.parametrize(
+    "family", mostly_slow([*TRIED, "massless"], quick=["reissner", "carried", "all driven", "massless"])
+)
 def test_derivatives_vs_automatic_differentiation(family: str) -> None:
     model = made(family, "water", "shaker", "rubber")
     symbols = symbols_of(model)

@@ -241,7 +241,8 @@ def test_potential_vs_residual(scene: str, load: str) -> None:
     assert_allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max())
 
 
-@pytest.mark.parametrize(("scene", "load"), [(scene, load) for scene in ("reissner", "carried") for load in LOADS])
+@pytest.mark.parametrize("scene", mostly_slow(["reissner", "carried"], quick=["reissner"]))
+@pytest.mark.parametrize("load", LOADS)
 def test_second_derivatives_are_finite_at_zero_strain(scene: str, load: str) -> None:
     model = made(scene, load)
     x, inputs = model.residual.mx_in()
@@ -249,7 +250,7 @@ def test_second_derivatives_are_finite_at_zero_strain(scene: str, load: str) -> 
     assert np.all(np.isfinite(second(np.zeros(model.size), model.pack()).full()))
 
 
-@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("load", mostly_slow(LOADS, quick=["spring", "dipole", "bed"]))
 def test_rod_of_free_length_and_base(load: str) -> None:
     """Equations of a rod drawn out by its inputs against those of a scene that is written with that length and base."""
     inputs = ("rod.length", "rod.base.position", "rod.base.quaternion")
@@ -319,7 +320,7 @@ def test_planar_rod_on_a_spring_vs_shooting() -> None:
 
 
 @pytest.mark.parametrize("scene", ["carried", "platform"])
-@pytest.mark.parametrize("load", ["spring", "dipole", "bed"])
+@pytest.mark.parametrize("load", mostly_slow(["spring", "dipole", "bed"], quick=["spring", "bed"]))
 def test_assemblies_are_solved(scene: str, load: str) -> None:
     solution = solve(made(scene, load))
     assert solution.converged

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm, logm
 from scipy.spatial.transform import Rotation
 
+from tests.families import mostly_slow
 from tests.reference import rigid_motions
 
 AXIS = np.array([2.0, -3.0, 6.0]) / 7.0
@@ -124,7 +125,7 @@ def test_rigid_exp_of_the_opposite_twist_is_the_inverse(xi):
 
 
 @by_name(SHORT)
-@pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
+@pytest.mark.parametrize("symbol", mostly_slow([ca.SX, ca.MX], quick=[ca.MX]))
 def test_log_of_exp_is_the_identity_to_second_order(xi, symbol, casadi_derivatives):
     value, jacobian, hessian = casadi_derivatives(
         lambda x: rigid_motions.rigid_log(rigid_motions.rigid_exp(x)), xi, symbol

@@ -15,6 +15,7 @@ from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict, so
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.scene.writing import scene_tables
+from tests.families import mostly_slow
 from tests.scenes import STIFFNESS
 
 FEW = {"modes": 3, "nodes": 8}
@@ -84,7 +85,7 @@ def unknowns(model: Model, seed: int) -> np.ndarray:
     return 0.3 * np.random.default_rng(seed).standard_normal(model.size)
 
 
-@pytest.mark.parametrize("factor", [1.0, 0.6])
+@pytest.mark.parametrize("factor", mostly_slow([1.0, 0.6], quick=[0.6]))
 def test_jacobian_vs_ad_vs_finite_differences(factor: float) -> None:
     model = loaded()
     x, inputs, symbol = unknowns(model, 1), model.pack(), ca.MX.sym("x", model.size)
@@ -100,7 +101,7 @@ def test_jacobian_vs_ad_vs_finite_differences(factor: float) -> None:
     assert_allclose(own, np.hstack([s.full() for s in steps]) / (2 * h), rtol=0, atol=5e-9)
 
 
-@pytest.mark.parametrize("angle", [0.0, 1.0, np.pi, 2 * np.pi])
+@pytest.mark.parametrize("angle", mostly_slow([0.0, 1.0, np.pi, 2 * np.pi], quick=[0.0, np.pi]))
 def test_derivatives_finite_at_any_turn_of_a_frame(angle: float) -> None:
     """A quaternion has no singular rotation: identity, half turn and full turn alike."""
     model = loaded()

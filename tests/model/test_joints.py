@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from tests.families import mostly_slow
 from tests.model.test_assembly import FEW, PULL, joint, leg, rod
 
 AXIS = np.array([0.3, -0.5, 0.8])
@@ -40,8 +41,12 @@ def test_multipliers_of_each_kind(kind: str, size: int) -> None:
     assert held(kind, **axis).discrete.constraint("joints[1]").size == size
 
 
-@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
-@pytest.mark.parametrize("load_factor", [1.0, 0.6])
+AT_FACTORS = [("revolute", 1.0), ("prismatic", 1.0), ("revolute", 0.6), ("prismatic", 0.6)]
+
+
+@pytest.mark.parametrize(
+    ("kind", "load_factor"), mostly_slow(AT_FACTORS, quick=[("revolute", 0.6), ("prismatic", 1.0)])
+)
 def test_jacobian_vs_ad(kind: str, load_factor: float) -> None:
     """Also where the rod itself is carried, so that its base moves."""
     carried = rod("b", 0.5, base={"rod": "a", "at": 0.5, "position": [0.02, 0.01, 0.0], "quaternion": [0.6, 0, 0.8, 0]})

@@ -418,7 +418,7 @@ def point(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray,
     return x, v, a, inputs, np.zeros(model.inputs.size)
 
 
-@pytest.mark.parametrize("case", mostly_slow(CASES, quick=EACH_KIND))
+@pytest.mark.parametrize("case", mostly_slow(CASES, quick=EACH_KIND[::2]))
 def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
     model = model_of(case)
     baked = build(scene_of(case).baked(), model.discretisation, moving=True)
@@ -461,7 +461,7 @@ def test_elsewhere_it_is_the_model_with_these_numbers(case: str) -> None:
         assert_allclose(found.full(), wanted_entries, rtol=1e-12, atol=1e-13 * np.abs(wanted_entries).max(initial=1e-9))
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", mostly_slow(CASES, quick=[*EACH_KIND, *MORE]))
 def test_derivatives_with_the_parameters(case: str) -> None:
     """First derivatives against differences, and second ones finite, at a shape and in the unloaded rod."""
     model = model_of(case)
@@ -610,7 +610,7 @@ MOVED = (
 """Cases of one rod whose parameters move element ends."""
 
 
-@pytest.mark.parametrize("rotation", ["magnus6", "permuted"])
+@pytest.mark.parametrize("rotation", mostly_slow(["magnus6", "permuted"], quick=["magnus6"]))
 @pytest.mark.parametrize("case", MOVED)
 def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, rotation: str) -> None:
     """Strains are counted per nominal length of their element: a scene of its own has them times its width."""

@@ -16,6 +16,7 @@ from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from
 from cosserat_casadi.plots.scenery import actuator_routing
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
+from tests.families import mostly_slow
 from tests.reference.tendons import TendonRod
 
 ROD = """
@@ -229,7 +230,7 @@ ALL = tendon(COURSES["converging"]) + tendon(COURSES["partial"], "length = 0.12"
 
 
 @pytest.mark.parametrize("strain", ['"planar"', '"kirchhoff"', '"reissner"', '["bending_x", "torsion", "extension"]'])
-@pytest.mark.parametrize("slack", ["", "\nslack = true"])
+@pytest.mark.parametrize("slack", mostly_slow(["", "\nslack = true"], quick=["\nslack = true"]))
 def test_jacobian_vs_automatic_and_finite_differences(strain: str, slack: str) -> None:
     text = rod(strain) + LOADED + ALL.replace("length = 0.12", f"length = 0.12{slack}")
     model = build(parse_scene(text))
@@ -274,7 +275,9 @@ def test_derivative_of_length_vs_automatic() -> None:
         assert_allclose(values[0].full(), values[1].full(), rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("course", ["converging", "helical", "partial", "inner"])
+@pytest.mark.parametrize(
+    "course", mostly_slow(["converging", "helical", "partial", "inner"], quick=["helical", "inner"])
+)
 def test_convergence_is_geometric_even_across_anchors(course: str) -> None:
     text = rod('["bending_x", "bending_y", "torsion", "extension"]') + LOADED + tendon(COURSES[course])
     tips = [

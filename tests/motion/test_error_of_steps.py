@@ -11,6 +11,7 @@ from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.motion.motion_refinement import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
 from cosserat_casadi.motion.simulate import FORETOLD, TIGHTER, Simulator, started
 from cosserat_casadi.motion.tip_paths import path_distance
+from tests.families import mostly_slow
 from tests.motion import transients
 
 STEP_TOLERANCE = 1e-3
@@ -35,7 +36,9 @@ def cantilever() -> Simulator:
     return simulator_of(transients.sudden_weight(duration=1.0))
 
 
-@pytest.fixture(scope="module", params=[free_rod, cantilever], ids=["free rod", "cantilever"])
+@pytest.fixture(
+    scope="module", params=mostly_slow([free_rod, cantilever], quick=[cantilever]), ids=["free rod", "cantilever"]
+)
 def level(request: pytest.FixtureRequest) -> ResolvedMotion:
     """A motion and the steps that it was computed with."""
     simulator: Simulator = request.param()

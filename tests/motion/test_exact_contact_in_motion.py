@@ -325,6 +325,7 @@ def without_starts_below(least: int, monkeypatch: pytest.MonkeyPatch) -> list[in
     return tried
 
 
+@pytest.mark.slow
 def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = simulate_scene(lying())
     tried = without_starts_below(9, monkeypatch)
@@ -336,6 +337,7 @@ def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.M
     assert_allclose(motion.tip().position, wanted, rtol=0, atol=2e-3 * 0.4)
 
 
+@pytest.mark.slow
 def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = without_starts_below(100, monkeypatch)
     motion = simulate_scene(lying())

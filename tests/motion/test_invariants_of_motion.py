@@ -105,7 +105,7 @@ def chain() -> transients.Table:
     return moving_scenes.scene(*rods, loads=[], bodies=[moving_scenes.PLATE], joints=joints)
 
 
-@pytest.mark.parametrize("jointed", [hinged, chain])
+@pytest.mark.parametrize("jointed", mostly_slow([hinged, chain], quick=[hinged]))
 def test_momentum_of_free_rods_that_are_joined_is_kept_to_rounding(jointed: Callable[[], transients.Table]) -> None:
     """Forces in joints act within: steps alone would miss 5e-7 of the momentum of the scissors."""
     model = moving_model(jointed(), 2, 6)
@@ -133,7 +133,9 @@ def test_rods_that_nothing_joins_are_not_one_piece() -> None:
 
 
 @pytest.mark.parametrize(
-    ("method", "order"), [(radau(3), 5), (gauss(2), 4), (gauss(3), 6)], ids=["Radau-3", "Gauss-2", "Gauss-3"]
+    ("method", "order"),
+    [(radau(3), 5), (gauss(2), 4), pytest.param(gauss(3), 6, marks=pytest.mark.slow)],
+    ids=["Radau-3", "Gauss-2", "Gauss-3"],
 )
 def test_momentum_put_right_leaves_the_order_of_the_steps(method: Collocation, order: int) -> None:
     """Of positions, velocities and energy, beside the same steps as they are."""

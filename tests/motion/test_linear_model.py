@@ -12,6 +12,7 @@ from cosserat_casadi import SceneError, SolveError, build, discretise, solve
 from cosserat_casadi.motion.linear_model import linearise
 from cosserat_casadi.motion.vibration_modes import modes_of
 from cosserat_casadi.scene import scene_from_dict
+from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene, three_cables
 
 PLATE = {"name": "plate", "mass": 0.3, "centre_of_mass": [0.0, 0.02, 0.01], "inertia": [2e-3, 3e-3, 4e-3]}
@@ -75,7 +76,11 @@ SCENES = {
 }
 
 
-@pytest.fixture(scope="module", params=SCENES)
+QUICK = ["stub", "relaxing", "massless", "free", "base", "length", "arch", "cables"]
+"""Each kind of input, of mass and of constraint once."""
+
+
+@pytest.fixture(scope="module", params=mostly_slow(SCENES, quick=QUICK))
 def solution(request):
     return equilibrium(SCENES[request.param]())
 

@@ -29,7 +29,7 @@ CLOSED = 1e-10
 
 HELD = ["clamped tip", "pinned tip", "carried", "given length", "free with body", "driven and held"]
 JOINTS = [f"{kind} joint" for kind in ("fixed", "spherical", "revolute", "prismatic")]
-QUICK = ["pinned tip", "given length", "driven and held", "revolute joint"]
+QUICK = ["given length", "driven and held", "revolute joint"]
 
 SWAY = {"amplitude": [0.3, 2.0, 1.0], "frequency": 1.5, "wave": "one_minus_cosine"}
 SHAKE = {"amplitude": [0.03, 0.02, -0.02], "frequency": 1.5, "wave": "one_minus_cosine"}

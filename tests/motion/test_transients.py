@@ -134,7 +134,7 @@ def test_sudden_weight_vs_independent_galerkin_method() -> None:
     assert error <= motion.error_estimate + 3e-5
 
 
-@pytest.mark.parametrize(("tolerance", "share"), [(1e-3, 2.4e-4), (1e-4, 3.6e-5)])
+@pytest.mark.parametrize(("tolerance", "share"), mostly_slow([(1e-3, 2.4e-4), (1e-4, 3.6e-5)], quick=[(1e-3, 2.4e-4)]))
 def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
     """Energy is kept as exactly as the steps are exact, which follow the tolerance of the path.
 
@@ -280,6 +280,7 @@ def test_right_angle_cantilever_vs_published_curves() -> None:
             assert_allclose(found, value, rtol=0, atol=0.2)
 
 
+@pytest.mark.slow
 def test_coarser_tolerances_take_fewer_steps() -> None:
     model_scene = transients.line_load()
     model_scene["accuracy"] = {"modes": 8, "nodes": 20}

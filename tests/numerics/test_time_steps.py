@@ -278,6 +278,7 @@ def test_gauss_keeps_a_quadratic_energy() -> None:
     assert_allclose(energies, 0.5, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_energy_of_gauss_stays_near_that_of_the_start() -> None:
     start = start_at(PENDULUM_ANGLE, np.array([2.0]), np.zeros(1))
     steps = fixed(PENDULUM_ANGLE, start, 1000.0, gauss(2), 0.2).steps

@@ -14,6 +14,7 @@ from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.page.drawn_model import SECTIONS, DrawnModel, drawn_layout
 from cosserat_casadi.plots.arrow_drawing import scene_arrows
 from cosserat_casadi.plots.scenery import actuator_routing
+from tests.codegen.libraries import RECIPES
 from tests.families import mostly_slow
 from tests.page.pages_made import finger, portal
 
@@ -68,7 +69,7 @@ def test_arrows_are_those_of_the_pictures(scene: Callable[[], Scene]) -> None:
 
 
 def test_an_ordinary_folder_has_no_picture() -> None:
-    model = build(finger())
+    model = RECIPES["tiny"].model()
     with_picture = folder_files(DrawnModel(model.discrete), "robot")
     without = folder_files(model, "robot")
     assert "robot_drawn(" in with_picture["robot.h"]

@@ -11,11 +11,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, solve
 from cosserat_casadi.page.page import LARGEST, export_page
-from tests.browser import browser
+from tests.browser import PATIENCE, browser
 from tests.page.pages_made import strip, wasm_compiler
-
-PATIENCE = 60_000
-"""Milliseconds that a condition is waited for: twenty times what a browser takes on an idle machine."""
 
 
 @pytest.fixture(scope="module")

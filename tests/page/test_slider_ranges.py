@@ -47,6 +47,15 @@ def test_ends_are_those_of_a_choice_and_what_keeps_its_value_there_can_be_moved(
     assert_allclose([made["push.force y"].least, made["push.force y"].most], [-force, force], rtol=1e-9, atol=0)
 
 
+def test_ends_that_are_asked_for_go_before_those_of_the_scene() -> None:
+    """Of modes that the scene fixes too, which are verified there and not chosen."""
+    fixed = {"modes": 3, "nodes": 8}
+    model = build(scene_from_dict(scene_with(["push.force"], accuracy=fixed, ranges={"push.force": [-3.0, 3.0]})))
+    made = by_name(sliders(model, {"push.force.x": (-0.5, 0.25)}))
+    assert (made["push.force x"].least, made["push.force x"].most) == (-0.5, 0.25)
+    assert (made["push.force y"].least, made["push.force y"].most) == (-3.0, 3.0)
+
+
 def test_geometry_moves_about_the_scene_s_own() -> None:
     """Lengths and bases by a tenth; a base turns into every direction where it alone holds the rod, else it tilts."""
     inputs = ["rod.length", "rod.base.position", "rod.base.quaternion"]

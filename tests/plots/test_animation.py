@@ -24,6 +24,7 @@ from cosserat_casadi.plots.animation import (
     frame_times,
     save_animation,
 )
+from tests.families import mostly_slow
 from tests.motions import planar_swing, swinging_rod, two_rods_on_a_platform
 
 
@@ -42,7 +43,7 @@ def film(path: Path) -> tuple[int, float]:
         return image.n_frames, milliseconds / 1000
 
 
-@pytest.mark.parametrize("speed", [1.0, 0.5])
+@pytest.mark.parametrize("speed", mostly_slow([1.0, 0.5], quick=[1.0]))
 def test_gif_takes_as_long_as_the_motion(short: Motion, tmp_path: Path, speed: float) -> None:
     path = tmp_path / "swing.gif"
     save_animation(short, path, speed=speed)

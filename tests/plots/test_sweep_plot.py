@@ -61,6 +61,7 @@ def test_nothing_converged() -> None:
     assert "0 of 40 rows" in plot_sweep(nothing).axes[0].get_title()
 
 
+@pytest.mark.slow
 def test_the_same_sweep_gives_the_same_bytes(tmp_path: Path) -> None:
     for name in ("a.png", "b.png"):
         save_sweep_plot(swept(planar=False, failing=True), tmp_path / name)

@@ -5,7 +5,7 @@
 Strains that are not admitted keep their intrinsic values; their wrench components are reactions. The six unknowns
 are n and m at the base, in units of EI/L² and EI/L. Jacobians are exact (complex step through the integrator). A free
 tip is reached by growing the loads from nothing, a held tip by moving its support from where an unloaded rod under
-a base moment would have it.
+a base moment would have it. Where the clamp's wrench is nearly known, Newton's method starts there instead.
 """
 
 from __future__ import annotations
@@ -24,6 +24,15 @@ from .rods import Array, PointLoad, RodData, rod_of, rotation_from_quaternion
 
 COARSE, FINE = 1e-7, 1e-13
 """Tolerances of the integrator: along the path, and for the answer."""
+
+NEAR = 1e-2
+"""Largest relative correction of a base wrench to start from: beyond, another equilibrium may have been reached."""
+
+TABLES = ("loads", "supports", "actuators", "joints", "obstacles")
+"""Tables of a scene whose members have kinds."""
+
+KNOWN = {"gravity", "tip_wrench", "point_wrench", "distributed_wrench", "clamped", "pinned"}
+"""Kinds that shooting knows."""
 
 _STEP = 1e-30
 _FLAT_HATS = np.array([[0.0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]])
@@ -87,7 +96,10 @@ class ReferenceSolution:
 
 
 def solve_by_shooting(
-    scene: dict[str, Any], samples: int | ArrayLike = 21, start_moment: ArrayLike | None = None
+    scene: dict[str, Any],
+    samples: int | ArrayLike = 21,
+    start_moment: ArrayLike | None = None,
+    base_wrench: ArrayLike | None = None,
 ) -> ReferenceSolution:
     """The equilibrium of a scene of one rod with a free, clamped or pinned tip.
 
@@ -97,14 +109,26 @@ def solve_by_shooting(
         start_moment: for a held tip, moment in world axes and units of EI/L that bends the unloaded rod where the
             path of the support starts; it selects among several equilibria. By default one that turns the tip by
             about the angle wanted.
+        base_wrench: force and moment of the clamp on the rod near the equilibrium, world axes, N and N m: Newton's
+            method starts there, and no path is followed.
 
     Raises:
-        NoEquilibriumError: where the path ends, as at a limit load.
+        ValueError: the scene holds what shooting does not know.
+        NoEquilibriumError: where the path ends, as at a limit load, or no equilibrium is near the base wrench.
     """
+    unknown_kinds = {entry["kind"] for table in TABLES for entry in scene.get(table, [])} - KNOWN
+    if unknown_kinds:
+        raise ValueError(f"shooting does not know {', '.join(sorted(unknown_kinds))}")
     problem = _Problem(rod_of(scene))
-    unknown, end = _start(problem, scene, start_moment)
-    coarse, steps = _follow(problem, end, unknown)
-    unknown, residual = _polish(problem, end, coarse)
+    start, end = _start(problem, scene, start_moment)
+    if base_wrench is None:
+        near, steps = _follow(problem, end, start)
+    else:
+        # The rod's own wrench at its base is opposite to that of the clamp.
+        near, steps = -np.asarray(base_wrench, dtype=float) / problem.wrench_units, 0
+    unknown, residual = _polish(problem, end, near)
+    if base_wrench is not None and _relative(unknown - near, near) > NEAR:
+        raise NoEquilibriumError("no equilibrium is near the base wrench")
     X = np.linspace(0, 1, samples) if isinstance(samples, int) else np.asarray(samples, dtype=float)
     tip = problem.sections(unknown, np.ones(1))
     base = -problem.wrench_units * unknown
@@ -232,7 +256,7 @@ class _Problem:
     def _advance(self, state: _State, start: float, end: float, factor: float, tolerance: float) -> _State:
         if start == end:
             return state
-        span, accuracy = (start, end), {"rtol": tolerance, "atol": tolerance}
+        span, accuracy = (start, end), {"rtol": tolerance, "atol": tolerance / 10}
         done = solve_ivp(self.rate, span, state.flat(), "DOP853", args=(factor,), **accuracy)
         if not done.success:
             raise _Rejected

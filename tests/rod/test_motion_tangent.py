@@ -27,6 +27,7 @@ from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangen
 from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.tangent import Tangent
+from tests.families import mostly_slow
 
 RODS = {
     "planar": PLANAR,
@@ -86,7 +87,7 @@ def check(compared, *at):
     return values
 
 
-@pytest.mark.parametrize("rotary", [False, True], ids=["point", "rotary"])
+@pytest.mark.parametrize("rotary", mostly_slow([False, True], quick=[True]), ids=["point", "rotary"])
 @pytest.mark.parametrize("breaks", BREAKS)
 @pytest.mark.parametrize("name", RODS)
 def test_derivatives_vs_ad(name, breaks, rotary):

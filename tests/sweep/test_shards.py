@@ -153,6 +153,11 @@ def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest
     monkeypatch.setattr(sys, "argv", [*words, "--merge"])
     assert run(app) == 0
     assert read_sweep("found.csv").converged.all()
+    # A job of an array that is started once more sees that all is done.
+    monkeypatch.setattr(sys, "argv", [*words, "--shard", "1/2"])
+    assert run(app) == 0
+    assert "found.csv holds this sweep already: nothing was computed" in " ".join(capsys.readouterr().out.split())
+    assert not list(tmp_path.glob("*.shard-*"))
 
 
 ARRAY = """\

@@ -251,6 +251,7 @@ def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
         assert_allclose(rate, -found.shape.torques[0, tube], rtol=0, atol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_straight_third_tube_only_stiffens() -> None:
     scene = parse_scene(THREE, ["innermost.curvature=0.0", "innermost.translation=0.2", "accuracy.tolerance=1e-6"])
     inputs = {"inner.rotation": 3.4}
@@ -392,7 +393,7 @@ stiffness = { bending_y = 1.0 }
         (TWO.replace("stiffness = { bending = 0.03, torsion = 0.022 }", ""), ["tubes[1].material", "tubes[1].section"]),
         (TWO.replace("0.03,", "0.0,"), ["tubes[1].stiffness.bending"]),
         (TWO + ROD, ["rods"]),
-        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs", "inputs[0]"]),
+        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs"]),
         (TWO.replace("accuracy = {", "accuracy = { modes = 4,"), ["accuracy.modes"]),
         ("schema = 1", ["rods"]),
         (
@@ -437,7 +438,7 @@ def test_what_works_on_rods_refuses_tubes() -> None:
 
 def test_files_hold_what_python_says(tmp_path: Path) -> None:
     scene = tmp_path / "tubes.toml"
-    scene.write_text(TWO.replace("1e-8", "1e-5"))
+    scene.write_text(TWO.replace("1e-8", "1e-3"))
     read = parse_scene(scene.read_text())
     ended = cosserat("solve", "tubes.toml", "--json", cwd=tmp_path)
     assert ended.returncode == 0

@@ -84,7 +84,13 @@ def closed_form_tips(tubes: Pendulum, rotation: float) -> list[float]:
 
 @pytest.mark.parametrize(
     ("tubes", "rotation", "count"),
-    [(SHORT, 2.0, 1), (HOUSED, 2.5, 3), (LONG, 3.0, 3), (Pendulum(5.0), 3.13, 5), (Pendulum(3.0, (0.3, 0.6)), 0.7, 9)],
+    [
+        (SHORT, 2.0, 1),
+        (HOUSED, 2.5, 3),
+        pytest.param(LONG, 3.0, 3, marks=pytest.mark.slow),
+        pytest.param(Pendulum(5.0), 3.13, 5, marks=pytest.mark.slow),
+        (Pendulum(3.0, (0.3, 0.6)), 0.7, 9),
+    ],
 )
 def test_all_equilibria(tubes: Pendulum, rotation: float, count: int) -> None:
     found = all_equilibria(tubes.scene(rotation))

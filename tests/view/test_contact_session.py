@@ -16,7 +16,7 @@ from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.server import RobotServer
 from cosserat_casadi.view.view_session import opened
-from tests.browser import browser
+from tests.browser import PATIENCE, browser
 from tests.scenes import rod
 
 CENTRE = np.array([0.06, 0.0, 0.3])
@@ -125,8 +125,8 @@ def page(session: ContactSession) -> Iterator[Any]:
             opened_page = window.new_page(viewport={"width": 1100, "height": 700})
             faults: list[str] = []
             opened_page.on("pageerror", lambda error: faults.append(str(error)))
-            opened_page.goto(server.address, timeout=60_000)
-            opened_page.wait_for_selector("body[data-ready]", timeout=60_000)
+            opened_page.goto(server.address, timeout=PATIENCE)
+            opened_page.wait_for_selector("body[data-ready]", timeout=PATIENCE)
             yield opened_page
         finally:
             server.shutdown()
@@ -137,11 +137,11 @@ def page(session: ContactSession) -> Iterator[Any]:
 def test_contact_moves_under_the_slider(page: Any, session: ContactSession, first: Solution) -> None:
     slider = page.get_by_label("push.force x, N", exact=True)
     slider.evaluate("(range) => { range.value = 1.4; range.dispatchEvent(new Event('input')); }")
-    page.wait_for_function("() => window.robot.inputs['push.force.x'] === 1.4", timeout=20_000)
+    page.wait_for_function("() => window.robot.inputs['push.force.x'] === 1.4", timeout=PATIENCE)
     expected = solve(first.model, {"push.force": [1.4, 0.0, 0.0]}, start=first)
     assert_allclose(page.evaluate("window.robot.tip('rod')"), expected.tip("rod").position[0], rtol=0, atol=1e-7)
     assert "rod touches ball at X = 0." in page.inner_text("#readings")
-    page.wait_for_function("() => window.robot.stable === true", timeout=20_000)
+    page.wait_for_function("() => window.robot.stable === true", timeout=PATIENCE)
     # What contact leaves out is not offered, and said.
     assert "Contact is exact and is looked for anew with every move: about " in page.inner_text("#note")
     assert page.get_by_label("derivatives").count() == 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import socket
@@ -14,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_locking import LOCKED
+from tests.commands import cosserat
 from tests.conftest import ROOT
 
 PROGRAM = [sys.executable, "-u", "-c", "from cosserat_casadi.cli.main import main; main()", "view"]
@@ -72,19 +72,23 @@ def test_locked_modes_are_told_before_the_page_is_served(tmp_path: Path) -> None
     ],
 )
 def test_what_cannot_be_viewed_is_refused(
-    arguments: list[str], environment: dict[str, str], code: int, words: str
+    arguments: list[str],
+    environment: dict[str, str],
+    code: int,
+    words: str,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
-    command = [*PROGRAM, *arguments, "--no-browser"]
-    everything = {**os.environ, **environment}
-    done = subprocess.run(command, env=everything, capture_output=True, text=True, timeout=60, check=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    done = cosserat("view", *arguments, "--no-browser", cwd=tmp_path)
     assert done.returncode == code
     assert words in " ".join(done.stderr.split())
 
 
-def test_port_of_another_program_is_refused_before_the_solve() -> None:
+def test_port_of_another_program_is_refused_before_the_solve(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        command = [*PROGRAM, STRIP, "--no-browser", "--port", str(port)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = cosserat("view", STRIP, "--no-browser", "--port", str(port), cwd=tmp_path)
     assert done.returncode == 2
     assert f"--port: {port} cannot be taken: Address already in use" in " ".join(done.stderr.split())

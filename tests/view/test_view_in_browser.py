@@ -19,7 +19,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import build, solve
 from cosserat_casadi.view.server import CONNECTIONS, HOST, RobotServer
 from cosserat_casadi.view.view_session import opened
-from tests.browser import browser
+from tests.browser import PATIENCE, browser
 from tests.view.test_view_session import strip
 
 
@@ -42,7 +42,7 @@ def opened_page(server: RobotServer) -> Iterator[tuple[Any, list[str]]]:
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
         page.goto(server.address)
-        page.wait_for_selector("body[data-ready]", timeout=20_000)
+        page.wait_for_selector("body[data-ready]", timeout=PATIENCE)
         yield page, faults
 
 
@@ -61,7 +61,7 @@ def test_a_slider_moves_the_tip_to_where_solve_says(page: Any, server: RobotServ
     page.wait_for_function("() => window.robot.inputs['front.tension'] === 5.5")
     expected = solve(model, {"front.tension": 5.5}).tip().position[0]
     assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
-    page.wait_for_function("() => window.robot.stable === true", timeout=20_000)
+    page.wait_for_function("() => window.robot.stable === true", timeout=PATIENCE)
     assert "In equilibrium, stable" in page.inner_text("#status")
 
 
@@ -72,12 +72,12 @@ def test_the_tip_follows_the_hand_and_inverse_has_the_last_word(page: Any) -> No
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 40, y + 10, steps=4)
-    page.wait_for_function(f"() => Math.abs(window.robot.inputs['front.tension'] - {before}) > 0.3", timeout=20_000)
+    page.wait_for_function(f"() => Math.abs(window.robot.inputs['front.tension'] - {before}) > 0.3", timeout=PATIENCE)
     page.wait_for_function(
-        f"() => document.getElementById('hand').getBoundingClientRect().x > {box['x'] + 10}", timeout=20_000
+        f"() => document.getElementById('hand').getBoundingClientRect().x > {box['x'] + 10}", timeout=PATIENCE
     )
     page.mouse.up()
-    page.wait_for_function("() => 'met' in window.robot.state", timeout=60_000)
+    page.wait_for_function("() => 'met' in window.robot.state", timeout=PATIENCE)
     # One tendon leads the tip along a line: the point beside it is not reached, and the words say so.
     assert "The targets are not all met" in page.inner_text("#status")
     assert page.evaluate("window.robot.inputs['push.force.x']") == 0.3
@@ -85,13 +85,13 @@ def test_the_tip_follows_the_hand_and_inverse_has_the_last_word(page: Any) -> No
 
 def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     page.get_by_role("button", name="Vibrations here").click()
-    page.wait_for_selector("body.playing", timeout=60_000)
+    page.wait_for_selector("body.playing", timeout=PATIENCE)
     page.get_by_label("Play or pause").click()
     assert "Hz, swings" in page.inner_text("#transport")
     assert "In motion" in page.inner_text("#status")
     page.get_by_role("button", name="Motion of the scene").click()
     page.wait_for_function(
-        "() => /^[0-9.]+ s/.test(document.querySelector('#transport output').textContent)", timeout=90_000
+        "() => /^[0-9.]+ s/.test(document.querySelector('#transport output').textContent)", timeout=PATIENCE
     )
     bar = page.get_by_label("Time")
     bar.evaluate("(range) => { range.value = 0.5; range.dispatchEvent(new Event('input')); }")

@@ -11,15 +11,15 @@ from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.equilibrium.locking import locking_note, may_be_locked
+from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import build
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operation_cost import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
@@ -30,6 +30,7 @@ from cosserat_casadi.tubes.robot import robot_of
 
 def check(
     scene: SceneFile,
+    ranges: Ranges = None,
     settings: Settings = None,
     timed: Annotated[
         bool,
@@ -40,10 +41,13 @@ def check(
     overrides = tuple(settings or ())
     checked_scene = read_scene(scene, overrides)
     if checked_scene.tubes:
+        if ranges:
+            raise SceneError(Problem("--range", "is of rods, and the scene has tubes", "leave it out"))
         if timed:
             raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
         print_tubes_check(Console(), robot_of(checked_scene))
         return
+    asked = asked_ranges(ranges, checked_scene)
     if timed:
         # A compiler that is missing is reported before anything is printed.
         find_compiler()
@@ -58,17 +62,24 @@ def check(
         show_count("Counting the operations of residual and Jacobian", 0, 0)
         cost = price(model)
         show_count("Choosing the ranges of inputs", 0, 0)
-        ranges = input_ranges(checked_scene)
+        of_inputs = input_ranges(checked_scene, asked)
         show_count("Looking for constraints that lock", 0, 0)
-        # An equilibrium tells.
-        locking = locking_note(solve(model, estimate_error=False)) if may_be_locked(model) else ""
+        locking = _locking(model)
     print_check(Console(), model, varying, cost, of_effects)
-    print_ranges(Console(), ranges)
+    print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
+
+
+def _locking(model: Model) -> str:
+    """The sentence on locking, which an equilibrium tells; empty where nothing locks."""
+    if not may_be_locked(model):
+        return ""
+    solution = solve(model, estimate_error=False)
+    return locking_note(solution) if solution.converged else NOT_KNOWN
 
 
 def _print_times(scene: Scene) -> None:

@@ -15,7 +15,7 @@ from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
@@ -33,7 +33,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.load_cases import case_layout, ends_by_column
+from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
@@ -70,10 +70,7 @@ def export(
     over: Annotated[
         Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
     ] = None,
-    ranges: Annotated[
-        list[str] | None,
-        typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input that modes are chosen for."),
-    ] = None,
+    ranges: Ranges = None,
     samples: Annotated[int, typer.Option(min=1, max=10_000, help="Load cases spread over the ranges.")] = 32,
     period: Annotated[
         float | None,
@@ -96,7 +93,8 @@ def export(
     is one file that other simulators step.
 
     Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
-    [ranges] or [[bounds]], or their scale; those that the scene fixes are verified over them.
+    [ranges] or [[bounds]], or their scale, or at the load cases of --over; those that the scene fixes are verified
+    there.
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
@@ -152,10 +150,14 @@ def export(
         }
         check_contact(exported_scene, asked_of_contact)
     layout = case_layout(exported_scene)
-    asked_ranges = ends_by_column(ranges or [], layout)
+    asked = asked_ranges(ranges, exported_scene)
     if over is not None or (ranges and exported_scene.touches_exactly):
         cases = load_cases(over, ranges or [], samples, layout)
         check_load_cases(exported_scene, cases)
+    chosen_cases = None
+    if over is not None and cases is not None:
+        # A library begins at the scene's own inputs.
+        chosen_cases = [{}, *map(layout.unpack, cases)]
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
@@ -170,12 +172,9 @@ def export(
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     solved_scene = exported_scene.held() if moves else exported_scene
-    solution, choice = solve_for_ranges(solved_scene, asked_ranges)
-    verified = None
-    if choice is not None:
-        verified = choice.verified
-        chosen_for = choice.ranges.described if choice.met else ()
-        exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, chosen_for)
+    solution, choice = solve_for_ranges(solved_scene, asked, chosen_cases)
+    verified = choice.verified
+    exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
     _check_solved(solution)
     console = Console()
     model = solution.model
@@ -204,16 +203,15 @@ def export(
         print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
     if page is not None:
         with Console(stderr=True).status("Compiling the page"):
-            export_page(solution, page)
+            export_page(solution, page, asked)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
-    if choice is not None:
-        print_choice(console, choice)
-        print_locking(Console(stderr=True), locking_sentence(choice.locked))
-        missed = choice.within_tolerance is False
-        if missed:
-            print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
-        if missed or choice.locked:
-            raise typer.Exit(NOT_FOUND)
+    print_choice(console, choice)
+    print_locking(Console(stderr=True), locking_sentence(choice.locked))
+    missed = choice.within_tolerance is False
+    if missed:
+        print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
+    if missed or choice.locked:
+        raise typer.Exit(NOT_FOUND)
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:

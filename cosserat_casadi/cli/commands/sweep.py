@@ -108,7 +108,7 @@ def sweep(
         print_stopped_sweep(Console(stderr=True), plan.part if part is None else part.file(output))
         raise StoppedError from None
     if part is not None:
-        print_shard(Console(), part, rows, output)
+        print_shard(Console(), part, rows, output, finished=finished_before)
         return
 
     if sobol is not None:

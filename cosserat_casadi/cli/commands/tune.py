@@ -8,16 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.accuracy.choose import SAMPLES
+from cosserat_casadi.accuracy.choose import SAMPLES, SAMPLES_IN_CONTACT
 from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_file, check_inputs_stay
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_file, check_inputs_stay
 from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.model.load_cases import case_layout, ends_by_column, read_load_cases
+from cosserat_casadi.model.load_cases import case_layout, read_load_cases
 from cosserat_casadi.scene import read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -27,10 +27,16 @@ def tune(
     output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed here (TOML).")],
     tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
     over: Annotated[Path | None, typer.Option(help="Load cases: CSV with columns such as push.force.x.")] = None,
-    ranges: Annotated[
-        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input or a parameter.")
+    ranges: Ranges = None,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=100_000,
+            help=f"Random corners, and random points: {SAMPLES}, and {SAMPLES_IN_CONTACT} in exact contact.",
+            show_default=False,
+        ),
     ] = None,
-    samples: Annotated[int, typer.Option(min=1, max=100_000, help="Random corners, and random points.")] = SAMPLES,
     settings: Settings = None,
 ) -> None:
     """Find one discretisation for ranges of inputs, or for load cases. Exit codes: 0 written, 2 refused, 3 not met.
@@ -45,7 +51,7 @@ def tune(
         raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
     free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
     if over is None:
-        choice = choose_with_progress(free, ends_by_column(ranges or [], layout), samples)
+        choice = choose_with_progress(free, asked_ranges(ranges, tuned_scene), samples)
     else:
         cases = [layout.unpack(case) for case in read_load_cases(over, layout)]
         choice = choose_with_progress(free, cases=cases)

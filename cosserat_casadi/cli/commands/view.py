@@ -11,13 +11,13 @@ from rich.console import Console
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.equilibrium.locking import locking_note
+from cosserat_casadi.equilibrium.locking import locking_note, locking_sentence
 from cosserat_casadi.scene import read_scene
 
 
@@ -25,12 +25,14 @@ def view(
     scene: SceneFile,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of this machine; 0 for one that is free.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
+    ranges: Ranges = None,
     settings: Settings = None,
 ) -> None:
     """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
 
-    Modes and nodes are chosen so that the tolerance is met wherever the sliders go, whose ends are the scene's [ranges]
-    or [[bounds]], or of the scale of the input.
+    Modes and nodes are chosen so that the tolerance is met wherever the sliders go, whose ends are those of --range,
+    the scene's [ranges] or [[bounds]], or of the scale of the input. Those that the scene fixes are verified where
+    --range is given.
 
     Only this machine reaches the page, and only who knows its address. Exit codes: 2 refused, 3 not solved, 130 ended.
     """
@@ -40,23 +42,25 @@ def view(
 
     check_port(port)
     viewed_scene = read_scene(scene, tuple(settings or ()))
+    asked = asked_ranges(ranges, viewed_scene)
     if is_compiled(viewed_scene):
         find_compiler()
     choice = None
-    if viewed_scene.accuracy.fixed:
+    if viewed_scene.accuracy.fixed and not asked:
         # What the scene fixes need not be verified beforehand: every answer tells its error.
         solution = solve_rods_with_progress(viewed_scene)
         print_locking(Console(stderr=True), locking_note(solution))
     else:
-        solution, choice = solve_for_ranges(viewed_scene)
+        solution, choice = solve_for_ranges(viewed_scene, asked)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
     with progress_bar() as bar:
-        session = opened(solution, count_reporter(bar, "Writing the model in C"))
+        session = opened(solution, count_reporter(bar, "Writing the model in C"), asked)
     console = Console()
     if choice is not None:
         print_choice(console, choice)
+        print_locking(Console(stderr=True), locking_sentence(choice.locked))
     with RobotServer(session, port) as server:
         print_plain(console, f"The robot is at {server.address} until you press Ctrl-C.")
         if browser:

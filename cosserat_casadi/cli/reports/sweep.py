@@ -47,7 +47,7 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
 
     written: list[Path] = []
     if finished:
-        print_plain(console, f"{escape(str(output))} holds this sweep already: nothing was computed")
+        _print_finished(console, output)
     else:
         written += [output, record_file(output)]
     if plot is not None:
@@ -63,8 +63,23 @@ def print_stopped_sweep(console: Console, part: Path | None) -> None:
     print_plain(console, f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
 
 
-def print_shard(console: Console, shard: Shard, rows: int, output: Path) -> None:
-    """Print that a shard is done, and how all become one file."""
+def _print_finished(console: Console, output: Path) -> None:
+    print_plain(console, f"{escape(str(output))} holds this sweep already: nothing was computed")
+
+
+def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, finished: bool) -> None:
+    """Print that a shard is done, and how all become one file.
+
+    Args:
+        console: where to print.
+        shard: which one.
+        rows: of it.
+        output: file of the results.
+        finished: whether that held the sweep already, so that nothing was computed.
+    """
+    if finished:
+        _print_finished(console, output)
+        return
     file = escape(str(shard.file(output)))
     sentence = f"Shard {shard}: {counted(rows, 'row')} kept in {file}. When all are done, --merge writes the results."
     print_plain(console, sentence)

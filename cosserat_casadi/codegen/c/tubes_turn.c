@@ -80,6 +80,7 @@ solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, s
     end = finish(x, inputs, &found, &found, work);
     found.determinant = tubes_determinant(x, inputs, work);
   }
+  if (info && end == SOLVER_CONVERGED) found.error_estimate = estimated_error(x, inputs, work);
   if (info) *info = found;
   return end;
 }
@@ -94,6 +95,7 @@ solver_status tubes_follow(const real *from, const real *inputs, real *x, solver
     if (sign_of(found.determinant) != before) end = SOLVER_LOAD_STALLED;
     found.status = end;
   }
+  if (info && end == SOLVER_CONVERGED) found.error_estimate = estimated_error(x, inputs, work);
   if (info) *info = found;
   return end;
 }

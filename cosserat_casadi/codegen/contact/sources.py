@@ -10,12 +10,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernels import kernel_sources
-from cosserat_casadi.codegen.library import PLAIN_BUILD, comment, input_words, version_words
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, input_entries
+from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, version_words
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, accuracy_entries, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
@@ -79,14 +80,17 @@ SHORTER = 0.7
 """Share of a line of contact that stays where a rod curls up, as in contact_search.py."""
 
 
-def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: float | None) -> dict[str, str]:
+def contact_files(
+    model: Model, chosen: Chosen, names: Names, error_estimate: float | None, verified: Verified | None = None
+) -> dict[str, str]:
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
 
     Args:
         model: what is exported.
         chosen: its arrangements of contacts.
         names: what things are called.
-        error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
+        error_estimate: error of the tip pose at the scene's inputs relative to the length.
+        verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
     """
     kernels = distance_kernels(chosen, names.kernel("distance"))
     for number, own in enumerate(chosen.equations):
@@ -94,6 +98,7 @@ def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: fl
     generated = kernel_sources(kernels, names)
     tables = Tables(chosen, names.name)
     words = _words(chosen, names, tables, generated)
+    words |= accuracy_words(chosen.scene, error_estimate, verified)
     name = names.name
     files = {
         f"{name}.h": render("contact.h.in", words),
@@ -101,13 +106,17 @@ def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: fl
         f"{name}_config.h": render("contact_config.h.in", words),
         f"{name}_demo.c": render("contact_demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("contact_readme.md.in", words),
+        "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
         "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
     }
-    files[MANIFEST] = json.dumps(_manifest(model, chosen, names, files, error_estimate), indent=1, ensure_ascii=False)
-    files[MANIFEST] += "\n"
+    described_folder = {
+        **_manifest(model, chosen, names),
+        **accuracy_entries(chosen.scene, error_estimate, verified),
+        "files": sorted([*files, MANIFEST]),
+    }
+    files[MANIFEST] = json.dumps(described_folder, indent=1, ensure_ascii=False) + "\n"
     return files
 
 
@@ -121,6 +130,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
     return {
         "name": names.name,
         **PLAIN_BUILD,
+        **dict.fromkeys(("in_contact", "with_axes"), True),
         "MACRO": names.macro,
         "title": comment(chosen.scene.title or names.name),
         "version": version("cosserat-casadi"),
@@ -204,10 +214,8 @@ def _number_macros(names: Names, tables: Tables) -> str:
     return "\n".join(lines)
 
 
-def _manifest(
-    model: Model, chosen: Chosen, names: Names, files: dict[str, str], error_estimate: float | None
-) -> dict[str, Any]:
-    """What the folder holds, as data."""
+def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
+    """What the library holds, as data."""
     free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
     arrangements = []
     for own in chosen.equations:
@@ -232,7 +240,4 @@ def _manifest(
         "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],
         ARRANGEMENTS: arrangements,
         "discretisation": {name: asdict(own) for name, own in model.discretisation.items()},
-        "tolerance": chosen.scene.accuracy.tolerance,
-        "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
-        "files": sorted([*files, MANIFEST]),
     }

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, CompiledAnswer, answer_words
+from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, JudgedAnswer, judged_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip
 from cosserat_casadi.codegen.manifest import TUBES
@@ -34,7 +34,7 @@ class TubeOptions(ctypes.Structure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompiledTubesSolution(CompiledAnswer):
+class CompiledTubesSolution(JudgedAnswer):
     """What the solver in C found.
 
     Attributes:
@@ -160,6 +160,13 @@ class CompiledTubes(LoadedLibrary):
         status = self._function("solve_sensitivity")(*arguments)
         return None if status != 0 else by_tip(self.tubes, columns)
 
+    def error_estimate(self, solution: CompiledTubesSolution) -> float | None:
+        """Estimated error of an equilibrium, such as one of a turn; None where it is none."""
+        estimate = ctypes.c_double()
+        arguments = (pointer(solution.inputs), pointer(solution.x), ctypes.byref(estimate), self._workspace())
+        status = self._function("error_estimate")(*arguments)
+        return estimate.value if TUBE_OUTCOMES[status] is Outcome.CONVERGED else None
+
     def residual(self, x: npt.ArrayLike, inputs: ArgumentValues) -> FloatArray:
         """The residual, shape (unknowns,)."""
         given = self.inputs.stacked(inputs)
@@ -186,7 +193,8 @@ class CompiledTubes(LoadedLibrary):
             self._function("poses")(pointer(x), pointer(inputs), pointer(poses), self._workspace())
             tips = dict(zip(self.tubes, poses, strict=True))
         return CompiledTubesSolution(
-            **answer_words(info, TUBE_OUTCOMES),
+            **judged_words(info, TUBE_OUTCOMES),
+            tolerance=self.manifest["tolerance"],
             inputs=inputs,
             x=x,
             tips=tips,

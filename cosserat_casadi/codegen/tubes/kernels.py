@@ -14,6 +14,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.codegen.kernels import loops
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solve import model_of
@@ -37,10 +38,11 @@ class TubeKernels:
     name: str
 
     def all(self) -> list[ca.Function]:
-        """Residual, Jacobian, rate, resolution, poses and sensitivity, with dense results."""
+        """Residual, Jacobian, rate, what half of the steps give, poses and sensitivity, with dense results."""
         y, inputs, t = self._arguments
         change = ca.MX.sym("inputs_rate", inputs.size1())
         t_rate = ca.MX.sym("t_rate")
+        step = ca.MX.sym("step", self.model.unknowns)
         at = self._given(t)
         residual = self.model.path_residual(*at)
         jacobian = self.model.path_jacobian(*at)
@@ -51,7 +53,8 @@ class TubeKernels:
             self._function("residual", state, [residual]),
             self._function("jacobian", state, [jacobian]),
             self._function("rate", {**state, "inputs_rate": change, "t_rate": t_rate}, [rate]),
-            self._function("resolution_index", solution, [self._resolution_index()]),
+            self._function("halved_residual", solution, [self._halved.residual(self._x, inputs)]),
+            self._function("halved_change", {"y": y, "step": step, "inputs": inputs}, [self._halved_change(step)]),
             self._function("poses", solution, [ca.vertcat(*self.model.tips(self._x, inputs))]),
             self._function("sensitivity", solution, self._sensitivity()),
         ]
@@ -80,12 +83,28 @@ class TubeKernels:
         frame = ca.DM([1, 0, 0, 0])[: self.model.unknowns - robot.size]
         return y + ca.vertcat(robot.rotations(inputs), frame)
 
-    def _resolution_index(self) -> Matrix:
-        """What the robot with half of the steps misses, relative to what it may: above 1 they are too few."""
-        coarse = model_of(self.model.robot, self.model.steps // 2)
-        missed = coarse.residual(self._x, self._arguments[1])
-        index: Matrix = ca.norm_inf(missed) / (RESOLVED * self.model.robot.tolerance)
-        return index
+    @cached_property
+    def _halved(self) -> TubeFunctions:
+        """The robot with half of the steps."""
+        return model_of(self.model.robot, self.model.steps // 2)
+
+    def _halved_change(self, step: ca.MX) -> Matrix:
+        """Distance of the tips with half of the steps, a step of the unknowns away, as :func:`tip_error` has it.
+
+        The largest of all tubes: distances over the length that stands out, and angles.
+        """
+        _, inputs, _ = self._arguments
+        positions, quaternions = self.model.tips(self._x, inputs)
+        other_positions, other_quaternions = self._halved.tips(self._x + step, inputs)
+        length = ca.mmax(self.model.robot.translations(inputs))
+        changes = []
+        for index in range(self.model.size):
+            difference = quaternion_product(quaternion_conjugate(quaternions[:, index]), other_quaternions[:, index])
+            angle = 2 * ca.atan2(ca.norm_2(difference[1:]), ca.fabs(difference[0]))
+            distance = ca.norm_2(other_positions[:, index] - positions[:, index])
+            changes += [distance / length, angle]
+        largest: Matrix = ca.mmax(ca.vertcat(*changes))
+        return largest
 
     def _sensitivity(self) -> list[Matrix]:
         """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both."""

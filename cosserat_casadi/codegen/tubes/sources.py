@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
-from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
@@ -43,15 +43,16 @@ NEAR = 0.3
 LIMITS = replace(ContinuationSettings(), longest=0.5)
 """Limits of a way: in no step do the tubes twist by much more than that, rad, so that it leads past no snap."""
 
-OWN = ("tubes_sensitivity.c", "tubes_turn.c")
+OWN = ("tubes_error.c", "tubes_sensitivity.c", "tubes_turn.c")
 """Files of the folder ``c`` for tubes alone."""
 
 OTHERS = ("solver_sensitivity.c", "solver_recover.c")
 """Files of the solver that tubes do without."""
 
 RANGES = (
-    "a translation from zero to the length of its tube. The solver refuses a translation\n"
-    "   beyond that, and inputs at which no tube stands out of the plate, each of which is in its range."
+    "a translation from zero to the length of its tube, and by the bounds and ranges of\n"
+    "   the scene. The solver refuses a translation beyond its tube, and inputs at which no tube\n"
+    "   stands out of the plate, each of which is in its range; at bounds and ranges it does not look."
 )
 """Which ranges inputs have, and what the solver does beyond them, for the header."""
 
@@ -95,7 +96,7 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
         f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("tubes_demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("tubes_readme.md.in", words),
+        "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
         **generated,
         "scene.toml": scene_text(model.robot.scene),
@@ -131,6 +132,7 @@ def _words(
         "casadi_version": ca.CasadiMeta.version(),
         "title": comment(robot.scene.title or names.name),
         **PLAIN_BUILD,
+        "of_tubes": True,
         "inner": "any_",
         "inner_equations": "",
         "first": 1.0,
@@ -148,6 +150,7 @@ def _words(
         "unknowns_under_loads": under_loads if robot.loads else "",
         "number_macros": _number_macros(names, robot),
         "first_tube": int(np.argmax(robot.translations(robot.inputs))),
+        "halved_residual": repr(RESOLVED * robot.tolerance),
         "lengths": numbers(robot.length.tolist()),
         "step_weights": numbers([1.0] * size),
         "is_shape": numbers([1] * size),

@@ -1,0 +1,64 @@
+"""Modes of scenes in exact contact are chosen for ranges of inputs, as those of all others."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi import read_scene
+from cosserat_casadi.accuracy.fixing import with_accuracy
+from cosserat_casadi.cli.commands.choosing import solve_for_ranges
+from cosserat_casadi.scene.writing import scene_text
+from tests.codegen.contact_libraries import over_bar
+from tests.commands import cosserat
+
+RANGES = [word for text in ("x=-0.5:0.5", "y=-0.1:0.1", "z=-4:-2") for word in ("--range", f"push.force.{text}")]
+
+
+@pytest.fixture
+def bar(tmp_path: Path) -> Path:
+    """A folder with a planar rod over a bar, to a tolerance that few modes keep."""
+    (tmp_path / "bar.toml").write_text(scene_text(with_accuracy(over_bar(), tolerance=1e-3)))
+    return tmp_path
+
+
+def test_modes_in_contact_are_verified_where_the_inputs_go() -> None:
+    """At the ends of a range, and not at the scene's own inputs alone."""
+    few = with_accuracy(over_bar(), tolerance=1e-6, modes=2, nodes=6)
+    solution, choice = solve_for_ranges(few, cases=[{}, {"push.force": [0.0, 0.0, -4.0]}])
+    assert solution.contacts
+    assert choice.solves == 2
+    assert choice.within_tolerance is False
+    assert choice.error_estimate is not None
+    assert solution.error_estimate is not None
+    assert choice.error_estimate > 1.5 * solution.error_estimate
+    assert "push.force.z=-4:-3" in choice.verified.sentence
+
+
+@pytest.mark.slow
+def test_an_export_in_contact_says_for_which_ranges_its_modes_were_chosen(bar: Path) -> None:
+    done = cosserat("export", "bar.toml", "--output", "c", *RANGES, "--samples", "2", cwd=bar)
+    assert done.returncode == 0, done.stdout + done.stderr
+    verified = json.loads((bar / "c" / "manifest.json").read_text())["verified"]
+    assert verified["within_tolerance"] is True
+    assert verified["ranges"] == [text for text in RANGES if text != "--range"]
+    for file in ("README.md", "bar.h"):
+        text = " ".join((bar / "c" / file).read_text().split())
+        assert f"was verified by {verified['solves']} solves over push.force.x=-0.5:0.5" in text
+    assert read_scene(bar / "c" / "scene.toml").accuracy.chosen_for == tuple(verified["ranges"])
+
+
+@pytest.mark.slow
+def test_an_export_in_contact_that_misses_the_tolerance_says_so(bar: Path) -> None:
+    fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=6", "--set", "accuracy.tolerance=1e-6")
+    (bar / "cases.csv").write_text("push.force.z\n-4\n-2\n")
+    done = cosserat("export", "bar.toml", "--output", "c", *fixed, "--over", "cases.csv", cwd=bar)
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert "does not keep the tolerance all over the ranges" in " ".join(done.stderr.split())
+    verified = json.loads((bar / "c" / "manifest.json").read_text())["verified"]
+    assert verified["within_tolerance"] is False
+    assert verified["solves"] == 3
+    assert verified["ranges"] == ["push.force.z=-4:-2"]
+    assert "The tolerance is not kept there." in " ".join((bar / "c" / "bar.h").read_text().split())

@@ -1,0 +1,40 @@
+"""The equilibrium near a solution of the package by shooting, in the package's own words for poses and wrenches."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.testing import assert_allclose
+from numpy.typing import ArrayLike
+
+from cosserat_casadi import Solution
+from cosserat_casadi.bench.reference import RodState
+from cosserat_casadi.model.watched import watched_sections
+from tests.reference.shooting import solve_by_shooting
+
+
+def shoot(solution: Solution, X: ArrayLike | None = None) -> RodState:
+    """Sections and clamp of the only rod of a scene, at the scene's own inputs.
+
+    Args:
+        solution: starts Newton's method with its wrench of the clamp, and so says which equilibrium is meant.
+        X: abscissae of the sections; those that the package watches by default.
+
+    Raises:
+        ValueError: the scene holds what shooting does not know.
+        NoEquilibriumError: none is near.
+    """
+    model = solution.model
+    (rod,) = model.scene.rods
+    assert_allclose(solution.inputs, model.pack(), rtol=0, atol=0)
+    clamp = solution.base_wrench()
+    truth = solve_by_shooting(
+        model.scene.model_dump(mode="json", by_alias=True, exclude_unset=True),
+        samples=watched_sections(model.scene, rod.name) if X is None else X,
+        base_wrench=np.concatenate([clamp.force, clamp.moment]),
+    )
+    return RodState(
+        length=rod.length,
+        position=truth.sections.position,
+        rotation=truth.sections.rotation,
+        base_wrench=np.concatenate([truth.base_force, truth.base_moment]),
+    )
