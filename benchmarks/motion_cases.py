@@ -26,8 +26,7 @@ sys.path.insert(0, str(ROOT))
 from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate_scene, solve  # noqa: E402
 from cosserat_casadi.accuracy.levels import SPARE_NODES  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
-from cosserat_casadi.model.discretise import discretise  # noqa: E402
-from cosserat_casadi.model.enrichment import nodes_for  # noqa: E402
+from cosserat_casadi.model.discretise import discretise, nodes_for  # noqa: E402
 from cosserat_casadi.motion.pose_series import tip_poses  # noqa: E402
 from cosserat_casadi.motion.simulate import Simulator, started  # noqa: E402
 from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402

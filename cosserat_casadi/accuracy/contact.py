@@ -18,8 +18,7 @@ from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise
-from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 

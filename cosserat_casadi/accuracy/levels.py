@@ -7,8 +7,7 @@ from math import ceil
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.required_modes import signal_modes
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)

@@ -26,8 +26,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.input_bounds import limits_of, narrowed
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column

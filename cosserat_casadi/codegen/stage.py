@@ -22,8 +22,7 @@ from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.interpolation import section_weights
-from cosserat_casadi.model.section_poses import SectionPoses
+from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import Arguments, System
 
 PARTS = 4

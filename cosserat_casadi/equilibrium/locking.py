@@ -103,7 +103,7 @@ NOT_KNOWN = (
     "Whether constraints lock the modes that the scene fixes is not known: no equilibrium was found at the scene's own "
     "inputs, and an equilibrium tells."
 )
-"""What a user must know where there is no equilibrium at which to look."""
+"""Sentence where there is no equilibrium at which to look."""
 
 
 def locking_sentence(locked: Sequence[str]) -> str:

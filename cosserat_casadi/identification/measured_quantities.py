@@ -24,8 +24,7 @@ from cosserat_casadi.maths.rotation import (
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.interpolation import interpolation_weights
-from cosserat_casadi.model.section_poses import SectionPoses
+from cosserat_casadi.model.section_poses import SectionPoses, interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.motion.eigenproblem import ComplexArray
 from cosserat_casadi.scene.families import Kind, Kinds, register

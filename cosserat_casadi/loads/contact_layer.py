@@ -20,8 +20,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.load import Section, Site
-from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
-from cosserat_casadi.loads.radius import section_radii
+from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
 from cosserat_casadi.maths.numbers import Numbers, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES

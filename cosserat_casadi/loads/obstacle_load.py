@@ -1,11 +1,18 @@
-"""Common part of the loads that an obstacle exerts: on rods, seen in the obstacle's axes, and on bodies as balls."""
+"""Common part of the loads that an obstacle exerts: on rods, seen in the obstacle's axes, and on bodies as balls.
+
+Rods keep from obstacles by the radius of their sections, bodies by theirs.
+"""
 
 from __future__ import annotations
 
 from typing import Any, TypeVar
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load
+from cosserat_casadi.maths.numbers import Numbers, repeated
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene.load_records import LoadRecord
 
 
@@ -32,3 +39,10 @@ class ObstacleLoad(Load[ObstacleRecordType]):
         """The body that the obstacle is fixed to."""
         body: str | None = load.obstacle.body
         return body
+
+
+def section_radii(rod: RodProperties, X: Numbers) -> Numbers:
+    """Radius of the sections of a rod at abscissae X, shape (k,), m; zero where it is given by its stiffness."""
+    if rod.diameter is None:
+        return np.zeros(X.shape[0])
+    return repeated(rod.diameter(X) / 2, X.shape[0])

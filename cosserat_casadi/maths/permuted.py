@@ -16,8 +16,7 @@ from typing import Literal
 import casadi as ca
 
 from cosserat_casadi.maths.chebyshev import differentiation_matrix
-from cosserat_casadi.maths.matrix_shapes import check_shape
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import Matrix, check_shape
 
 End = Literal["base", "tip"]
 

@@ -1,4 +1,7 @@
-"""The types that the mathematics takes and returns."""
+"""Types of matrices that the mathematics takes and returns, and a check of their shapes.
+
+Shapes are checked where matrices enter a record: CasADi broadcasts scalars in silence.
+"""
 
 from __future__ import annotations
 
@@ -23,3 +26,27 @@ AnyMatrix = TypeVar("AnyMatrix", ca.SX, ca.MX, ca.DM, Matrix)
 
 Columns = TypeVar("Columns", ca.SX, ca.MX, ca.DM, Matrix, FloatArray)
 """Vectors side by side, one a column, in CasADi or in NumPy, for functions that return the type of their argument."""
+
+
+def check_shape(name: str, matrix: Matrix | FloatArray, rows: int | None, columns: int | None) -> None:
+    """Refuse a matrix of another shape than wanted.
+
+    Args:
+        name: what the matrix is, for the message.
+        matrix: CasADi or NumPy.
+        rows: number of rows; None admits any.
+        columns: number of columns; None admits any.
+
+    Raises:
+        ValueError: the shape differs, or a NumPy array has not two axes.
+    """
+    shape = matrix.shape
+    # Only NumPy has arrays of another number of axes.
+    if len(shape) == 2:
+        rows_agree = rows in (None, shape[0])
+        columns_agree = columns in (None, shape[1])
+        if rows_agree and columns_agree:
+            return
+    wanted_rows = "n" if rows is None else rows
+    wanted_columns = "k" if columns is None else columns
+    raise ValueError(f"{name} is {wanted_rows}×{wanted_columns}, but its shape is {shape}")

@@ -17,8 +17,8 @@ from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.inputs import input_values
 from cosserat_casadi.model.load_assembly import unloaded_poses
-from cosserat_casadi.model.load_inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
 
 DRAWN_SECTIONS = np.linspace(0.05, 0.95, 8)

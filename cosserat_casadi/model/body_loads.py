@@ -14,7 +14,7 @@ from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor
-from cosserat_casadi.model.load_inputs import input_values
+from cosserat_casadi.model.inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
 
 

@@ -15,7 +15,6 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import operations
-from cosserat_casadi.model.actuator_assembly import actuators_have_potential
 from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers, with_parameters
 from cosserat_casadi.model.discretise import discretise
@@ -26,6 +25,7 @@ from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout
+from cosserat_casadi.model.scene_actuators import actuators_have_potential
 from cosserat_casadi.model.scene_constraints import decisive_axes
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.tube_checks import refuse_tubes

@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.contact_layer import ContactLayer
-from cosserat_casadi.loads.radius import section_radii
+from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix

@@ -20,8 +20,8 @@ from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
-from cosserat_casadi.model.enrichment import enriched
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout

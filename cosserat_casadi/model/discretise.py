@@ -1,13 +1,16 @@
-"""Modes, nodes and element ends of every rod of a scene."""
+"""Modes, nodes and element ends of every rod of a scene, and the richer ones on which the error of an answer shows.
+
+The richer discretisation has the modes and intervals that an answer lacks: docs/theory.md, section 10.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.element_ends import check_places, element_ends
-from cosserat_casadi.model.enrichment import nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -16,6 +19,22 @@ DEFAULT_MODES = 6
 
 DEFAULT_TRANSPORT = "magnus6"
 """Integration method of the rotation where neither the scene nor the caller gives one."""
+
+
+ADDED_MODES = 4
+"""Modes that are added to every strain: more than one step of an error that falls by every other mode alone."""
+
+LEAST_MODES = 6
+"""Modes that every strain has at least: one that nothing excited when modes were chosen may have a single one."""
+
+ADDED_NODES = 4
+"""Intervals that are added to every element at least."""
+
+NODES_ABOVE_MODES = 6
+"""Intervals beyond the modes of a strain on which the balance of these modes is exact enough for an error."""
+
+NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
+"""Rotation integrators of a higher order, so that the error of the order itself shows."""
 
 
 def discretise(
@@ -85,3 +104,21 @@ def _per_strain(modes: int | Sequence[int], strains: int) -> tuple[int, ...]:
     if isinstance(modes, int):
         return (modes,) * strains
     return tuple(modes)
+
+
+def nodes_for(modes: int) -> int:
+    """Chebyshev intervals that resolve the shape of a rod whose strain has so many modes."""
+    return 2 * modes + 2
+
+
+def enriched(discretisation: Discretisation, signal_modes: int) -> Discretisation:
+    """A discretisation with modes added to every strain, on intervals that resolve them.
+
+    Args:
+        discretisation: of a rod.
+        signal_modes: modes below which a rod is blind to what the scene puts along it.
+    """
+    modes = tuple(max(count + ADDED_MODES, LEAST_MODES, signal_modes) for count in discretisation.modes)
+    nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + NODES_ABOVE_MODES)
+    transport = NEXT_ORDER.get(discretisation.transport, discretisation.transport)
+    return replace(discretisation, modes=modes, nodes=nodes, transport=transport)

@@ -1,7 +1,8 @@
 """Numbers that stay free at run time: the model's inputs as records, their order and their values in the scene.
 
 Names, units, bounds and shapes of an input are declared once, by the record of the scene that it belongs to
-(``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart.
+(``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart. Loads and actuators take their
+values out of the stacked inputs with :func:`input_values`.
 """
 
 from __future__ import annotations
@@ -11,13 +12,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.load import coefficients
+from cosserat_casadi.loads.expressions import expressions_in
+from cosserat_casadi.loads.load import coefficients, constant
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.input_fields import InputField
@@ -193,3 +196,28 @@ def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) ->
         if not entry.of_rod:
             values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")
     return values
+
+
+def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
+    """Inputs of a load or an actuator, and its numbers that are expressions of parameters.
+
+    An input that is always zero is a matrix that stores nothing.
+    """
+    values = expressions_in(record)
+    for field in record.inputs:
+        value = input_value(layout, record, field, inputs)
+        if value is None:
+            value = ca.DM(*scene_value(record, field).shape)
+        values[field] = value
+    return values
+
+
+def input_value(
+    layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, field: str, inputs: Matrix
+) -> Matrix | None:
+    """One input of a load or an actuator; None where it is zero for good."""
+    entries = layout.of_load(record.name, field)
+    default = scene_value(record, field)
+    if entries is None:
+        return constant(default)
+    return ca.reshape(inputs[entries], *default.shape)

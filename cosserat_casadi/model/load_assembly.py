@@ -25,8 +25,7 @@ from cosserat_casadi.maths.numbers import (
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.inputs import scene_value
-from cosserat_casadi.model.load_inputs import input_values
+from cosserat_casadi.model.inputs import input_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import RodMotion

@@ -10,9 +10,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load_trace import TracedLoad, has_potential
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.model.inputs import input_values, load_values
 from cosserat_casadi.model.load_assembly import kernels_of, site_of
-from cosserat_casadi.model.load_inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
 
 

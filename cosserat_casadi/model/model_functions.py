@@ -11,7 +11,6 @@ import casadi as ca
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.contact_depth import contact_depths
 from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
 from cosserat_casadi.model.floating_frames import FrameName
@@ -23,11 +22,12 @@ from cosserat_casadi.model.function_table import (
     owned_functions,
     scene_function,
 )
-from cosserat_casadi.model.interpolation import interpolation_weights
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.path_stretch import path_stretches
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.scene_actuators import rod_actuation
 from cosserat_casadi.model.scene_equations import SceneEquations
+from cosserat_casadi.model.section_poses import interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
 from cosserat_casadi.model.watched import watched

@@ -15,9 +15,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.interpolation import section_weights
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.section_poses import SectionPoses
+from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import System
 
 BETWEEN = (0.25, 0.5, 0.75, 1.0)

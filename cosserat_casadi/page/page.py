@@ -36,7 +36,7 @@ def export_page(solution: Solution, file: Path, asked: Given | None = None) -> P
         solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps: on the model that
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
         file: path of the page.
-        asked: ranges of the sliders; by default those that modes are chosen for.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
 
     Raises:
         ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.

@@ -47,7 +47,7 @@ def page_facts(solution: Solution, model: Model | None = None, asked: Given | No
         solution: the equilibrium at the scene's own inputs.
         model: the model whose inputs are moved; by default that of the solution, which is another one where contacts
             were found for it.
-        asked: ranges of the sliders; by default those that modes are chosen for.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
     model = solution.model if model is None else model
     scene = model.scene

@@ -17,8 +17,7 @@ from cosserat_casadi.accuracy.levels import seeing_modes
 from cosserat_casadi.equilibrium.metrics import ROUNDING, largest_turn
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.enrichment import nodes_for
+from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.numerics.trace import PathOutcome

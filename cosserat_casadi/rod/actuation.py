@@ -15,9 +15,8 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, product, row_times, rows_of
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
 
 

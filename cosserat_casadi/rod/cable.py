@@ -15,9 +15,8 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_zero, rows_of
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
 

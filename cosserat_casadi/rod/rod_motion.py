@@ -14,9 +14,8 @@ from functools import cache, cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.increment_rates import IncrementRates
-from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.rotation import cross, hat
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.transport import ARGUMENTS, KEPT, IntervalKernels, interval_kernels, interval_turns

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cosserat_casadi.maths.matrix_shapes import check_shape
 from cosserat_casadi.maths.numbers import Numbers, Scalar
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import Matrix, check_shape
 from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 

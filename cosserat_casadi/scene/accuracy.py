@@ -121,7 +121,7 @@ shape = true
 
     @property
     def fixed_by_hand(self) -> bool:
-        """Whether the scene fixes what it is computed with, and no choice for ranges did."""
+        """Whether the scene fixes modes, nodes or rotation, and no choice for ranges did."""
         return self.fixed and self.chosen_for is None
 
     @property

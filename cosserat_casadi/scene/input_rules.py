@@ -175,7 +175,7 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:
-    """Names of the inputs that are free where the scene lists none: of tubes, actuators and loads."""
+    """Names of the free inputs where the scene lists none: all of tubes, and magnitudes of actuators and loads."""
     of_tubes = [f"{name}.{field}" for name in scene.named("tubes") for field in Tube.inputs]
     return of_tubes + [
         f"{name}.{field}"

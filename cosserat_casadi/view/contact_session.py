@@ -34,7 +34,7 @@ class ContactSession:
 
     Attributes:
         first: the equilibrium at the scene's own inputs, with its contacts.
-        asked: ranges of the sliders; by default those that modes are chosen for.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
 
     first: Solution

@@ -74,7 +74,7 @@ class ViewSession:
     Attributes:
         first: the equilibrium at the scene's own inputs.
         library: the compiled library of its model, with the picture.
-        asked: ranges of the sliders; by default those that modes are chosen for.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
 
     first: Solution
@@ -297,7 +297,7 @@ def opened(
     Args:
         solution: the equilibrium at the scene's own inputs.
         progress: told how far the compilation is.
-        asked: ranges of the sliders; by default those that modes are chosen for.
+        asked: ranges of the sliders; by default the ranges that modes are chosen for.
 
     Raises:
         ExportError: there is no C compiler, or it fails.

@@ -10,8 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise
-from cosserat_casadi.model.interpolation import section_weights
-from cosserat_casadi.model.section_poses import SectionPoses
+from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import Arguments, System
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.scenes import WEIGHT, push, rod, scene

@@ -14,7 +14,7 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
 from cosserat_casadi.equilibrium.solution import Contact, Solution
-from cosserat_casadi.model.enrichment import enriched
+from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.numerics.newton import NewtonSettings
 

@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from cosserat_casadi.maths.matrix_shapes import check_shape
+from cosserat_casadi.maths.typing import check_shape
 
 
 @pytest.mark.parametrize("matrix", [ca.SX(3, 4), ca.MX(3, 4), ca.DM(3, 4), np.zeros((3, 4))])
