@@ -136,7 +136,7 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
 
 
 def shortest_step(jacobian: FloatArray, residual: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
-    """The step of least norm among those that solve the equations best: along a neutral direction nothing moves.
+    """The least-squares step of least norm: along a neutral direction nothing moves.
 
     Args:
         jacobian: shape (n, m).

@@ -24,7 +24,7 @@ BLOCK = 16_384
 """Rows that are gone through at once."""
 
 ZEROS = bytes(1 << 16)
-"""What the room of a file is claimed with."""
+"""Zeros that claim the room of a file."""
 
 Array = npt.NDArray[Any]
 
@@ -42,7 +42,7 @@ class Scratch:
 
     @classmethod
     def beside(cls, output: Path | None) -> Scratch:
-        """That of a sweep whose results are to be in a file; in memory without one, or where no file can be made."""
+        """Scratch of a sweep whose results go to a file; in memory without one, or where no file can be made."""
         folder = None if output is None else output.absolute().parent
         if folder is None or not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
             return cls()
@@ -80,13 +80,13 @@ class Scratch:
             return self._mapped(file, size, np.float64).reshape(-1, columns)
 
     def blocks(self, count: int) -> Iterator[slice]:
-        """So many rows in blocks, each of which is let go of when the next one is asked for."""
+        """Rows in blocks; each block leaves the memory when the next one is asked for."""
         for first in range(0, count, BLOCK):
             yield slice(first, min(first + BLOCK, count))
             self.let_go()
 
     def let_go(self) -> None:
-        """Let all pages leave the memory of this process; what was written to them stays."""
+        """Let all pages leave the memory of this process; their numbers stay on disc."""
         # Where the system has no such advice it takes pages when memory is short.
         if hasattr(mmap, "MADV_DONTNEED"):
             for mapped in self._maps:
@@ -104,4 +104,4 @@ class Scratch:
 
 
 MEMORY = Scratch()
-"""That of arrays that are in memory."""
+"""Scratch with its arrays in memory."""
