@@ -71,13 +71,13 @@ def _general(
 def main() -> None:
     """Entry point: errors become sentences and exit codes."""
     prepare_streams()
-    install_handlers()
-    end_in_time(STOPPED, {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED})
     try:
+        install_handlers()
+        end_in_time(STOPPED, {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED})
         exit_code = run(app)
         remove_handlers()
     except KeyboardInterrupt:
-        # A signal that comes while the command ends finds it outside of what catches the others.
+        # A signal that comes while the command begins or ends finds it outside of what catches the others.
         remove_handlers()
         exit_code = _stopped()
     if exit_code == INTERRUPTED and was_terminated():
