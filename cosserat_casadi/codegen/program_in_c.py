@@ -60,7 +60,7 @@ class Unit:
         return [operand.numbers for step in self.steps for operand in step.operands]
 
 
-class Memory:
+class RoomOfKernel:
     """Places in the numbers that a kernel works in: free ones are used again.
 
     Attributes:
@@ -96,7 +96,7 @@ class Memory:
 
 
 @dataclass
-class Tables:
+class ConstantTables:
     """Constant arrays of a kernel, each written once.
 
     Attributes:
@@ -152,7 +152,7 @@ class _Writing:
         self.origins = program.origins
         self.signature = signature
         self.name: str = signature.name()
-        self.tables = Tables(self.name)
+        self.tables = ConstantTables(self.name)
         self.lines: list[str] = []
         self.functions: list[str] = []
         self.callees: dict[str, Callee] = {}
@@ -162,7 +162,7 @@ class _Writing:
         self.statements = 0
         self.place = np.full(self.origins.count, UNUSED, dtype=np.int64)
         self.place[0] = 0
-        self.memory = Memory(1)
+        self.memory = RoomOfKernel(1)
         self.units = _units(program)
         self.last_use = self._last_uses()
         self.blocks_until: dict[int, list[tuple[int, int]]] = defaultdict(list)
