@@ -17,7 +17,7 @@ from growth import FOLLOWER, PUSH, WEIGHT, model_of
 from rich.progress import track
 
 from cosserat_casadi.codegen.kernel_files import external_sources
-from cosserat_casadi.codegen.kernels import loops, scalar
+from cosserat_casadi.codegen.kernels import dense, scalar
 
 MODELS = (
     ("kirchhoff", [PUSH], 4, 9),
@@ -90,14 +90,14 @@ def main() -> None:
     for strain, loads, modes, nodes in track(MODELS, transient=True):
         model = model_of(strain, 0.5e-3, loads, modes, nodes)
         straight = scalar(model.path_jacobian, "timed")
-        one, other = compiled(straight), compiled(loops(model.path_jacobian, "timed"))
+        one, other = compiled(straight), compiled(dense(model.path_jacobian, "timed"))
         cells = [f"{c.us:.1f}, {c.compile_s:.1f}, {c.kilobytes:.0f}" for c in (one, other)]
         print(f"{strain}, {modes}, {nodes}: {straight.n_instructions()}; {'; '.join(cells)}; {other.us / one.us:.2f}")
     print("motion: operations; in loops µs, gcc s, kB; operations a nanosecond")
     for strain, modes, nodes in track(MOTIONS, transient=True):
         model = model_of(strain, 0.5e-3, [PUSH, WEIGHT], modes, nodes)
         count = model.operations(model.dynamics_jacobian)
-        c = compiled(loops(model.dynamics_jacobian, "timed"))
+        c = compiled(dense(model.dynamics_jacobian, "timed"))
         rate = count / c.us / 1000
         print(f"{strain}, {modes}, {nodes}: {count}; {c.us:.1f}, {c.compile_s:.1f}, {c.kilobytes:.0f}; {rate:.1f}")
 

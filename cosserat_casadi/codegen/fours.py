@@ -32,6 +32,7 @@ from cosserat_casadi.codegen.statements import (
     Arithmetic,
     Block,
     Statement,
+    computations,
     in_parts,
     number_in_c,
 )
@@ -44,7 +45,7 @@ def in_fours(function: ca.Function, signature: ca.Function, arithmetic: Arithmet
     Args:
         function: the function.
         signature: a function with the name, arguments and first result that it has in C.
-        arithmetic: on what it computes.
+        arithmetic: of the numbers that it computes.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -162,14 +163,13 @@ class _Writing:
         # What one of them passes on to others stands behind all else.
         first = self.reals
         parts, passed = in_parts(self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{first + place}] = {{0}};")
-        self._room(len(passed))
+        self._room(passed)
         lines = []
-        for k, statements in enumerate(parts):
-            own = {statement.made for statement in statements}
-            elsewhere = {value: first + place for value, place in passed.items() if value not in own}
-            block = Block(self.main.type, self.main.letter, statements)
+        for k, part in enumerate(parts):
+            elsewhere = {value: first + place for value, place in part.passed.items()}
+            block = Block(self.main.type, self.main.letter, part.statements)
             lines = block.lines(partial(self._text_in_part, elsewhere))
-            self.statements += len(statements)
+            self.statements += len(part.statements)
             if len(parts) > 1:
                 self.functions.append(f"static void MADE({self.name}_part_{k})({given}){_body(lines)}")
         if len(parts) > 1:
@@ -353,14 +353,12 @@ class _Writing:
         """Write what computes four columns, in parts that pass values on, and append its calls."""
         statements = self._statements_of_columns(form)
         parts, passed = in_parts(statements, LONGEST, lambda place: f"STORE(passed + {LANES * place}, {{0}});")
-        room = self._room(LANES * len(passed))
+        room = self._room(LANES * passed)
         name = f"{self.name}_columns"
         calls = []
-        for k, statements in enumerate(parts):
-            own = {statement.made for statement in statements}
-            elsewhere = {value: place for value, place in passed.items() if value not in own}
-            block = Block("FOUR", "b", statements)
-            body = _body(block.lines(partial(self._text_in_columns, elsewhere)))
+        for k, part in enumerate(parts):
+            block = Block("FOUR", "b", part.statements)
+            body = _body(block.lines(partial(self._text_in_columns, part.passed)))
             self.functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
             calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
             self.statements += len(block.statements)
@@ -408,11 +406,11 @@ class _Writing:
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
-    """A function that is called, and its number of statements.
+    """A function that kernels call, and its number of statements.
 
     Args:
-        listing: of the function.
-        arithmetic: on what it computes: with FOURS for four calls at once.
+        listing: the values of the function.
+        arithmetic: FOURS for four calls at once, or that of single numbers.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -422,10 +420,8 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
     width = LANES if wide else 1
     arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
     results = _starts(function.nnz_out(i) for i in range(function.n_out()))
-    block = Block("FOUR", "b", []) if wide else Block("casadi_real", "a", [])
-    for number, value in enumerate(listing.values):
-        if isinstance(value, Computed):
-            block.statements.append(arithmetic.operation(value.operation, value.operands, number))
+    type_and_letter = ("FOUR", "b") if wide else ("casadi_real", "a")
+    block = Block(*type_and_letter, computations(listing, arithmetic))
     for start, entries in zip(results, listing.outputs, strict=True):
         for entry, number in entries.items():
             place = width * (start + entry)

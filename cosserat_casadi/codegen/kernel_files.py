@@ -1,7 +1,7 @@
 """Kernels as files in C: those that a library calls, and functions that ``casadi.external`` loads.
 
-Functions of scalars are written by fours.py, functions of matrices by program_in_c.py. What has no form there, the
-literal linear system of a rotation with its pivoting, CasADi writes.
+Functions of scalars are printed by fours.py, functions of matrices by program_in_c.py. CasADi prints a function with an
+instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) 
 
 
 def in_c(kernel: Kernel) -> Kernel:
-    """A kernel as C of this package; itself where it has no form in it."""
+    """A kernel as printed here; the function itself where CasADi has to print it."""
     if not isinstance(kernel, ca.Function):
         return kernel
     try:
@@ -115,10 +115,10 @@ def _files(
     """Source and header, with what the source includes.
 
     Args:
-        kernels: what they hold.
+        kernels: the kernels.
         stem: of the file names.
         integer: type of whole numbers in C.
-        prologue: what the source begins with.
+        prologue: beginning of the source.
         described: whether functions follow that tell ``casadi.external`` of arguments and results.
     """
     written = [in_c(kernel) for kernel in kernels]
@@ -158,15 +158,10 @@ def _patterns(side: str, patterns: Sequence[ca.Sparsity]) -> str:
     """Constant arrays of sparsity patterns, and one of pointers to them."""
     tables = []
     for i, pattern in enumerate(patterns):
-        numbers = [*pattern.shape, 1] if _is_full(pattern) else [*pattern.shape, *pattern.colind(), *pattern.row()]
+        numbers = [*pattern.shape, 1] if pattern.is_dense() else [*pattern.shape, *pattern.colind(), *pattern.row()]
         tables.append(f"  static const casadi_int {side}_{i}[] = {{{_listed(map(str, numbers))}}};\n")
     pointers = _listed(f"{side}_{i}" for i in range(len(patterns)))
     return "".join(tables) + f"  static const casadi_int *const every[] = {{{pointers}}};\n"
-
-
-def _is_full(pattern: ca.Sparsity) -> bool:
-    """Whether all entries are stored."""
-    return int(pattern.nnz()) == int(pattern.numel())
 
 
 def _listed(texts: Iterable[str]) -> str:

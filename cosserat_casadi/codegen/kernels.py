@@ -1,4 +1,4 @@
-"""The generated kernels: functions of a model as straight-line C without dependencies."""
+"""The generated kernels: which functions of a model become straight-line C, columns, parts of rods, or loops."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
         owners = [numbers[owner] for owner in watched_owners(discrete)]
     straight = scalar(entry.function, entry.kernel)
     if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT:
-        return loops(entry.function, entry.kernel)
+        return dense(entry.function, entry.kernel)
     return in_one(entry.function, owners, entry.kernel)
 
 
@@ -128,16 +128,11 @@ def _literal(model: Model) -> bool:
 
 
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
-    """One function under the name it has in C: straight-line code within so many instructions, else loops."""
+    """A function under its name in C: of scalars within so many instructions, else of matrices, which become loops."""
     if not _literal(model):
         straight = scalar(function, name)
         if straight.n_instructions() <= straight_within:
             return straight
-    return loops(function, name)
-
-
-def loops(function: ca.Function, name: str) -> ca.Function:
-    """A function written for loops in C, with dense outputs."""
     return dense(function, name)
 
 

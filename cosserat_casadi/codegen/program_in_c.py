@@ -1,8 +1,9 @@
 """A program (numbered.py) as C: loops over tables, products of matrices, and functions of intervals four at a time.
 
-Everything that is computed has a place in the numbers ``w`` that the kernel works in, which begin with a zero. A step
-reads its operands where they lie; entries that lie apart are gathered by a table before. Small steps are written
-together without loops, and calls of one function that do not wait for each other are made four at a time.
+A kernel works in an array ``w``. Its first number is zero; every argument and every result of a step has a place in it,
+which later results take over. A step reads its operands where they lie; entries that lie apart are gathered before, by
+a table. Small steps are written together without loops. Calls of one function that do not wait for each other are made
+four at a time.
 """
 
 from __future__ import annotations
@@ -18,10 +19,19 @@ import numpy as np
 from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.fours import callee, in_fours
 from cosserat_casadi.codegen.fours_sources import Callee, InFours
-from cosserat_casadi.codegen.listing import Computed, Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.codegen.numbered import Numbers, Program, Step, Value
+from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.codegen.numbered import Numbers, Origins, Program, Step
 from cosserat_casadi.codegen.products import Product
-from cosserat_casadi.codegen.statements import FEWEST, FOURS, LONGEST_OF_NUMBERS, SINGLE, Block, Statement, in_parts
+from cosserat_casadi.codegen.statements import (
+    FEWEST,
+    FOURS,
+    LONGEST_OF_NUMBERS,
+    SINGLE,
+    Block,
+    Statement,
+    computations,
+    in_parts,
+)
 from cosserat_casadi.codegen.steps import program_of
 
 LONGEST_BUNDLE = 3000
@@ -34,16 +44,16 @@ FEW_RUNS = 8
 """Runs of neighbours up to which entries that lie apart are moved run by run."""
 
 UNUSED = -1
-"""Place of what has none."""
+"""Place of an entry that has none yet."""
 
 
 @dataclass
 class Unit:
-    """Steps that are written as one: small ones without loops, calls that are made together, or one other step.
+    """Steps that become one piece of C: small ones without loops, calls of one function, or any other single step.
 
     Attributes:
         steps: the steps.
-        is_bundle: whether they are written without loops.
+        is_bundle: whether they are small ones.
     """
 
     steps: list[Step]
@@ -61,10 +71,10 @@ class Unit:
 
 
 class RoomOfKernel:
-    """Places in the numbers that a kernel works in: free ones are used again.
+    """The array that a kernel works in: places that are free again are taken before the array grows.
 
     Attributes:
-        size: numbers that are needed in all.
+        size: numbers in the array.
     """
 
     def __init__(self, size: int) -> None:
@@ -72,7 +82,7 @@ class RoomOfKernel:
         self._free: list[tuple[int, int]] = []
 
     def take(self, count: int) -> int:
-        """The first of so many neighbouring places."""
+        """The first of ``count`` neighbouring places."""
         for k, (first, room) in enumerate(self._free):
             if room >= count:
                 self._free[k : k + 1] = [(first + count, room - count)] if room > count else []
@@ -81,7 +91,7 @@ class RoomOfKernel:
         return self.size - count
 
     def give_back(self, first: int, count: int) -> None:
-        """Free so many neighbouring places."""
+        """Free ``count`` neighbouring places."""
         if not count:
             return
         self._free.append((first, count))
@@ -100,7 +110,7 @@ class ConstantTables:
     """Constant arrays of a kernel, each written once.
 
     Attributes:
-        stem: what their names begin with.
+        stem: beginning of their names.
     """
 
     stem: str
@@ -156,7 +166,7 @@ class _Writing:
         self.lines: list[str] = []
         self.functions: list[str] = []
         self.callees: dict[str, Callee] = {}
-        self.callee_of: dict[int, str] = {}
+        self.callee_of: dict[tuple[int, int], str] = {}
         self.products: dict[Product, None] = {}
         self.kernels: dict[str, InFours] = {}
         self.statements = 0
@@ -167,7 +177,8 @@ class _Writing:
         self.last_use = self._last_uses()
         self.blocks_until: dict[int, list[tuple[int, int]]] = defaultdict(list)
         self.gathered: dict[bytes, int] = {}
-        self.gathered_until = self._last_gathers()
+        self.operands = [self._operands_of(unit) for unit in self.units]
+        self.gathered_until = {numbers.tobytes(): k for k, read in enumerate(self.operands) for numbers in read}
 
     def result(self) -> InFours:
         """The kernel."""
@@ -196,7 +207,7 @@ class _Writing:
     # What is read and written
 
     def _write_arguments(self) -> None:
-        """Copy the arguments, pieces one behind the other, since none may be there."""
+        """Copy the arguments: one that is zero may come without a pointer, and pieces of one follow on each other."""
         for number, argument in enumerate(self.program.arguments):
             count = sum(len(piece.numbers) for piece in argument.pieces)
             if not count:
@@ -208,12 +219,11 @@ class _Writing:
                 first += len(piece.numbers)
 
     def _write_constants(self) -> None:
-        """Copy the constants that are gathered together with what is computed."""
+        """Copy the constants that a table gathers together with results of steps."""
         mixed: dict[int, None] = {}
         wanted = [value.numbers for value in self.program.results.values()]
-        for unit in self.units:
-            if not unit.is_bundle:
-                wanted += self._operands_of(unit)
+        for operands in self.operands:
+            wanted += operands
         for numbers in wanted:
             constant = self.origins.is_constant(numbers)
             mixed |= dict.fromkeys(numbers[constant & (numbers != 0)].tolist())
@@ -248,8 +258,8 @@ class _Writing:
             return f"program_runs({to}, w, {table}, {len(starts)}, {lengths[0]});"
         return f"program_gather({to}, w, {self.tables.of_places(places)}, {len(places)});"
 
-    def _pointer(self, k: int, numbers: Numbers) -> str:
-        """Where entries lie one behind the other; those that lie apart are gathered."""
+    def _pointer(self, numbers: Numbers) -> str:
+        """Pointer to entries that follow on each other; entries that lie apart are gathered before."""
         if np.all(self.origins.is_constant(numbers)):
             values = self.origins.constants(numbers)
             return self.tables.of_numbers(values)
@@ -265,44 +275,37 @@ class _Writing:
         return f"w + {self.gathered[key]}"
 
     def _place_things(self, k: int, numbers: Numbers) -> int:
-        """Places for entries one behind the other until they are read for the last time."""
+        """Give entries neighbouring places until a unit reads them for the last time; return the first place."""
         first = self.memory.take(len(numbers))
         self.place[numbers] = np.arange(first, first + len(numbers))
         self._free_after(k, numbers, first, len(numbers))
         return first
 
     def _free_after(self, k: int, numbers: Numbers, first: int, count: int) -> None:
-        last = max((self.last_use[owner] for owner in self._owners(numbers)), default=k)
-        self.blocks_until[max(last, k)].append((first, count))
+        self.blocks_until[max(self._last_use_of(numbers), k)].append((first, count))
 
     # Lifetimes
 
-    def _owners(self, numbers: Numbers) -> list[int]:
-        return [owner for owner in np.unique(self.origins.owners(numbers)).tolist() if owner]
+    def _last_use_of(self, numbers: Numbers) -> int:
+        """The last unit that reads any of these entries."""
+        return max((self.last_use[owner] for owner in _owners(self.origins, numbers)), default=UNUSED)
 
     def _last_uses(self) -> dict[int, int]:
-        """For each thing the last unit that reads it."""
+        """The last unit that reads each thing."""
         last: dict[int, int] = defaultdict(lambda: UNUSED)
         for k, unit in enumerate(self.units):
-            for owner in self._owners(_joined(unit.operands)):
+            for owner in _owners(self.origins, _joined(unit.operands)):
                 last[owner] = k
         for value in self.program.results.values():
-            for owner in self._owners(value.numbers):
+            for owner in _owners(self.origins, value.numbers):
                 last[owner] = len(self.units)
         return last
 
     def _operands_of(self, unit: Unit) -> list[Numbers]:
-        """Entries that a unit with loops reads one behind the other."""
-        if unit.is_batch:
-            return [self._given(unit)]
-        return unit.operands
-
-    def _last_gathers(self) -> dict[bytes, int]:
-        last: dict[bytes, int] = {}
-        for k, unit in enumerate(self.units):
-            if not unit.is_bundle:
-                last |= {numbers.tobytes(): k for numbers in self._operands_of(unit)}
-        return last
+        """Entries of each array that a unit reads; none of a bundle, which reads numbers one by one."""
+        if unit.is_bundle:
+            return []
+        return [self._given(unit)] if unit.is_batch else unit.operands
 
     # Units
 
@@ -321,7 +324,7 @@ class _Writing:
     def _write_entrywise(self, k: int, step: Step) -> None:
         """Write a loop over entries."""
         assert step.operation is not None
-        pointers = [self._pointer(k, operand.numbers) for operand in step.operands]
+        pointers = [self._pointer(operand.numbers) for operand in step.operands]
         (result,) = step.results
         count = len(result.numbers)
         first = self._place_things(k, result.numbers)
@@ -329,10 +332,7 @@ class _Writing:
         symbols = [ca.SX.sym(name) for name in names]
         apply = ca.SX.unary if len(symbols) == 1 else ca.SX.binary
         listing = Listing(ca.Function("entry", symbols, [apply(step.operation, *symbols)]))
-        block = Block("casadi_real", "a", [])
-        for number, value in enumerate(listing.values):
-            if isinstance(value, Computed):
-                block.statements.append(SINGLE.operation(value.operation, value.operands, number))
+        block = Block("casadi_real", "a", computations(listing, SINGLE))
         (made,) = listing.outputs[0].values()
         block.statements.append(Statement("z[i] = {0};", [made]))
 
@@ -358,16 +358,16 @@ class _Writing:
         """Write a product of matrices, which may be added to a third."""
         left, right, *added = step.operands
         (result,) = step.results
-        x, y = (self._pointer(k, operand.numbers) for operand in (left, right))
-        start = [self._pointer(k, operand.numbers) for operand in added]
+        x, y = (self._pointer(operand.numbers) for operand in (left, right))
+        start = [self._pointer(operand.numbers) for operand in added]
         first = self._place_things(k, result.numbers)
         count = len(result.numbers)
         if start:
             self.lines.append(f"  program_move(w + {first}, {start[0]}, {count});")
         self.statements += 1
-        if _is_full(left):
+        if left.pattern.is_dense():
             rows, inner = left.pattern.shape
-            dense = _is_full(right)
+            dense = right.pattern.is_dense()
             product = Product(rows, dense, not start)
             self.products[product] = None
             columns = right.pattern.size2()
@@ -398,7 +398,7 @@ class _Writing:
             arguments = [_matrix(operand.pattern, operand.numbers, entry_of) for operand in step.operands]
             for result, computed in zip(step.results, step.function.call(arguments, True, False), strict=True):
                 entry_of |= zip(result.numbers.tolist(), ca.SX(computed).nonzeros(), strict=True)
-        kept = [numbers for numbers in made if any(self.last_use[owner] > k for owner in self._owners(numbers))]
+        kept = [numbers for numbers in made if self._last_use_of(numbers) > k]
         for numbers in kept:
             self._place_things(k, numbers)
         stored = _joined(kept).tolist()
@@ -407,37 +407,27 @@ class _Writing:
 
     def _write_straight(self, listing: Listing, read: Numbers, stored: Numbers, k: int) -> None:
         """Write scalars that read and store numbers at these places, in functions that are not too long."""
-        statements = []
-        for number, value in enumerate(listing.values):
-            if isinstance(value, Computed):
-                statements.append(SINGLE.operation(value.operation, value.operands, number))
-        # What is read may lie where nothing is stored: places are freed behind the unit alone.
+        statements = computations(listing, SINGLE)
         outputs = listing.outputs[0]
         for entry, place in enumerate(stored.tolist()):
             if entry in outputs:
                 statements.append(Statement(f"w[{place}] = {{0}};", [outputs[entry]]))
             else:
                 statements.append(Statement(f"w[{place}] = 0;", []))
-        # What one function passes on to others lies behind all else.
         parts, passed = in_parts(statements, LONGEST_OF_NUMBERS, lambda place: f"passed[{place}] = {{0}};")
-        room = self.memory.take(len(passed)) if passed else 0
-        self.blocks_until[k].append((room, len(passed)))
+        room = self.memory.take(passed) if passed else 0
+        self.blocks_until[k].append((room, passed))
         for part in parts:
-            own = {statement.made for statement in part}
-            elsewhere = {value: place for value, place in passed.items() if value not in own}
-            block = Block("casadi_real", "a", part)
-            lines = block.lines(partial(_text, listing, read, elsewhere))
+            block = Block("casadi_real", "a", part.statements)
+            lines = block.lines(partial(_text, listing, read, part.passed))
             name = f"MADE({self.name}_steps_{len(self.functions)})"
-            self.functions.append(
-                "\n".join(
-                    [f"static void {name}(casadi_real *w, casadi_real *passed) {{", *lines, "  (void)passed;\n}\n"]
-                )
-            )
+            head = f"static void {name}(casadi_real *w, casadi_real *passed) {{"
+            self.functions.append("\n".join([head, *lines, "  (void)passed;\n}\n"]))
             self.lines.append(f"  {name}(w, w + {room});")
-            self.statements += len(part)
+            self.statements += len(part.statements)
 
     def _given(self, unit: Unit) -> Numbers:
-        """Entries of the operands of calls, in the order in which they are handed over."""
+        """Entries of the operands of calls, in the order in which the function reads them."""
         width = self._width(unit)
         of_calls = [_joined([operand.numbers for operand in step.operands]) for step in unit.steps]
         # Lanes that are left over compute what the last call does.
@@ -450,7 +440,7 @@ class _Writing:
         function = unit.steps[0].function
         width = self._width(unit)
         turns = -(-len(unit.steps) // width)
-        given = self._pointer(k, self._given(unit))
+        given = self._pointer(*self.operands[k])
         count = sum(len(result.numbers) for result in unit.steps[0].results)
         first = self.memory.take(width * turns * count)
         owned = []
@@ -464,7 +454,7 @@ class _Writing:
         self.lines.append(f"  MADE({self.name}_{word})({given}, w + {first}, {turns});")
 
     def _write_kernel(self, k: int, step: Step) -> None:
-        """Write a call of a function that calls others, which is a kernel of its own."""
+        """Write a call of a function that calls others, and the function as a kernel."""
         function = step.function
         name: str = function.name()
         if name not in self.kernels:
@@ -473,7 +463,7 @@ class _Writing:
             self.kernels[name] = written
         kernel = self.kernels[name]
         assert hash(kernel.signature) == hash(function), f"two functions are called {name}"
-        arguments = [self._pointer(k, operand.numbers) for operand in step.operands]
+        arguments = [self._pointer(operand.numbers) for operand in step.operands]
         results = [f"w + {self._place_things(k, result.numbers)}" for result in step.results]
         room = self.memory.take(kernel.reals)
         self.blocks_until[k].append((room, kernel.reals))
@@ -483,7 +473,7 @@ class _Writing:
         self.lines.append(f"    MADE({name})(given, made, w + {room}); }}")
 
     def _width(self, unit: Unit) -> int:
-        """How many calls are made at once."""
+        """Number of calls that are made at once."""
         if len(unit.steps) < FEWEST:
             return 1
         try:
@@ -493,7 +483,7 @@ class _Writing:
         return LANES
 
     def _callee(self, function: ca.Function, width: int) -> str:
-        key = hash((hash(function), width))
+        key = (hash(function), width)
         if key not in self.callee_of:
             word = f"{function.name()}{'s' if width == LANES else ''}"
             if word in self.callees:
@@ -506,7 +496,7 @@ class _Writing:
 
 
 def _units(program: Program) -> list[Unit]:
-    """Steps in layers: in each the small ones without loops, then the others, which do not wait for each other."""
+    """Units in layers: in each the small steps, then the others, which do not wait for each other."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     layer_of = defaultdict[int, int](int)
     large_in = set[int]()
@@ -514,12 +504,12 @@ def _units(program: Program) -> list[Unit]:
     for step in program.steps:
         together = step.called and (calls[hash(step.function)] >= FEWEST or _stays(step))
         small = step.small and not together and not _is_long(step)
-        needed = _owners_of(program, [operand.numbers for operand in step.operands])
+        needed = _owners(program.origins, _joined([operand.numbers for operand in step.operands]))
         layer = max((layer_of[owner] + int(owner in large_in) for owner in needed), default=0)
         while len(layers) <= layer:
             layers.append(([], []))
         layers[layer][0 if small else 1].append(step)
-        for owner in _owners_of(program, [result.numbers for result in step.results]):
+        for owner in _owners(program.origins, _joined([result.numbers for result in step.results])):
             layer_of[owner] = layer
             if not small:
                 large_in.add(owner)
@@ -558,9 +548,9 @@ def _is_long(step: Step) -> bool:
     return step.operation is not None and step.instructions > LONGEST_WITHOUT_LOOP
 
 
-def _owners_of(program: Program, vectors: Sequence[Numbers]) -> list[int]:
-    owners = program.origins.owners(_joined(vectors))
-    return [owner for owner in np.unique(owners).tolist() if owner]
+def _owners(origins: Origins, numbers: Numbers) -> list[int]:
+    """The things that entries belong to, but for constants."""
+    return [owner for owner in np.unique(origins.owners(numbers)).tolist() if owner]
 
 
 def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
@@ -576,11 +566,6 @@ def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
     return bundles
 
 
-def _is_full(value: Value) -> bool:
-    """Whether all entries of a matrix are stored."""
-    return len(value.numbers) == int(value.pattern.numel())
-
-
 def _joined(vectors: Sequence[Numbers]) -> Numbers:
     return np.concatenate([np.zeros(0, dtype=np.int64), *vectors])
 
@@ -591,7 +576,7 @@ def _matrix(pattern: ca.Sparsity, numbers: Numbers, entry_of: dict[int, ca.SX]) 
 
 
 def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: int) -> str | None:
-    """What a value is called outside of variables."""
+    """Text of a value that is in no variable."""
     value = listing.values[number]
     if number in elsewhere:
         return f"passed[{elsewhere[number]}]"
@@ -603,7 +588,7 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:
-    """For each multiplication of a sparse product the entries of left, right and result, shape (count, 3)."""
+    """Entries of left, right and result of each multiplication in a sparse product, shape (count, 3)."""
     place_of = {entry: k for k, entry in enumerate(zip(*result.get_triplet(), strict=True))}
     of_column: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for k, (i, j) in enumerate(zip(*left.get_triplet(), strict=True)):

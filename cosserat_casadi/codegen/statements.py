@@ -8,7 +8,7 @@ from math import inf, isfinite
 
 import casadi as ca
 
-from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, UnknownOperationError
+from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, Computed, Listing, UnknownOperationError
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
@@ -133,10 +133,34 @@ LANES_OF_ROWS = Arithmetic(
 """Numbers of several rows at once, which have no comparison: lanes would answer it each in its own way."""
 
 
-def in_parts(
-    statements: Sequence[Statement], longest: int, store: Callable[[int], str]
-) -> tuple[list[list[Statement]], dict[int, int]]:
-    """Statements in parts that are functions of their own.
+@dataclass(frozen=True)
+class Part:
+    """Statements of one function of several that follow on each other.
+
+    Attributes:
+        statements: the statements.
+        passed: place of each value that another part computes and stores, by its number.
+    """
+
+    statements: list[Statement]
+    passed: dict[int, int]
+
+
+def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
+    """The operations of a function, in their order.
+
+    Raises:
+        UnknownOperationError: one has no form in the arithmetic.
+    """
+    statements = []
+    for number, value in enumerate(listing.values):
+        if isinstance(value, Computed):
+            statements.append(arithmetic.operation(value.operation, value.operands, number))
+    return statements
+
+
+def in_parts(statements: Sequence[Statement], longest: int, store: Callable[[int], str]) -> tuple[list[Part], int]:
+    """Statements in parts, each a function.
 
     Args:
         statements: the statements.
@@ -144,7 +168,7 @@ def in_parts(
         store: place of a value that is passed on ↦ text of the statement that stores it.
 
     Returns:
-        the parts, with statements that store what others read, and the places of those values.
+        the parts, with statements that store the values that other parts read, and the number of these values.
     """
     count = max(-(-len(statements) // longest), 1)
     # A Jacobian that reads no columns has no statements for them.
@@ -159,16 +183,19 @@ def in_parts(
                 if operand in before:
                     passed.setdefault(operand, len(passed))
         before |= own
-    return [_storing(part, passed, store) for part in parts], passed
+    return [_part(part, passed, store) for part in parts], len(passed)
 
 
-def _storing(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> list[Statement]:
+def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> Part:
     statements = []
+    computed = set()
     for statement in part:
         statements.append(statement)
+        if statement.made is not None:
+            computed.add(statement.made)
         if statement.made is not None and statement.made in passed:
             statements.append(Statement(store(passed[statement.made]), [statement.made]))
-    return statements
+    return Part(statements, {value: place for value, place in passed.items() if value not in computed})
 
 
 def number_in_c(value: float) -> str:

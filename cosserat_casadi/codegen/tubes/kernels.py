@@ -13,7 +13,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.codegen.kernels import loops
+from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -119,4 +119,4 @@ class TubeKernels:
     def _function(self, word: str, arguments: Mapping[str, ca.MX], results: Sequence[Matrix]) -> ca.Function:
         names = [f"{word}_{number}" for number in range(len(results))]
         function = ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)
-        return loops(function, f"{self.name}_{word}")
+        return dense(function, f"{self.name}_{word}")
