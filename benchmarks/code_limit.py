@@ -24,7 +24,7 @@ from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen import kernels
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.codegen.fours import columns_in_fours
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.model.build import Model
 
 ROOT = Path(__file__).parents[1]

@@ -9,11 +9,11 @@ import casadi as ca
 
 from cosserat_casadi.codegen.blocks import Blocks, blocks
 from cosserat_casadi.codegen.column_parts import parted_by_columns
-from cosserat_casadi.codegen.fours import with_calls_in_fours
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
+from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.model.build import Model
 
 
@@ -33,7 +33,7 @@ class Assembled:
     residual: Parted
     jacobian: Parted
     input_jacobian: Parted
-    in_fours: Mapping[str, InFours]
+    in_fours: Mapping[str, PrintedKernel]
 
     @property
     def kernels(self) -> list[Kernel]:
@@ -61,11 +61,11 @@ def assembled(model: Model, names: Names) -> Assembled | None:
         residual_parts,
         jacobian_parts,
         replace(by_inputs, parts=parts),
-        {kernel.name(): kernel for kernel in (*in_fours, *columns_in_fours) if isinstance(kernel, InFours)},
+        {kernel.name(): kernel for kernel in (*in_fours, *columns_in_fours) if isinstance(kernel, PrintedKernel)},
     )
 
 
-def _jacobian(model: Model, partition: Blocks, name: str) -> tuple[Parted, list[InFours]]:
+def _jacobian(model: Model, partition: Blocks, name: str) -> tuple[Parted, list[PrintedKernel]]:
     """∂ residual / ∂x in parts, by columns where it has such a form, with the kernels that are written here."""
     by_columns = parted_by_columns(model, partition, name)
     if by_columns is not None:

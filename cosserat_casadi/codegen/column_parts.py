@@ -21,10 +21,10 @@ from cosserat_casadi.codegen.columns import (
     in_groups,
     on_path,
 )
-from cosserat_casadi.codegen.fours import columns_in_fours
-from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
+from cosserat_casadi.codegen.printed_kernels import PrintedKernel
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, same_but_for_rounding, shared
 from cosserat_casadi.model.build import Model
 
@@ -57,7 +57,7 @@ class _Piece:
         return self.stream.key, tuple(self.stream.reads[COLUMNS]), tuple(self.stream.reads[TURNS])
 
 
-def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, list[InFours]] | None:
+def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, list[PrintedKernel]] | None:
     """The Jacobian of an assembly in parts by columns.
 
     Args:
@@ -102,10 +102,10 @@ def _piece(jacobian: ColumnedJacobian, entries: ca.SX, own: list[int]) -> _Piece
     return _Piece(Stream.settled(ca.Function("part", part.symbols, [both], *words)), part, own)
 
 
-def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Parted, list[InFours]]:
+def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Parted, list[PrintedKernel]]:
     """A kernel for each group of pieces that compute alike."""
     kernels = list[ca.Function]()
-    in_fours = list[InFours]()
+    in_fours = list[PrintedKernel]()
     parts = list[Part]()
     for number, group in enumerate(groups):
         kernel, constants = shared([piece.stream for piece in group], f"{name}_{number}")

@@ -1,7 +1,7 @@
-"""Kernels as files in C: those that a library calls, and functions that ``casadi.external`` loads.
+"""Kernels as files in C, for a library or as functions that ``casadi.external`` loads.
 
-Functions of scalars are printed by fours.py, functions of matrices by program_in_c.py. CasADi prints a function with an
-instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting.
+Functions of scalars are printed by scalars_in_c.py, functions of matrices by program_in_c.py. CasADi prints a function
+with an instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from pathlib import Path
 
 import casadi as ca
 
-from cosserat_casadi.codegen.fours import in_fours
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel, printed_sources
 from cosserat_casadi.codegen.program_in_c import program_in_c
+from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.texts import fill, resource
 from cosserat_casadi.errors import WriteError
@@ -103,7 +103,7 @@ def in_c(kernel: Kernel) -> Kernel:
         return kernel
     try:
         if kernel.is_a("SXFunction"):
-            return in_fours(kernel, kernel)
+            return scalars_in_c(kernel, kernel)
         return program_in_c(program_of(kernel), kernel)
     except (UnknownInstructionError, UnknownOperationError):
         return kernel
@@ -122,9 +122,9 @@ def _files(
         described: whether functions follow that tell ``casadi.external`` of arguments and results.
     """
     written = [in_c(kernel) for kernel in kernels]
-    own = [kernel for kernel in written if isinstance(kernel, InFours)]
+    own = [kernel for kernel in written if isinstance(kernel, PrintedKernel)]
     by_casadi = [kernel for kernel in written if isinstance(kernel, ca.Function)]
-    sources = sources_in_fours(own, stem)
+    sources = printed_sources(own, stem)
     types = TYPES.format(integer=integer)
     descriptions = "".join(_description(kernel) for kernel in own) if described else ""
     source = f"#include <math.h>\n{types}{BEGIN}{sources.source}{descriptions}{END}"
@@ -136,7 +136,7 @@ def _files(
     return {f"{stem}.c": prologue + source, f"{stem}.h": header, **sources.included}
 
 
-def _description(kernel: InFours) -> str:
+def _description(kernel: PrintedKernel) -> str:
     """Functions in C that tell ``casadi.external`` of arguments and results."""
     function = kernel.signature
     arguments = [function.sparsity_in(i) for i in range(function.n_in())]

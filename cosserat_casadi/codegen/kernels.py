@@ -9,14 +9,14 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
-from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
+from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
@@ -38,7 +38,7 @@ tip's Jacobian from there on, and compilers take half as long for them; for a se
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
-    """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
+    """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
     wanted = functions_in_c(model, names)
     of_motion = [] if motion is None else motion.kernels
     of_parameters = _parameter_kernels(model, names, parts)
@@ -63,7 +63,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
 
 
 def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
-    """What the error of an answer of an assembly is judged by: rods that compute alike share straight-line code."""
+    """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
     if entry.spec.name == BALANCE:
@@ -78,7 +78,7 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
-    """What the solver needs for parameters; nothing where there are none."""
+    """The function of the solver for parameters; none where the scene names none."""
     if not model.parameters.size:
         return []
     name = names.kernel("parameter_rate")
@@ -100,17 +100,17 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
         # Without calls of intervals there is nothing to make together.
         if straight.find_functions(0) and straight.n_instructions() <= straight_within:
             with suppress(UnknownOperationError):
-                return in_fours(straight, dense(entry.function, entry.kernel))
+                return scalars_in_c(straight, dense(entry.function, entry.kernel))
     return kernel(model, entry.function, entry.kernel, straight_within)
 
 
-def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> InFours | None:
+def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:
     """A Jacobian of one rod by columns; None where it has no such form, or a long one.
 
     Args:
         written: the Jacobian.
         function: the same as it is called in C.
-        name: what it is called there.
+        name: its name in C.
     """
     form = in_columns(written, name)
     if form is None:

@@ -14,14 +14,14 @@ import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.columns import LANES
-from cosserat_casadi.codegen.fours import in_fours
-from cosserat_casadi.codegen.fours_sources import sources_in_fours
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
+from cosserat_casadi.codegen.printed_kernels import printed_sources
+from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.model.build import Model
@@ -43,7 +43,7 @@ FILES = ("lanes.h", "lanes_arithmetic.h", "lanes_linear.c", "lanes.c")
 
 @dataclass(frozen=True)
 class InLanes:
-    """What a library with lanes has beside the others.
+    """Files and words of a library with lanes beside the others.
 
     Attributes:
         files: sources and headers by name.
@@ -60,10 +60,10 @@ def lanes_files(name: str) -> tuple[str, str]:
 
 
 def in_lanes(model: Model, names: Names) -> InLanes | None:
-    """What solves cases side by side; None for a model whose cases are solved one after the other.
+    """Files and words that solve cases side by side; None for a model whose cases are solved one after the other.
 
     Args:
-        model: what is solved.
+        model: the model.
         names: of the library.
     """
     # An assembly is eliminated rod after rod, which has no form for lanes.
@@ -75,11 +75,11 @@ def in_lanes(model: Model, names: Names) -> InLanes | None:
     if not all(function.is_a("SXFunction") for function in functions):
         return None
     try:
-        written = [in_fours(function, function, LANES_OF_ROWS) for function in functions]
+        written = [scalars_in_c(function, function, LANES_OF_ROWS) for function in functions]
     except UnknownOperationError:
         return None
     source_file, header_file = lanes_files(names.name)
-    sources = sources_in_fours(written, f"{names.name}_lanes")
+    sources = printed_sources(written, f"{names.name}_lanes")
     generated = {source_file: sources.source, header_file: sources.prototypes}
     words = {
         "name": names.name,
@@ -117,6 +117,6 @@ def _batch_words(model: Model, names: Names, generated: Mapping[str, str]) -> di
 
 
 def _sizes(header: str) -> str:
-    """What the kernels of a header ask for, as of kernels in lanes."""
+    """Sizes of the arrays of the kernels in a header, under the names of kernels in lanes."""
     macros = re.findall(r"^#define (\w+)_(SZ_\w+ \d+)$", header, re.M)
     return "".join(f"#define {kernel}_in_lanes_{size}\n" for kernel, size in macros)

@@ -15,10 +15,10 @@ import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.compiler import EXPORT_ANEW
-from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.input_values import listed_values
 from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -242,7 +242,7 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
 
 def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[str, Any]:
     """A kernel, with the function of the header that it is behind; those of parts of an assembly are not known."""
-    function = kernel.signature if isinstance(kernel, InFours) else kernel
+    function = kernel.signature if isinstance(kernel, PrintedKernel) else kernel
     known = every.get(function.name())
     units = ARGUMENT_UNITS if known is None else known.units
     arguments = [_vector_entry(function.name_in(i), function.size_in(i), units) for i in range(function.n_in())]

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
-from cosserat_casadi.codegen.fours import with_calls_in_fours
-from cosserat_casadi.codegen.fours_sources import Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.codegen.printed_kernels import Kernel
+from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS

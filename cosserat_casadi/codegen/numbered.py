@@ -24,7 +24,7 @@ class Value:
 
     Attributes:
         pattern: sparsity.
-        numbers: for each stored entry the number of what was computed; 0 for a zero.
+        numbers: of the stored entries; 0 for a zero.
     """
 
     pattern: ca.Sparsity
@@ -64,12 +64,12 @@ class Step:
     """A computation.
 
     Attributes:
-        function: what is computed.
+        function: maps the operands to the results.
         operands: its arguments.
         results: its results, each with numbers one after the other.
         instructions: length without a loop.
-        called: whether it stays a function of its own.
-        operation: CasADi's number of what is done entry by entry; None for any other computation.
+        called: whether the function is called as it is, and not written out.
+        operation: CasADi's number of the operation on each entry; None for any other computation.
     """
 
     function: ca.Function
@@ -90,7 +90,7 @@ class Step:
 
 
 class Origins:
-    """What the numbers stand for: entry after entry of arguments, constants and results of steps.
+    """Entries that numbers stand for: of arguments, constants and results of steps, one after another.
 
     Number 0 is a zero, and the first of these things.
     """
@@ -167,7 +167,7 @@ class Argument:
     """An argument of a program.
 
     Attributes:
-        name: what it is called.
+        name: its name.
         pattern: sparsity.
         pieces: its entries in columns that lie one after the other, each numbered as one thing.
     """
@@ -182,7 +182,7 @@ class Program:
     """A function as steps.
 
     Attributes:
-        name: what it is called.
+        name: its name.
         origins: what the numbers stand for.
         arguments: its arguments.
         steps: its computations in their order.

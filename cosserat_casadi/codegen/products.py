@@ -33,7 +33,7 @@ TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) &&
 #define SUMS static void
 #endif
 """
-"""What makes a routine of its sums, for any processor and for the wider vectors of newer ones."""
+"""Macros that make a routine of its sums, for any processor and for the wider vectors of newer processors."""
 
 SPARSE = """SUMS product_sparse{alone}_{rows}_sums(const casadi_real* x,
     const casadi_real* y, const int* colind, int columns, casadi_real* z) {{
@@ -77,7 +77,7 @@ class Product:
     Attributes:
         rows: of X.
         dense: whether Y is dense; else it is stored column by column, with a table of its entries.
-        alone: whether it is the result itself; else it is added to what is there.
+        alone: whether it is the result itself; else it is added to the numbers of the result.
     """
 
     rows: int
@@ -106,7 +106,7 @@ def product_routines(products: Iterable[Product]) -> str:
 
 
 def _sums(rows: int, column: str, alone: bool) -> str:
-    """The sums of the rows of one column of the result, in bunches of one size and what is left.
+    """The sums of the rows of one column of the result, in bunches of one size and a smaller last one.
 
     Args:
         rows: their number.

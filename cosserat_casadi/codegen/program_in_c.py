@@ -17,11 +17,11 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.columns import LANES
-from cosserat_casadi.codegen.fours import callee, in_fours
-from cosserat_casadi.codegen.fours_sources import Callee, InFours
 from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.codegen.numbered import Numbers, Origins, Program, Step
+from cosserat_casadi.codegen.printed_kernels import Callee, PrintedKernel
 from cosserat_casadi.codegen.products import Product
+from cosserat_casadi.codegen.scalars_in_c import callee, scalars_in_c
 from cosserat_casadi.codegen.statements import (
     FEWEST,
     FOURS,
@@ -141,7 +141,7 @@ class ConstantTables:
         return self._names[key]
 
 
-def program_in_c(program: Program, signature: ca.Function) -> InFours:
+def program_in_c(program: Program, signature: ca.Function) -> PrintedKernel:
     """A program as C.
 
     Args:
@@ -168,7 +168,7 @@ class _Writing:
         self.callees: dict[str, Callee] = {}
         self.callee_of: dict[tuple[int, int], str] = {}
         self.products: dict[Product, None] = {}
-        self.kernels: dict[str, InFours] = {}
+        self.kernels: dict[str, PrintedKernel] = {}
         self.statements = 0
         self.place = np.full(self.origins.count, UNUSED, dtype=np.int64)
         self.place[0] = 0
@@ -180,7 +180,7 @@ class _Writing:
         self.operands = [self._operands_of(unit) for unit in self.units]
         self.gathered_until = {numbers.tobytes(): k for k, read in enumerate(self.operands) for numbers in read}
 
-    def result(self) -> InFours:
+    def result(self) -> PrintedKernel:
         """The kernel."""
         self._write_arguments()
         self._write_constants()
@@ -191,7 +191,7 @@ class _Writing:
         self._write_results()
         head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
         self.functions.append("\n".join([head, *self.lines, "  return 0;", "}\n"]))
-        return InFours(
+        return PrintedKernel(
             self.signature,
             self.tables.text,
             "\n".join(self.functions),
@@ -459,7 +459,7 @@ class _Writing:
         name: str = function.name()
         if name not in self.kernels:
             scalar = function.is_a("SXFunction")
-            written = in_fours(function, function) if scalar else program_in_c(program_of(function), function)
+            written = scalars_in_c(function, function) if scalar else program_in_c(program_of(function), function)
             self.kernels[name] = written
         kernel = self.kernels[name]
         assert hash(kernel.signature) == hash(function), f"two functions are called {name}"

@@ -22,7 +22,7 @@ class Statement:
     """One statement.
 
     Attributes:
-        text: with ``{made}`` for what it makes, and ``{0}``, ``{1}`` for its operands.
+        text: with ``{made}`` for its result, and ``{0}``, ``{1}`` for its operands.
         operands: numbers of the values that it reads.
         made: number of the value that it computes; None for one that only writes.
     """
@@ -134,7 +134,7 @@ LANES_OF_ROWS = Arithmetic(
 
 
 @dataclass(frozen=True)
-class Part:
+class StatementPart:
     """Statements of one function of several that follow on each other.
 
     Attributes:
@@ -159,7 +159,9 @@ def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
     return statements
 
 
-def in_parts(statements: Sequence[Statement], longest: int, store: Callable[[int], str]) -> tuple[list[Part], int]:
+def in_parts(
+    statements: Sequence[Statement], longest: int, store: Callable[[int], str]
+) -> tuple[list[StatementPart], int]:
     """Statements in parts, each a function.
 
     Args:
@@ -186,7 +188,7 @@ def in_parts(statements: Sequence[Statement], longest: int, store: Callable[[int
     return [_part(part, passed, store) for part in parts], len(passed)
 
 
-def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> Part:
+def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> StatementPart:
     statements = []
     computed = set()
     for statement in part:
@@ -195,7 +197,7 @@ def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[in
             computed.add(statement.made)
         if statement.made is not None and statement.made in passed:
             statements.append(Statement(store(passed[statement.made]), [statement.made]))
-    return Part(statements, {value: place for value, place in passed.items() if value not in computed})
+    return StatementPart(statements, {value: place for value, place in passed.items() if value not in computed})
 
 
 def number_in_c(value: float) -> str:

@@ -87,7 +87,7 @@ class _Reading:
         return steps[::-1]
 
     def _things(self, values: Sequence[Value]) -> set[int]:
-        """What these values are entries of."""
+        """The things that hold the entries of these values."""
         numbers = np.concatenate([np.zeros(0, dtype=np.int64), *[value.numbers for value in values]])
         return set(self.origins.owners(numbers).tolist()) - {0}
 
@@ -183,7 +183,7 @@ class _Reading:
         return results
 
     def _called(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
-        """Results of a function that stays one of its own."""
+        """Results of a function that is called as it is."""
         length = _length(function) if function.is_a("SXFunction") else np.inf
         return self._step(function, operands, length, called=True)
 

@@ -14,10 +14,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Compiled, ExportError, Model, Outcome, Scene, build, export, load
 from cosserat_casadi.codegen import compiler, lanes, rows
-from cosserat_casadi.codegen.fours import in_fours
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
+from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
@@ -278,10 +278,10 @@ def test_what_lanes_cannot_do_together_is_known(written: Callable[[ca.SX], ca.SX
     x = ca.SX.sym("x", 2)
     function = ca.Function("f", [x], [written(x)])
     if has_a_form:
-        assert "IN_ALL" in in_fours(function, function, LANES_OF_ROWS).body
+        assert "IN_ALL" in scalars_in_c(function, function, LANES_OF_ROWS).body
         return
     with pytest.raises(UnknownOperationError):
-        in_fours(function, function, LANES_OF_ROWS)
+        scalars_in_c(function, function, LANES_OF_ROWS)
 
 
 def test_batches_of_a_library_may_have_any_name(tmp_path: Path) -> None:

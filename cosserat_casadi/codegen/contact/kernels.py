@@ -11,8 +11,8 @@ import numpy as np
 
 from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.fours_sources import Kernel
 from cosserat_casadi.codegen.kernels import by_columns, kernel
+from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, pairs

@@ -1,4 +1,4 @@
-"""Kernels in fours (fours.py) as parts of a source and its header."""
+"""Kernels as scalars_in_c.py and program_in_c.py print them, as parts of a source and its header."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ class Callee:
     Attributes:
         body: in C.
         width: how many intervals it computes at once.
-        operands: numbers that it is given for one interval.
-        results: numbers that it makes for one interval.
+        operands: numbers that it reads for one interval.
+        results: numbers that it writes for one interval.
     """
 
     body: str
@@ -71,27 +71,27 @@ class Callee:
     results: int
 
     def text(self, name: str) -> str:
-        """The function in C, under a name, with a loop over what it is called for."""
+        """The function in C, under a name, with a loop over its calls."""
         call = CALL_OF_ONE if self.width == 1 else CALL_OF_FOUR
         given, made = self.width * self.operands, self.width * self.results
         return CALLEE.format(name=name, body=self.body, given=given, made=made, call=call.format(name=name))
 
 
 @dataclass(frozen=True, eq=False)
-class InFours:
-    """A kernel that is written here.
+class PrintedKernel:
+    """A function in C with the arguments of CasADi.
 
     Attributes:
         signature: a function with its name, arguments and results.
         tables: constant arrays in C.
         body: functions in C, the kernel itself last; their names stand in ``MADE()``.
-        by_columns: whether some of them compute columns: those are compiled for each width of vectors.
+        by_columns: whether some of the functions compute columns, and are compiled for each width of vectors.
         callees: functions that these call by the name of the kernel and a word, by the word.
-        reals: numbers that it works in.
-        statements: how many there are.
-        is_program: whether it is written in loops.
-        products: routines that it calls for products of matrices.
-        kernels: others that it calls.
+        reals: size of the array that it works in.
+        statements: number of its statements.
+        is_program: whether it is a function of matrices, in loops.
+        products: products of matrices whose routines it calls.
+        kernels: kernels that it calls.
     """
 
     signature: ca.Function
@@ -103,7 +103,7 @@ class InFours:
     statements: int
     is_program: bool = False
     products: tuple[Product, ...] = ()
-    kernels: tuple[InFours, ...] = ()
+    kernels: tuple[PrintedKernel, ...] = ()
 
     def name(self) -> str:
         """Its name in C."""
@@ -111,28 +111,28 @@ class InFours:
         return name
 
     def n_instructions(self) -> int:
-        """How many statements there are."""
+        """Number of statements."""
         return self.statements
 
     def prototype(self) -> str:
-        """Its declaration, and what it asks for."""
+        """Its declaration, and the sizes of its arrays."""
         arguments = self.signature.n_in()
         results = self.signature.n_out()
         return PROTOTYPE.format(name=self.name(), arguments=arguments, results=results, reals=self.reals)
 
 
-Kernel: TypeAlias = ca.Function | InFours
-"""A kernel that CasADi writes, or one that is written here."""
+Kernel: TypeAlias = ca.Function | PrintedKernel
+"""A function that is not printed yet, or the kernel that it became."""
 
 
 @dataclass(frozen=True)
-class SourcesInFours:
-    """What kernels in fours add to a source and its header.
+class PrintedSources:
+    """Kernels as text.
 
     Attributes:
-        source: what follows in the source.
-        functions: of it, functions on numbers that nothing is made four at a time in.
-        prototypes: what follows in the header.
+        source: text for the source.
+        functions: the functions alone, of kernels that make no calls four at a time.
+        prototypes: text for the header.
         included: files by name that the source includes.
     """
 
@@ -142,7 +142,7 @@ class SourcesInFours:
     included: dict[str, str]
 
 
-def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
+def printed_sources(kernels: Sequence[PrintedKernel], stem: str) -> PrintedSources:
     """Kernels in C, for any processor and for the wider vectors of newer ones.
 
     Args:
@@ -178,12 +178,12 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         included["program.h"] = resource("c", "program.h")
     source += fill(resource("templates", "kernels_once.c.in"), words)
     prototypes = "".join(kernel.prototype() for kernel in public)
-    return SourcesInFours(source, "\n".join([*functions, words["once"]]), prototypes, included)
+    return PrintedSources(source, "\n".join([*functions, words["once"]]), prototypes, included)
 
 
-def _with_called(kernels: Sequence[InFours]) -> list[InFours]:
-    """Kernels behind those that they call, each once."""
-    every: dict[str, InFours] = {}
+def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
+    """Kernels with the kernels that they call in front, each once."""
+    every: dict[str, PrintedKernel] = {}
     for kernel in kernels:
         for one in (*_with_called(kernel.kernels), kernel):
             same = every.setdefault(one.name(), one)
@@ -191,7 +191,7 @@ def _with_called(kernels: Sequence[InFours]) -> list[InFours]:
     return list(every.values())
 
 
-def _callees(kernels: Sequence[InFours], stem: str) -> dict[Callee, str]:
+def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
     """Names of the functions that kernels call: one for all that call the same."""
     name_of: dict[Callee, str] = {}
     for kernel in kernels:
@@ -202,7 +202,7 @@ def _callees(kernels: Sequence[InFours], stem: str) -> dict[Callee, str]:
     return name_of
 
 
-def _with_names_of_callees(kernel: InFours, callees: Mapping[Callee, str]) -> str:
+def _with_names_of_callees(kernel: PrintedKernel, callees: Mapping[Callee, str]) -> str:
     """The body of a kernel, which calls functions by the names that they have for all kernels."""
     body = kernel.body
     for word, callee in kernel.callees.items():

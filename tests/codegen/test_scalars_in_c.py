@@ -13,14 +13,15 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
-from cosserat_casadi.codegen import fours, kernel_files, kernels
+from cosserat_casadi.codegen import kernel_files, kernels
+from cosserat_casadi.codegen import scalars_in_c as printer
 from cosserat_casadi.codegen.columns import LANES, in_columns, on_path
-from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
-from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
 from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.printed_kernels import PrintedKernel
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.operations import operations
 from tests.codegen.libraries import gcc, run
@@ -108,7 +109,7 @@ def test_functions_that_look_alike_are_told_apart() -> None:
     both = ca.Function("both", [x], [one(x) + other(5 * x)])
     called = [call.function for call in Listing(both).calls]
     assert [hash(function) for function in called] == [hash(one), hash(other)]
-    body = in_fours(both, both).body
+    body = scalars_in_c(both, both).body
     assert "MADE(both_callee)(w" in body
     assert "MADE(both_callee_1)(w" in body
     assert operations(both) == 2 + 2 + 1 + 2
@@ -122,7 +123,7 @@ def test_what_has_no_form_in_fours() -> None:
     bell = ca.Function("bell", [x], [ca.erfinv(x[0])])
     with pytest.raises(UnknownOperationError):
         Listing(bell)
-    assert "sin" in in_fours(ca.Function("sine", [x], [ca.sin(x)]), bell).body
+    assert "sin" in scalars_in_c(ca.Function("sine", [x], [ca.sin(x)]), bell).body
 
 
 @pytest.mark.parametrize("longest", [1000, 3])
@@ -130,19 +131,19 @@ def test_choices_and_parts_compute_what_casadi_does(
     longest: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Distances from obstacles choose; a long function is a row of parts that pass values on."""
-    monkeypatch.setattr(fours, "LONGEST_OF_NUMBERS", longest)
+    monkeypatch.setattr(printer, "LONGEST_OF_NUMBERS", longest)
     x = ca.SX.sym("x", 3)
     share = ca.fmin(ca.fmax(x[0], 0.25), x[1])
     chosen = ca.if_else(x[2] > 0.0, x[0] * share, ca.sin(x[1]))
     function = ca.Function("choice", [x], [ca.vertcat(share, chosen, ca.gradient(share**2 + chosen, x))])
-    made = in_fours(function, function)
+    made = scalars_in_c(function, function)
     assert ("choice_part_1" in made.body) == (longest == 3)
     for given in ([0.5, 2.0, 1.0], [0.1, 2.0, -1.0], [3.0, 2.0, 0.0], [0.25, 0.2, 2.0]):
         numbers = computed_in_c(made, np.array(given), 5, tmp_path)
         assert_allclose(numbers, function(given).full()[:, 0], rtol=1e-15, atol=0)
 
 
-def computed_in_c(kernel: InFours, given: FloatArray, size: int, folder: Path) -> FloatArray:
+def computed_in_c(kernel: PrintedKernel, given: FloatArray, size: int, folder: Path) -> FloatArray:
     """The result of a kernel with one argument, compiled."""
     name = kernel.name()
     target = folder / f"{name}.so"
@@ -222,7 +223,7 @@ def test_calls_of_one_depth_are_made_together(count: int, tmp_path: Path) -> Non
     first = [callee(y[k, :].T) for k in range(count)]
     results = [callee(2 * made) for made in first]
     function = ca.Function("many", [y], [ca.vertcat(*results)])
-    made = in_fours(function, function)
+    made = scalars_in_c(function, function)
     turns = count if count < 3 else -(-count // LANES)
     name = "callee" if count < 3 else "callees"
     assert re.findall(rf"MADE\(many_{name}\)\(.*, (\d+)\);", made.body) == [str(turns)] * 2
@@ -263,7 +264,7 @@ def test_results_that_nobody_asks_for(tmp_path: Path) -> None:
     names = scene_names("wire", model.scene)
     # Sanitizers take the compiler long: it gets the one kernel that is called.
     (igm,) = [kernel for kernel in kernels.kernels(model, names, None) if kernel.name() == names.kernel("igm")]
-    assert isinstance(igm, InFours)
+    assert isinstance(igm, PrintedKernel)
     for file, text in kernel_files.kernel_sources([igm], names).items():
         (tmp_path / file).write_text(text)
     flags = ["-std=c99", "-O0", "-g", "-fsanitize=address,undefined", f"-DSIZE={model.size}"]

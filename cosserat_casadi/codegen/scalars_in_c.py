@@ -1,8 +1,8 @@
-"""Scalar functions as C of our own that computes four alike at once: columns of a Jacobian, and intervals of a rod.
+"""Functions of scalars as C that computes four intervals of a rod, or four columns of a Jacobian, at once.
 
-CasADi writes one number after the other. Here calls of one function that do not wait for each other, those of the
-intervals of a rod, are made four at a time, and so are the columns of a Jacobian (columns.py). Each number comes from
-the same operations in the same order as there, and is the same to the last digit.
+Calls of one function that do not wait for each other, such as those of the intervals of a rod, are made four at a time,
+and so are the columns of a Jacobian (columns.py). Each number comes from the operations of the function in their order,
+and is the same to the last digit as CasADi computes it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from functools import partial
 import casadi as ca
 
 from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
-from cosserat_casadi.codegen.fours_sources import CALL_OF_COLUMNS, COLUMNS, PART_OF_COLUMNS, Callee, InFours, Kernel
 from cosserat_casadi.codegen.listing import (
     Called,
     Computed,
@@ -23,6 +22,14 @@ from cosserat_casadi.codegen.listing import (
     Listing,
     Read,
     UnknownOperationError,
+)
+from cosserat_casadi.codegen.printed_kernels import (
+    CALL_OF_COLUMNS,
+    COLUMNS,
+    PART_OF_COLUMNS,
+    Callee,
+    Kernel,
+    PrintedKernel,
 )
 from cosserat_casadi.codegen.statements import (
     FOURS,
@@ -39,8 +46,8 @@ from cosserat_casadi.codegen.statements import (
 from cosserat_casadi.maths.typing import FloatArray
 
 
-def in_fours(function: ca.Function, signature: ca.Function, arithmetic: Arithmetic = SINGLE) -> InFours:
-    """A scalar function as C of our own.
+def scalars_in_c(function: ca.Function, signature: ca.Function, arithmetic: Arithmetic = SINGLE) -> PrintedKernel:
+    """A function of scalars as C.
 
     Args:
         function: the function.
@@ -58,13 +65,13 @@ def with_calls_in_fours(kernel: ca.Function) -> Kernel:
     if not kernel.is_a("SXFunction") or not kernel.find_functions(0):
         return kernel
     try:
-        return in_fours(kernel, kernel)
+        return scalars_in_c(kernel, kernel)
     except UnknownOperationError:
         return kernel
 
 
-def columns_in_fours(form: ColumnForm, signature: ca.Function) -> InFours:
-    """A Jacobian by columns as C of our own.
+def columns_in_fours(form: ColumnForm, signature: ca.Function) -> PrintedKernel:
+    """A Jacobian by columns as C.
 
     Args:
         form: the Jacobian.
@@ -141,7 +148,7 @@ class _Writing:
         self.callees: dict[str, Callee] = {}
         self.statements = 0
 
-    def result(self) -> InFours:
+    def result(self) -> PrintedKernel:
         """The kernel."""
         tables = ""
         self._write_callees()
@@ -155,7 +162,7 @@ class _Writing:
         self._write_main()
         body = "\n".join(self.functions)
         by_columns = self.form is not None
-        return InFours(self.signature, tables, body, by_columns, self.callees, self.reals, self.statements)
+        return PrintedKernel(self.signature, tables, body, by_columns, self.callees, self.reals, self.statements)
 
     def _write_main(self) -> None:
         """Write the function itself, which is a row of others where it is long."""
@@ -178,7 +185,7 @@ class _Writing:
         self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
 
     def _text_in_part(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """What a value without columns is called outside of variables of a part."""
+        """Text of a value without columns that is in no variable of a part."""
         return f"w[{elsewhere[number]}]" if number in elsewhere else self._text(number)
 
     def _room(self, count: int) -> int:
@@ -197,7 +204,7 @@ class _Writing:
         return found
 
     def _given_to_columns(self) -> list[int]:
-        """Values without columns that those with columns are computed from."""
+        """Values without columns that operations on columns read."""
         given: dict[int, None] = {}
         for number, in_column in enumerate(self.in_column):
             if in_column:
@@ -260,7 +267,7 @@ class _Writing:
             self._append(number)
 
     def _known_by(self, number: int) -> int | tuple[int, ...]:
-        """What tells that a value is there: its batch of calls, or itself."""
+        """Key under which a value is marked as computed: its batch of calls, or its number."""
         value = self.listing.values[number]
         return self.batch_of[value.call].calls if isinstance(value, Called) else number
 
@@ -320,7 +327,7 @@ class _Writing:
         return self.form is not None and isinstance(value, Read) and value.argument == self.form.columns_argument
 
     def _text(self, number: int) -> str | None:
-        """What a value without columns is called outside of variables."""
+        """Text of a value without columns that is in no variable."""
         value = self.listing.values[number]
         if isinstance(value, Constant):
             return self.arithmetic.number(value.value)
@@ -392,7 +399,7 @@ class _Writing:
         return statements
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
-        """What a value is called in the code of columns outside of variables."""
+        """Text of a value that is in no variable of the code of columns."""
         value = self.listing.values[number]
         if number in elsewhere:
             return f"LOAD(passed + {LANES * elsewhere[number]})"
