@@ -1,6 +1,6 @@
-"""What a function as steps on numbered entries is made of: values, steps, what the numbers stand for.
+"""Records of a function as steps on numbered entries: values, steps, and the origins of the numbers.
 
-Every number that is computed has a number of its own: a matrix says of each of its entries which one it is.
+Every entry that is computed has a number, and a matrix lists the numbers of its entries.
 """
 
 from __future__ import annotations
@@ -138,6 +138,10 @@ class Origins:
         """For each number the thing that it is an entry of; 0 for all constants."""
         owners = self._things(numbers)
         return np.where(self._constant[owners], 0, owners)
+
+    def holders(self, numbers: Numbers) -> list[int]:
+        """The things that hold these entries, constants left out."""
+        return [owner for owner in np.unique(self.owners(numbers)).tolist() if owner]
 
     def _things(self, numbers: Numbers) -> Numbers:
         return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1

@@ -18,7 +18,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.codegen.numbered import Numbers, Origins, Program, Step
+from cosserat_casadi.codegen.numbered import Numbers, Program, Step
 from cosserat_casadi.codegen.printed_kernels import Callee, PrintedKernel
 from cosserat_casadi.codegen.products import Product
 from cosserat_casadi.codegen.scalars_in_c import callee, scalars_in_c
@@ -288,16 +288,16 @@ class _Writing:
 
     def _last_use_of(self, numbers: Numbers) -> int:
         """The last unit that reads any of these entries."""
-        return max((self.last_use[owner] for owner in _owners(self.origins, numbers)), default=UNUSED)
+        return max((self.last_use[owner] for owner in self.origins.holders(numbers)), default=UNUSED)
 
     def _last_uses(self) -> dict[int, int]:
         """The last unit that reads each thing."""
         last: dict[int, int] = defaultdict(lambda: UNUSED)
         for k, unit in enumerate(self.units):
-            for owner in _owners(self.origins, _joined(unit.operands)):
+            for owner in self.origins.holders(_joined(unit.operands)):
                 last[owner] = k
         for value in self.program.results.values():
-            for owner in _owners(self.origins, value.numbers):
+            for owner in self.origins.holders(value.numbers):
                 last[owner] = len(self.units)
         return last
 
@@ -504,12 +504,12 @@ def _units(program: Program) -> list[Unit]:
     for step in program.steps:
         together = step.called and (calls[hash(step.function)] >= FEWEST or _stays(step))
         small = step.small and not together and not _is_long(step)
-        needed = _owners(program.origins, _joined([operand.numbers for operand in step.operands]))
+        needed = program.origins.holders(_joined([operand.numbers for operand in step.operands]))
         layer = max((layer_of[owner] + int(owner in large_in) for owner in needed), default=0)
         while len(layers) <= layer:
             layers.append(([], []))
         layers[layer][0 if small else 1].append(step)
-        for owner in _owners(program.origins, _joined([result.numbers for result in step.results])):
+        for owner in program.origins.holders(_joined([result.numbers for result in step.results])):
             layer_of[owner] = layer
             if not small:
                 large_in.add(owner)
@@ -546,11 +546,6 @@ def _is_kernel(step: Step) -> bool:
 def _is_long(step: Step) -> bool:
     """Whether a step on entries takes less code in a loop, and about as long."""
     return step.operation is not None and step.instructions > LONGEST_WITHOUT_LOOP
-
-
-def _owners(origins: Origins, numbers: Numbers) -> list[int]:
-    """The things that entries belong to, but for constants."""
-    return [owner for owner in np.unique(origins.owners(numbers)).tolist() if owner]
 
 
 def _bundles(steps: Sequence[Step]) -> list[list[Step]]:

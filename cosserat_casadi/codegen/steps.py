@@ -89,7 +89,7 @@ class _Reading:
     def _things(self, values: Sequence[Value]) -> set[int]:
         """The things that hold the entries of these values."""
         numbers = np.concatenate([np.zeros(0, dtype=np.int64), *[value.numbers for value in values]])
-        return set(self.origins.owners(numbers).tolist()) - {0}
+        return set(self.origins.holders(numbers))
 
     def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
         """Results of a function of matrices for these arguments."""
