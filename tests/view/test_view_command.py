@@ -12,7 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from cosserat_casadi.accuracy.fixing import with_accuracy
+from cosserat_casadi.scene.writing import scene_text
 from tests.cli.test_locking import LOCKED
+from tests.codegen.contact_libraries import over_bar
 from tests.commands import cosserat
 from tests.conftest import ROOT
 
@@ -46,6 +49,19 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
     assert "WebAssembly" not in page
     assert "Ended." in rest
     assert running.returncode == 130
+
+
+def test_a_scene_in_contact_opens_on_the_modes_of_its_own_inputs(tmp_path: Path) -> None:
+    """A choice for the sliders would take minutes; every answer in the view tells its error."""
+    scene = tmp_path / "bar.toml"
+    scene.write_text(scene_text(with_accuracy(over_bar(), tolerance=1e-3)))
+    command = [*PROGRAM, str(scene), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            assert running.stdout is not None
+            assert "The robot is at" in running.stdout.readline()
+        finally:
+            running.kill()
 
 
 def test_locked_modes_are_told_before_the_page_is_served(tmp_path: Path) -> None:

@@ -31,8 +31,8 @@ def view(
     """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
 
     Modes and nodes are chosen so that the tolerance is met wherever the sliders go, whose ends are those of --range,
-    the scene's [ranges] or [[bounds]], or of the scale of the input. Those that the scene fixes are verified where
-    --range is given.
+    the scene's [ranges] or [[bounds]], or of the scale of the input. Those that the scene fixes are verified, and those
+    in exact contact are chosen, where --range is given.
 
     Only this machine reaches the page, and only who knows its address. Exit codes: 2 refused, 3 not solved, 130 ended.
     """
@@ -46,8 +46,9 @@ def view(
     if is_compiled(viewed_scene):
         find_compiler()
     choice = None
-    if viewed_scene.accuracy.fixed and not asked:
-        # What the scene fixes need not be verified beforehand: every answer tells its error.
+    # Every answer in the view tells its error: modes that the scene fixes need not be verified beforehand, and in exact
+    # contact, where a choice takes up to minutes, modes suit the scene's own inputs.
+    if not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly):
         solution = solve_rods_with_progress(viewed_scene)
         print_locking(Console(stderr=True), locking_note(solution))
     else:
