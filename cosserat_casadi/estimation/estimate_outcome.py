@@ -155,7 +155,7 @@ class Known:
     unseen: dict[str, int]
 
 
-def what_is_known(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
+def information_of(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
     """Covariances, and the directions that the data do not see.
 
     Directions are told in the deviations of the priors, or in typical sizes where an unknown has no prior.

@@ -124,7 +124,7 @@ def identify_scene(
         except SceneError:
             # What was found is told all the same; whoever wants the scene is told why there is none.
             break
-        judged = with_discretisation(fitted, draft, _with_found_inputs(cases, found), tell)
+        judged = with_discretisation(fitted, draft, _with_identified_inputs(cases, found), tell)
         if judged.scene.accuracy == choice.scene.accuracy:
             break
         choice = replace(judged, scene=completed.model_copy(update={"accuracy": judged.scene.accuracy}))
@@ -132,7 +132,7 @@ def identify_scene(
     return replace(found, warnings=(*choice.warnings, *found.warnings))
 
 
-def _with_found_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
+def _with_identified_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
     """The cases that took part, with the inputs that were found for them."""
     by_name = {case.where: case for case in cases}
     added = StartInputs(found.model).added

@@ -95,7 +95,7 @@ class ContactPath(EquilibriumPath):
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
         arrangement = self.arrangements[self.arrangement[index]]
-        found = arrangement.found(self.x[index], float(self.factor[index]))
+        found = arrangement.equilibrium_at(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
     def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:

@@ -15,7 +15,7 @@ from cosserat_casadi import Outcome, Solution, build, export, follow_path, parse
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
-from cosserat_casadi.equilibrium.contact.contact_search import found_at
+from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import ExportError, SceneError
@@ -200,7 +200,7 @@ def test_equations_have_their_exact_derivative(touching: Solution, lying: Soluti
 def test_the_gap_curves_as_its_differences_say(touching: Solution) -> None:
     """How the place slides hangs on it, and so does stability."""
     equations, z = _equations(touching)
-    found = found_at(equations, z, equations.given)
+    found = contact_equilibrium(equations, z, equations.given)
     (touch,) = equations.state.touches
     ((rod, disk),) = pairs(equations.scene)
     step = 2e-3
