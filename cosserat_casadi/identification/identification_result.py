@@ -15,6 +15,7 @@ from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.identification.statistics import Statistics
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.result import Result
 from cosserat_casadi.scene import Scene
 
 OUTLIER = 4.0
@@ -92,8 +93,8 @@ class LeftOut:
     reason: str
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Result):
     """The end of an identification.
 
     Attributes:

@@ -34,6 +34,7 @@ from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.motion.stability_sentences import stability_sentences
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.result import Result
 
 DEFAULT_COUNT = 8
 """Modes that are sought where the caller does not say how many."""
@@ -124,8 +125,8 @@ class Mode:
         return "grows" if self.grows else "decays"
 
 
-@dataclass(frozen=True)
-class Modes:
+@dataclass(frozen=True, repr=False)
+class Modes(Result):
     """Modes about an equilibrium.
 
     Attributes:

@@ -40,7 +40,7 @@ AT_SECTION = 1e-4
 """Distance of a place of contact from a section with a load at which a path that ends has been stopped by it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ContactPath(EquilibriumPath):
     """A path along which contacts come, go, slide and turn from points into lines and back.
 

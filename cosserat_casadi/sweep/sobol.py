@@ -17,6 +17,7 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.result import Result
 from cosserat_casadi.sweep.outcome_table import Sweep
 
 CONFIDENCE = 0.95
@@ -56,8 +57,8 @@ class Estimates:
     total_interval: FloatArray
 
 
-@dataclass(frozen=True)
-class SobolIndices:
+@dataclass(frozen=True, repr=False)
+class SobolIndices(Result):
     """Sobol indices of the results of a sweep.
 
     Attributes:

@@ -22,6 +22,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.result import Result
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -55,8 +56,8 @@ SAME = 1e-6
 """Angles at the tips, rad, that differ by less are those of one equilibrium."""
 
 
-@dataclass(frozen=True)
-class TubeEquilibria:
+@dataclass(frozen=True, repr=False)
+class TubeEquilibria(Result):
     """The equilibria of concentric tubes at the same inputs.
 
     Attributes:

@@ -19,6 +19,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
+from cosserat_casadi.result import Result
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
@@ -69,8 +70,8 @@ class TubeEvent:
         return self.solution.energy - self.snaps_to.energy
 
 
-@dataclass(frozen=True)
-class TubePath:
+@dataclass(frozen=True, repr=False)
+class TubePath(Result):
     """Equilibria of concentric tubes along one input.
 
     Attributes:

@@ -23,8 +23,6 @@ from cosserat_casadi.cli.reports.sobol import print_sobol
 from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.sobol_file import sobol_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweep.outcome_file import record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
@@ -179,7 +177,7 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
 def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
     """Write, draw and print the indices of a sweep that was drawn for them."""
     indices = sobol_indices(swept)
-    write_atomically(file, sobol_text(indices).encode())
+    indices.write(file)
     written = [file]
     if plot is not None:
         # Imported here, because matplotlib is an extra and takes long to load.
