@@ -1,7 +1,7 @@
 """Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
 
 A signal raises KeyboardInterrupt where Python runs. It does not inside a long call of CasADi, and where CasADi has
-called Python what is raised is lost: a thread that hears of signals by itself ends the process then.
+called Python the exception is lost: a thread that hears of signals by itself ends the process then.
 """
 
 from __future__ import annotations

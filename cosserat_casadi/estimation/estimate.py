@@ -50,7 +50,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.sweep.local import available_cores
+from cosserat_casadi.sweeps.local import available_cores
 
 CHUNK = 256
 """Cases that a thread takes at once."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from cosserat_casadi.motion.trajectory import Motion
     from cosserat_casadi.motion.vibration_modes import Modes
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
-    from cosserat_casadi.sweep.outcome_table import Sweep
-    from cosserat_casadi.sweep.sobol import SobolIndices
+    from cosserat_casadi.sweeps.outcome_table import Sweep
+    from cosserat_casadi.sweeps.sobol import SobolIndices
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
     from cosserat_casadi.tubes.tube_path import TubePath
     from cosserat_casadi.tubes.tube_solution import TubeSolution

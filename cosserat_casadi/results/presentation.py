@@ -52,7 +52,7 @@ class Presentation:
 
 
 _MOTION = "results.motion_file:write_motion"
-_SWEEP = "sweep.outcome_file:write_sweep"
+_SWEEP = "sweeps.outcome_file:write_sweep"
 
 PRESENTATIONS = {
     "Solution": Presentation(

@@ -6,8 +6,8 @@ from typing import Any
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.results.json_text import SCHEMA, plain
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.sobol import CONFIDENCE, Estimates, SobolIndices
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.sobol import CONFIDENCE, Estimates, SobolIndices
 
 
 def sweep_result(sweep: Sweep) -> dict[str, Any]:

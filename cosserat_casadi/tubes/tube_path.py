@@ -124,7 +124,7 @@ class TubePath(Result):
 
 
 def follow_tubes(
-    scene: scenes.Scene,
+    subject: scenes.Scene | TubeFunctions,
     name: str,
     to: npt.ArrayLike,
     values: Values = None,
@@ -136,7 +136,7 @@ def follow_tubes(
     """Follow the equilibrium of concentric tubes while one input moves from its value to another.
 
     Args:
-        scene: a scene with tubes.
+        subject: a scene with tubes, followed to its tolerance; or a model, which keeps its steps.
         name: of the input, such as "inner.rotation" or "push.force.z".
         to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
@@ -148,6 +148,7 @@ def follow_tubes(
         SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move; the equilibrium
             to begin at is of another robot, or stands beside values.
     """
+    scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     robot = robot_of(scene)
     if np.size(to) != 1:
         remedy = "name one number of a load, such as push.force.z"
@@ -161,6 +162,8 @@ def follow_tubes(
     if end[index] == start[index]:
         raise SceneError(Problem(name, f"is {end[index]:g} where the path begins", "give another value to go to"))
     way = _Way(robot, name, start, end, first, settings)
+    if isinstance(subject, TubeFunctions):
+        return way.followed(subject.steps, progress)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)

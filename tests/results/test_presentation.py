@@ -24,7 +24,7 @@ from cosserat_casadi import (
     Sweep,
     build,
     discretise,
-    follow_path,
+    follow,
     identify,
     inverse,
     modes_of,
@@ -37,8 +37,8 @@ from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.result import Result
 from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, presentation_of
 from cosserat_casadi.scene import scene_from_dict
-from cosserat_casadi.sweep.outcome_file import read_sweep
-from cosserat_casadi.sweep.sobol import Estimates, SobolIndices
+from cosserat_casadi.sweeps.outcome_file import read_sweep
+from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_path import TubePath
 from cosserat_casadi.tubes.tube_solve import solve_tubes
@@ -62,7 +62,7 @@ def tube_solution() -> Any:
 
 @cache
 def path() -> Any:
-    return follow_path(solution().model, "push.force", [1.0, 0.5, -0.4])
+    return follow(solution().model, "push.force", [1.0, 0.5, -0.4])
 
 
 @cache
@@ -146,7 +146,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Solution": solution,
     "EquilibriumPath": path,
     "Motion": cache(planar_swing),
-    "Modes": cache(lambda: modes_of(solution(), 2)),
+    "Modes": cache(lambda: modes_of(solution(), count=2)),
     "Inverse": inverse_of_a_tip,
     "Identification": identification,
     "Estimate": estimate,
@@ -162,33 +162,18 @@ NO_RESULTS = {
     "Choice",
     "Collocation",
     "Compiled",
-    "CompiledContact",
-    "CompiledContactSolution",
-    "CompiledMotionStage",
-    "CompiledStep",
-    "CompiledTubes",
-    "CompiledTubesSolution",
     "Condensed",
     "Condensing",
     "Discretisation",
     "Horizon",
     "Lifted",
     "LinearModel",
-    "LinearMotion",
-    "Mode",
     "Model",
     "MotionStage",
-    "PathEvent",
     "Problem",
     "Scene",
     "StageEquations",
-    "StepMemory",
-    "StepOptions",
-    "StepSensitivity",
-    "StepState",
     "TargetMiss",
-    "TubeEvent",
-    "TubeModel",
 }
 """Public classes that are inputs, models, compiled solvers, or parts of results."""
 

@@ -93,8 +93,8 @@ def export(
     is one file that other simulators step.
 
     Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
-    [ranges] or [[bounds]], or their scale, or at the load cases of --over; those that the scene fixes are verified
-    there.
+    [ranges] or [[bounds]], or their scale, or at the load cases of --over. Modes and nodes that the scene fixes are
+    verified there.
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)

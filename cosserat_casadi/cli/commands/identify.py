@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cosserat_casadi import identification
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -26,7 +27,6 @@ from cosserat_casadi.cli.reports.identification import (
 )
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.identification import identify_scene
 from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.identification_file import identification_text
 from cosserat_casadi.scene import Scene, read_scene
@@ -75,7 +75,7 @@ def identify(
         def show_step(step: int, cost: float) -> None:
             display.show_share(step / (step + 10))
 
-        found = identify_scene(
+        found = identification.identify(
             checked_scene, hold_out=hold_out, starts=starts, report=display.show_stage, progress=show_step
         )
     if output is not None:

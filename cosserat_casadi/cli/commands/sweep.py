@@ -24,13 +24,13 @@ from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, 
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.sweep.outcome_file import record_file
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.shards import Shard
-from cosserat_casadi.sweep.sobol import sobol_indices
-from cosserat_casadi.sweep.table import Table, read_table
+from cosserat_casadi.sweeps.outcome_file import record_file
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.shards import Shard
+from cosserat_casadi.sweeps.sobol import sobol_indices
+from cosserat_casadi.sweeps.table import Table, read_table
 
 
 def sweep(

@@ -10,7 +10,7 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.sweep.sobol import SobolIndices
+from cosserat_casadi.sweeps.sobol import SobolIndices
 
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:

@@ -14,9 +14,9 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.sweep.outcome_file import STABLE, record_file
-from cosserat_casadi.sweep.outcome_table import ERROR, Sweep
-from cosserat_casadi.sweep.shards import Shard
+from cosserat_casadi.sweeps.outcome_file import STABLE, record_file
+from cosserat_casadi.sweeps.outcome_table import ERROR, Sweep
+from cosserat_casadi.sweeps.shards import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
 """Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""

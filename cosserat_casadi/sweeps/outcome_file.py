@@ -20,7 +20,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import atomic_file, atomic_folder, check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.outcome_table import LABELS, WITHIN, Sweep
+from cosserat_casadi.sweeps.outcome_table import LABELS, WITHIN, Sweep
 
 DATASET = ".dataset"
 """Suffix of a folder of Parquet files."""

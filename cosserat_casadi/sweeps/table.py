@@ -14,8 +14,8 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
-from cosserat_casadi.sweep.grid_file import grid, paired_draws, read_tables
-from cosserat_casadi.sweep.scratch import BLOCK, MEMORY, Scratch
+from cosserat_casadi.sweeps.grid_file import grid, paired_draws, read_tables
+from cosserat_casadi.sweeps.scratch import BLOCK, MEMORY, Scratch
 
 
 @dataclass(frozen=True)

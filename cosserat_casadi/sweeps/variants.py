@@ -2,8 +2,8 @@
 
 A column that may be an input is made one, whatever the scene's own ``inputs`` say, and all else is baked in: a load or
 a cable, the length of a rod, its base. Other columns are what ``--set`` takes, such as ``wire.section.radius``. In a
-table of many rows those that may be parameters of a model are arguments of one compiled library; what is left makes
-another scene for each set of values, which rows of equal values share.
+table of many rows the columns that may be parameters of a model are arguments of one compiled library. Other columns
+make another scene for each set of values, which rows of equal values share.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
-from cosserat_casadi.sweep.arguments import accepts_parameters, argument_columns, extreme_rows
-from cosserat_casadi.sweep.sampling import farthest_rows
-from cosserat_casadi.sweep.table import Table
+from cosserat_casadi.sweeps.arguments import accepts_parameters, argument_columns, extreme_rows
+from cosserat_casadi.sweeps.sampling import farthest_rows
+from cosserat_casadi.sweeps.table import Table
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
 """Tables of a scene that are no property of what is computed."""
@@ -43,7 +43,7 @@ class Variant:
     """Rows of one scene.
 
     Attributes:
-        scene: the scene, its inputs those that are swept, and its parameters those that its library takes.
+        scene: the scene, its inputs those that are swept, and its parameters the arguments of its library.
         rows: their numbers in the table, shape (k,).
     """
 

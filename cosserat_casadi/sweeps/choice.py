@@ -20,11 +20,11 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.row_model import solved_poses
-from cosserat_casadi.sweep.sampling import representative_rows
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.table import Table
-from cosserat_casadi.sweep.variants import Variants
+from cosserat_casadi.sweeps.row_model import solved_poses
+from cosserat_casadi.sweeps.sampling import representative_rows
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.table import Table
+from cosserat_casadi.sweeps.variants import Variants
 
 CHECKED = 6
 """Rows that are solved again at the end."""
@@ -139,8 +139,8 @@ def check(
         progress: told what is being done.
 
     Returns:
-        for each row its number from 0, the estimated error, how far its poses lie from those found in Python, relative
-        to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
+        for each row its number from 0, the estimated error, the distance of its poses from a solution in Python,
+        relative to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
     """
     candidates = scratch.joined(_converged(outcomes, poses, scratch), 4)
     if not candidates.size:

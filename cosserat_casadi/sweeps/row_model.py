@@ -19,7 +19,7 @@ from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.scene import parse_scene
-from cosserat_casadi.sweep.outcome_table import ENDINGS
+from cosserat_casadi.sweeps.outcome_table import ENDINGS
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.rows import RowLibrary
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.arguments import COMPILED_FROM
-from cosserat_casadi.sweep.variants import Variants
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.variants import Variants
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""

@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.result import Result
-from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
 
 CONFIDENCE = 0.95
 """Share of bootstrap estimates within the intervals."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.sweep.work import Chunk
+from cosserat_casadi.sweeps.work import Chunk
 
 MOST = 100_000
 """Shards into which a sweep may be cut."""

@@ -14,7 +14,7 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.result import Result
-from cosserat_casadi.sweep.scratch import MEMORY, Scratch
+from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
 """How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
@@ -35,7 +35,7 @@ class Sweep(Result):
         found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert, errors.
         values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
         outcomes: how each row ended, as its place in LABELS, shape (rows,).
-        record: what was computed, how and how well, as plain data: the file beside the results; empty without it.
+        record: scene, discretisation and accuracy, as plain data: the file beside the results; empty without it.
         scratch: where values and outcomes lie.
     """
 

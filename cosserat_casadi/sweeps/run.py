@@ -19,25 +19,26 @@ from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import build
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.arguments import COMPILED_FROM
-from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
-from cosserat_casadi.sweep.cluster import Cluster
-from cosserat_casadi.sweep.local import Cores
-from cosserat_casadi.sweep.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.potential import rows_with_potential
-from cosserat_casadi.sweep.row_model import RowModel
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.shards import Shard, named, shard_files
-from cosserat_casadi.sweep.store import Memory, Store, StoreChangedError
-from cosserat_casadi.sweep.table import Table, read_table, table_of
-from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
-from cosserat_casadi.sweep.variants import Variants, variants_of
-from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.choice import Choice, Progress, check, choose
+from cosserat_casadi.sweeps.cluster import Cluster
+from cosserat_casadi.sweeps.local import Cores
+from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.potential import rows_with_potential
+from cosserat_casadi.sweeps.row_model import RowModel
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.shards import Shard, named, shard_files
+from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
+from cosserat_casadi.sweeps.table import Table, read_table, table_of
+from cosserat_casadi.sweeps.tubes import TubeRows, tube_results, tube_variants
+from cosserat_casadi.sweeps.variants import Variants, variants_of
+from cosserat_casadi.sweeps.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
 IN_LANES_FROM = 1_250_000
 """Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it. For
@@ -174,8 +175,8 @@ def plan_sweep(
     return plan
 
 
-def sweep_scene(
-    scene: Scene,
+def sweep(
+    subject: Scene | Model,
     table: Table | Mapping[str, npt.ArrayLike] | str | os.PathLike[str],
     output: str | os.PathLike[str] | None = None,
     *,
@@ -189,7 +190,7 @@ def sweep_scene(
     """Solve a scene for every row of a table of inputs and parameters.
 
     Args:
-        scene: a validated scene.
+        subject: a validated scene; or a model of rods, whose modes and nodes are kept.
         table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
         output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
             was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
@@ -208,13 +209,15 @@ def sweep_scene(
         ExportError: there is no C compiler, or it fails.
         ClusterError: the cluster cannot be used.
     """
+    if isinstance(subject, Model):
+        subject = with_discretisation(subject.scene, subject.discretisation)
     file = None if output is None else Path(output)
     scratch = Scratch.beside(file)
     if isinstance(table, Mapping):
         table = table_of(table, scratch)
     elif not isinstance(table, Table):
         table = read_table(Path(table), scratch=scratch)
-    plan = plan_sweep(scene, table, file, samples, stability=stability, estimate_errors=estimate_errors)
+    plan = plan_sweep(subject, table, file, samples, stability=stability, estimate_errors=estimate_errors)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -229,7 +232,7 @@ def run_sweep(
 
     Args:
         plan: of :func:`plan_sweep`.
-        scheduler: as in :func:`sweep_scene`.
+        scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
     """
@@ -271,7 +274,7 @@ def run_shard(
     Args:
         plan: of :func:`plan_sweep`, with an output.
         shard: which part.
-        scheduler: as in :func:`sweep_scene`.
+        scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
 
@@ -309,7 +312,7 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
 
     Args:
         plan: of :func:`plan_sweep`, with an output.
-        progress: as in :func:`sweep_scene`.
+        progress: as in :func:`sweep`.
 
     Raises:
         SceneError: shards are missing or not done, of another sweep, or of different discretisations.
