@@ -125,7 +125,7 @@ def _check_plot(plot: Path | None) -> None:
 
 @contextmanager
 def collect_problems(problems: list[Problem]) -> Iterator[None]:
-    """Keep the problems of what is refused inside, and let the checks go on.
+    """Keep the problems of a refusal inside, and let the checks go on.
 
     A user sees every fault of a command line at once.
     """

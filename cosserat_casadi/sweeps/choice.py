@@ -30,7 +30,7 @@ CHECKED = 6
 """Rows that are solved again at the end."""
 
 Progress = Callable[[str, int, int], None]
-"""Told what is being done, how much of it is done, and of how much."""
+"""Told the work under way, how much of it is done, and of how much."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def choose(variants: Variants, table: Table, samples: int, progress: Progress) -
         variants: scenes and inputs of the table.
         table: the rows.
         samples: rows to look at.
-        progress: told what is being done.
+        progress: told the work under way.
     """
     accuracy = variants.entries[0].scene.accuracy
     if accuracy.fixed:
@@ -136,7 +136,7 @@ def check(
         outcomes: how rows ended, 0 where they hold an equilibrium, shape (rows,).
         poses: of their tips and bodies, shape (rows, 7 tips and bodies).
         scratch: where arrays with an entry for each row lie.
-        progress: told what is being done.
+        progress: told the work under way.
 
     Returns:
         for each row its number from 0, the estimated error, the distance of its poses from a solution in Python,

@@ -114,7 +114,7 @@ def solved_poses(solution: Solution) -> FloatArray:
 
 
 def error_numbers(estimate: float | None) -> list[float]:
-    """Columns :data:`ERRORS` of a row; what is not known is NaN, and so is the verdict, which the sweep passes."""
+    """Columns :data:`ERRORS` of a row; an unknown error is NaN, and so is the verdict, which the sweep passes."""
     return [np.nan if estimate is None else estimate, np.nan]
 
 

@@ -75,7 +75,7 @@ class Plan:
 
     @property
     def identity(self) -> str:
-        """What tells this sweep from others: the same identity gives the same results."""
+        """Identity of the sweep: the same identity gives the same results."""
         words = [
             version("cosserat-casadi"),
             scene_text(self.scene),
@@ -114,7 +114,7 @@ class Plan:
 
     @property
     def part(self) -> Path | None:
-        """The file of what is done, until all is."""
+        """The file of the finished rows, until all are finished."""
         if self.output is None:
             return None
         return self.output.with_name(f"{self.output.name}.part")
@@ -202,7 +202,7 @@ def sweep(
             potential.
         estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
             not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
-        progress: told what is being done, how much of it is done, and of how much.
+        progress: told the work under way, how much of it is done, and of how much.
 
     Raises:
         SceneError: with every fault of table and output.
@@ -228,7 +228,7 @@ def run_sweep(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Do what a plan says, or what is left of it; of a finished one, read the results.
+    """Do the work of a plan, or the rest of it; of a finished one, read the results.
 
     Args:
         plan: of :func:`plan_sweep`.
@@ -267,7 +267,7 @@ def run_shard(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """Do what is left of one shard of a sweep, and keep it beside the file of the results; returns its rows.
+    """Do the rest of one shard of a sweep, and keep it beside the file of the results; returns its rows.
 
     Where the file of the results has the whole sweep already nothing is done.
 
@@ -408,7 +408,7 @@ def _ignore(doing: str, done: int, total: int) -> None:
 
 
 def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
-    """What does the work."""
+    """The workers: cores of this machine, or a cluster."""
     if scheduler is None:
         return Cores(cores)
     if cores is not None:
@@ -489,7 +489,7 @@ def _tasks(
 
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
-    """What solves a chunk in Python: a model for each variant that it has rows of."""
+    """Solver of a chunk in Python: a model for each variant that it has rows of."""
     if plan.scene.tubes:
         tubes = TubeRows(scene_text(plan.scene), plan.stability, plan.estimate_errors)
         return [(tubes, plan.variants.inputs[chunk.rows])]
@@ -517,7 +517,7 @@ def _sweep(
         choice: its discretisation.
         work: its chunks.
         answered: for each of them its number and its results, in any order.
-        progress: told what is being done.
+        progress: told the work under way.
     """
     swept = len(plan.table.columns)
     result_names = plan.columns[swept:]

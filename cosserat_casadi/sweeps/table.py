@@ -39,7 +39,7 @@ class Table:
     scratch: Scratch = MEMORY
 
     def where_of(self, row: int) -> str:
-        """What a refusal calls a row."""
+        """Name of a row in a refusal."""
         if self.lines is None:
             return f"{self.where}, row {row + 1}"
         return f"{self.where}, line {int(self.lines[row])}"

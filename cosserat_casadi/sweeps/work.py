@@ -1,4 +1,4 @@
-"""The work of a sweep in chunks: what is done at once, kept at once, and done again by nobody."""
+"""The work of a sweep in chunks: rows that are solved together, kept together, and never solved again."""
 
 from __future__ import annotations
 

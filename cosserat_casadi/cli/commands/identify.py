@@ -33,7 +33,7 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
 ENDED_EARLY = "The numbers are those at which the search ended."
-"""What a scene that is written all the same says of itself."""
+"""The sentence in a scene that is written although the identification failed."""
 
 
 def identify(

@@ -103,7 +103,7 @@ def _check_input(
         settings: values of it to change.
         name: the input.
         text: its value, as TOML.
-        problems: what was refused before.
+        problems: the refusals so far.
 
     Raises:
         SceneError: with those problems and every fault of the scene, the input and its value.

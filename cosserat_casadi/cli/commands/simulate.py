@@ -94,7 +94,7 @@ def simulate(
 def _check_files(
     output: Path | None, plot: Path | None, animation: Path | None, speed: float, problems: list[Problem]
 ) -> None:
-    """Add what is wrong with the files that are to be written, before time is spent on a simulation."""
+    """Add the faults of output files, before time is spent on a simulation."""
     if output is not None:
         with collect_problems(problems):
             check_writable(output, "--output")
@@ -124,7 +124,7 @@ def _check_scene(
         scene_file: the scene.
         settings: values of it to change.
         start: a result file.
-        problems: what was refused before.
+        problems: the refusals so far.
 
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.

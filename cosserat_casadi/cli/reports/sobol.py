@@ -1,4 +1,4 @@
-"""What ``sweep --sobol`` prints."""
+"""The report of ``sweep --sobol``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cosserat_casadi.sweeps.sobol import SobolIndices
 
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:
-    """Print the indices of every result, and what they do not rest on."""
+    """Print the indices of every result, and the draws that they leave out."""
     table = Table()
     for heading in ("result", "input"):
         table.add_column(heading, no_wrap=True)
