@@ -83,6 +83,7 @@ def inverse(subject: scenes.Scene | Model, **options: Any) -> Inverse:
     """
     if isinstance(subject, Model):
         return inverse_model(subject, **options)
+    refuse_tubes(subject)
     (found,) = inverse_rows(subject, [subject.targets], **options)
     return found
 

@@ -19,6 +19,7 @@ from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.identification.model_error import with_model_error
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.spelling import counted
@@ -94,6 +95,7 @@ def identify(
     """
     if isinstance(subject, Model):
         return identify_model(subject, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    refuse_tubes(subject)
     scene = subject
     refuse_obstacles(scene, "an identification")
     refuse_row_parameters(scene)

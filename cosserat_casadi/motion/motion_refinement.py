@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.simulate import (
@@ -189,6 +190,7 @@ def simulate(
     """
     if isinstance(subject, Model):
         return simulate_model(subject, start=start, simulation=simulation, progress=progress)
+    refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
     coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)

@@ -28,6 +28,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
@@ -303,6 +304,7 @@ def modes_of(
         return modes_at(subject, count, report=report)
     if isinstance(subject, Model):
         return modes_at(solve(subject, values, progress=progress), count, report=report)
+    refuse_tubes(subject)
     scene = subject
     count = DEFAULT_COUNT if count is None else count
     refuse_obstacles(scene, "an analysis of modes")

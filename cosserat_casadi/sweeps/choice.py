@@ -140,7 +140,8 @@ def check(
 
     Returns:
         for each row its number from 0, the estimated error, the distance of its poses from a solution in Python,
-        relative to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
+        relative to the length, whether it is stable; None where the row has no equilibrium in
+        Python, or where stability has no meaning.
     """
     candidates = scratch.joined(_converged(outcomes, poses, scratch), 4)
     if not candidates.size:

@@ -22,6 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM
@@ -209,7 +210,8 @@ def sweep(
         ExportError: there is no C compiler, or it fails.
         ClusterError: the cluster cannot be used.
     """
-    if isinstance(subject, Model):
+    if not isinstance(subject, Scene):
+        refuse_tubes(subject)
         subject = with_discretisation(subject.scene, subject.discretisation)
     file = None if output is None else Path(output)
     scratch = Scratch.beside(file)
