@@ -16,7 +16,7 @@ import typer
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import EquilibriumPath, Solution, follow_path, solve  # noqa: E402
+from cosserat_casadi import EquilibriumPath, Solution, follow, solve  # noqa: E402
 from cosserat_casadi.plots.figure import figure_class, save_figure  # noqa: E402
 from tests.catalogue import cases  # noqa: E402
 from tests.catalogue.checks import (  # noqa: E402
@@ -128,7 +128,7 @@ def column() -> tuple[Any, list[Row]]:
     model = fine_model(cases.table({}, cases.tip()), 16, 40)
 
     def path(branch: int, to: float = ratio) -> EquilibriumPath:
-        return follow_path(model, "tip.force", [0, 0, -to * cases.EULER], branch=branch)
+        return follow(model, "tip.force", [0, 0, -to * cases.EULER], branch=branch)
 
     for branch, colour in ((0, GREY), (1, BLUE), (-1, BLUE), (2, RED), (-2, RED)):
         found = path(branch)

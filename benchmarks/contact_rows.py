@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi import build, follow_path, read_scene
+from cosserat_casadi import build, follow, read_scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweeps.row_model import RowModel
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "rod_over_bar.toml"
 
@@ -36,7 +36,7 @@ def main() -> None:
     each = (time.process_time() - begun - alone) / (options.rows - 1)
     print(f"from the unloaded scene {alone:.2f} s, from the row before {each:.2f} s: {1 / each:.1f} rows a second")
     begun = time.process_time()
-    path = follow_path(build(scene), "push.force", [0.0, 0.0, -2.0])
+    path = follow(build(scene), "push.force", [0.0, 0.0, -2.0])
     events = ", ".join(f"{event.kind} at {event.factor:.6f}" for event in path.events)
     print(f"a path of {len(path.factor)} points with its events ({events}): {time.process_time() - begun:.1f} s")
 

@@ -23,7 +23,7 @@ import typer
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate_scene, solve  # noqa: E402
+from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate, solve  # noqa: E402
 from cosserat_casadi.accuracy.levels import SPARE_NODES  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.model.discretise import discretise, nodes_for  # noqa: E402
@@ -191,7 +191,7 @@ def timed_motion(scene: Scene) -> Timed:
         KeyboardInterrupt: it was stopped before any motion was computed to its end.
     """
     began = time.process_time()
-    motion = simulate_scene(scene, progress=partial(_stop_late, began))
+    motion = simulate(scene, progress=partial(_stop_late, began))
     return Timed(motion, time.process_time() - began)
 
 

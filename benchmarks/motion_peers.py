@@ -23,7 +23,7 @@ from doc_tables import put, table
 from motion_rivals import INTERVAL, LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
 from rich.progress import Progress
 
-from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate_scene
+from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate
 from cosserat_casadi.motion.pose_series import tip_poses
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion
@@ -56,7 +56,7 @@ def ours() -> Iterator[Rival]:
     for tolerance in TOLERANCES:
         words = f"tolerance {tolerance:.0e}"
         begin = time.process_time()
-        motion = simulate_scene(released(tolerance))
+        motion = simulate(released(tolerance))
         took = time.process_time() - begin
         if not motion.converged:
             yield Rival(OURS, f"{words}: {motion.outcome.name.lower()}, estimate {motion.error_estimate:.0e}")
@@ -132,7 +132,7 @@ def cells(row: Rival, true: Paths) -> list[str]:
 
 def without_shear(rows: Sequence[Rival], true: Paths) -> str:
     """What the equations of a cable without shear and extension leave out, and its errors against those equations."""
-    stiff = simulate_scene(released(1e-4, "kirchhoff")).tip("rod").position
+    stiff = simulate(released(1e-4, "kirchhoff")).tip("rod").position
     own = [f"{error(row.tip, stiff):.1e}" for row in rows if row.package == "MuJoCo" and row.tip is not None]
     return (
         f"MuJoCo's equations: a rod that neither shears nor stretches is {error(stiff, true):.1e} of the length away, "

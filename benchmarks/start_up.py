@@ -24,7 +24,7 @@ COSSERAT = "from cosserat_casadi.cli.main import main; main()"
 BASIS = "import casadi, numpy"
 """Of what every import is measured beyond."""
 
-SOLVER = "from cosserat_casadi import read_scene, solve_scene"
+SOLVER = "from cosserat_casadi import read_scene, solve"
 """What a program loads that solves a scene."""
 
 
@@ -49,7 +49,7 @@ class Start:
 
 STARTS = (
     Start("import cosserat_casadi", f"{BASIS}; import cosserat_casadi", (), 0.25, beyond_basis=True),
-    Start("from cosserat_casadi import solve_scene", f"{BASIS}; {SOLVER}", (), None, beyond_basis=True),
+    Start("from cosserat_casadi import solve", f"{BASIS}; {SOLVER}", (), None, beyond_basis=True),
     Start("cosserat --help", COSSERAT, ("--help",), 0.5),
     Start("cosserat solve nitinol_wire", COSSERAT, ("solve", "examples/nitinol_wire.toml"), 1.0),
     Start("cosserat solve helical_tendon", COSSERAT, ("solve", "examples/helical_tendon.toml"), 1.5),

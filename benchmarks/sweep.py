@@ -22,10 +22,10 @@ from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.sweep import run
-from cosserat_casadi.sweep.run import plan_sweep, run_sweep
-from cosserat_casadi.sweep.table import table_of
-from cosserat_casadi.sweep.variants import variants_of
+from cosserat_casadi.sweeps import run
+from cosserat_casadi.sweeps.run import plan_sweep, run_sweep
+from cosserat_casadi.sweeps.table import table_of
+from cosserat_casadi.sweeps.variants import variants_of
 
 SCENE = Path(__file__).parents[1] / "examples" / "nitinol_wire.toml"
 DISCRETISATION = ["accuracy.modes=[6,5,1]", "accuracy.nodes=8", 'accuracy.rotation="magnus6"']

@@ -19,7 +19,7 @@ import numpy as np
 import typer
 from doc_tables import put, table
 
-from cosserat_casadi import Identification, Solution, identify_scene, modes_of_scene, read_scene, scene_from_dict, solve
+from cosserat_casadi import Identification, Solution, identify, modes_of, read_scene, scene_from_dict, solve
 from cosserat_casadi.identification import Row
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.figure import figure_class, write_figure
@@ -137,7 +137,7 @@ def validated(report: Callable[[str], None] = lambda name: None) -> Validation:
     validation = Validation()
     for study in STUDIES:
         report(study.name)
-        validation.found[study.name] = identify_scene(read_scene(SCENES / f"{study.name}.toml"))
+        validation.found[study.name] = identify(read_scene(SCENES / f"{study.name}.toml"))
     validation.arm = predicted_arm(validation.found["silicone_arm"])
     modulus = validation.found["silicone_beam"].value("block.material.youngs_modulus")
     validation.periods = [
@@ -202,7 +202,7 @@ def block_period(mass: float, modulus: float) -> float:
     body["mass"] = max(mass, body["mass"])
     body["centre_of_mass"] = [0, 0, 0.015]
     tables["accuracy"]["tolerance"] = 1e-3
-    modes = modes_of_scene(scene_from_dict(tables), count=1)
+    modes = modes_of(scene_from_dict(tables), count=1)
     return 2 * np.pi / modes.modes[0].angular_frequency
 
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 import inspect
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
+from importlib import import_module
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, get_overloads
 
 import cosserat_casadi
 import cosserat_casadi.control
@@ -38,6 +39,7 @@ class Concept:
         control_names: public names of ``cosserat_casadi.control`` that the package itself does not have.
         environment_names: public classes of ``cosserat_casadi.environments``.
         estimation_names: public names of ``cosserat_casadi.estimation``.
+        module_names: further names that users import from their modules, as ``module.name`` of the package.
     """
 
     file: str
@@ -47,6 +49,7 @@ class Concept:
     control_names: tuple[str, ...] = ()
     environment_names: tuple[str, ...] = ()
     estimation_names: tuple[str, ...] = ()
+    module_names: tuple[str, ...] = ()
 
 
 CONCEPTS = (
@@ -58,7 +61,6 @@ CONCEPTS = (
             "read_scene",
             "parse_scene",
             "scene_from_dict",
-            "with_exact_contact",
             "Scene",
             "SceneError",
             "Problem",
@@ -75,21 +77,18 @@ CONCEPTS = (
         "solving",
         "Solving",
         "Equilibria, and discretisations within a tolerance.",
-        ("solve_scene", "solve", "Solution", "Outcome", "SolveError", "choose", "Choice"),
+        ("solve", "Solution", "Outcome", "SolveError", "choose", "Choice"),
     ),
     Concept(
         "motion",
         "Motion",
         "What moves: simulation to a tolerance, vibration modes, linear models; see [motion](../motion.md).",
         (
-            "simulate_scene",
             "simulate",
             "Motion",
             "MotionOutcome",
-            "modes_of_scene",
             "modes_of",
             "Modes",
-            "Mode",
             "linearise",
             "LinearModel",
         ),
@@ -98,7 +97,7 @@ CONCEPTS = (
         "paths",
         "Paths",
         "Equilibria while one input grows; see [paths](../paths.md).",
-        ("follow_scene_path", "follow_path", "EquilibriumPath", "PathEvent", "PathOutcome"),
+        ("follow", "EquilibriumPath", "PathOutcome"),
     ),
     Concept(
         "tubes",
@@ -109,31 +108,21 @@ CONCEPTS = (
             "TubeSolution",
             "TubeEquilibria",
             "TubePath",
-            "TubeEvent",
-            "TubeModel",
-            "CompiledTubes",
-            "CompiledTubesSolution",
         ),
     ),
     Concept(
         "sweeps",
         "Sweeps",
         "A scene solved for every row of a table; see [sweeps](../sweeps.md).",
-        ("sweep_scene", "read_sweep", "Sweep", "sobol_table", "sobol_indices", "SobolIndices"),
+        ("sweep", "read_sweep", "Sweep", "sobol_table", "sobol_indices", "SobolIndices"),
     ),
     Concept(
         "control",
         "Inverse problems and control",
         "Inputs for targets, and rods in optimal-control problems; see [control](../control.md).",
         (
-            "inverse_scene",
             "inverse",
             "Inverse",
-            "compiled_stage",
-            "compiled_motion_stage",
-            "CompiledMotionStage",
-            "acados_expressions",
-            "write_acados",
         ),
         (
             "TargetMiss",
@@ -152,12 +141,19 @@ CONCEPTS = (
             "Condensed",
             "Horizon",
         ),
+        module_names=(
+            "codegen.stage.compiled_stage",
+            "codegen.motion_stage.compiled_motion_stage",
+            "codegen.motion_stage.CompiledMotionStage",
+            "codegen.acados.acados_expressions",
+            "codegen.acados.write_acados",
+        ),
     ),
     Concept(
         "identification",
         "Identification",
         "Numbers of a scene from measurements; see [identify](../identify.md).",
-        ("identify_scene", "identify", "Identification"),
+        ("identify", "Identification"),
     ),
     Concept(
         "estimation",
@@ -176,18 +172,22 @@ CONCEPTS = (
             "export",
             "load",
             "Compiled",
-            "CompiledContact",
-            "CompiledContactSolution",
-            "StepState",
-            "StepMemory",
-            "StepOptions",
-            "CompiledStep",
-            "StepSensitivity",
-            "LinearMotion",
-            "MotionStatus",
-            "export_page",
-            "write_fmu",
             "ExportError",
+        ),
+        module_names=(
+            "codegen.contact.compiled.CompiledContact",
+            "codegen.contact.compiled.CompiledContactSolution",
+            "codegen.tubes.compiled.CompiledTubes",
+            "codegen.tubes.compiled.CompiledTubesSolution",
+            "codegen.compiled_motion.StepState",
+            "codegen.compiled_motion.StepMemory",
+            "codegen.compiled_motion.StepOptions",
+            "codegen.compiled_motion.CompiledStep",
+            "codegen.compiled_motion.StepSensitivity",
+            "codegen.compiled_motion.LinearMotion",
+            "codegen.motion_status.MotionStatus",
+            "codegen.fmu.write_fmu",
+            "page.page.export_page",
         ),
     ),
     Concept(
@@ -196,21 +196,6 @@ CONCEPTS = (
         "A moving robot for reinforcement learning; see [other programs](../simulators.md).",
         (),
         environment_names=("ReachEnvironment",),
-    ),
-    Concept(
-        "results",
-        "Results",
-        "Solutions, motions, modes, paths and inverse problems as plain data and as files.",
-        (
-            "result",
-            "write_result",
-            "motion_result",
-            "write_motion",
-            "modes_result",
-            "path_result",
-            "inverse_result",
-            "identification_result",
-        ),
     ),
 )
 """All pages; every public name is on exactly one."""
@@ -250,7 +235,8 @@ def _contents() -> str:
 
 def _names(concept: Concept) -> tuple[str, ...]:
     """All names of a page."""
-    return (*concept.names, *concept.control_names, *concept.environment_names, *concept.estimation_names)
+    late = [name.rpartition(".")[2] for name in concept.module_names]
+    return (*concept.names, *concept.control_names, *concept.environment_names, *concept.estimation_names, *late)
 
 
 def _page(concept: Concept) -> str:
@@ -263,6 +249,9 @@ def _page(concept: Concept) -> str:
         parts += _entry(cosserat_casadi.environments, name)
     for name in concept.estimation_names:
         parts += _entry(cosserat_casadi.estimation, name)
+    for place in concept.module_names:
+        module, _, name = place.rpartition(".")
+        parts += _entry(import_module(f"cosserat_casadi.{module}"), name)
     return "\n\n".join(parts) + "\n"
 
 
@@ -330,7 +319,12 @@ def _function_of(attribute: Any) -> FunctionType | None:
 
 
 def _signature(name: str, function: FunctionType) -> str:
-    """A call with its annotations, a parameter a line where it is long."""
+    """A call with its annotations, a parameter a line where it is long; of a function with overloads each of them."""
+    calls = [_call(name, overload) for overload in get_overloads(function) or [function]]
+    return "```text\n" + "\n\n".join(calls) + "\n```"
+
+
+def _call(name: str, function: Callable[..., Any]) -> str:
     signature = inspect.signature(function)
     parameters = []
     for parameter in signature.parameters.values():
@@ -344,7 +338,7 @@ def _signature(name: str, function: FunctionType) -> str:
     if len(line) > 100:
         listed = "".join(f"    {parameter},\n" for parameter in parameters)
         line = f"{name}(\n{listed}) -> {returned}"
-    return f"```text\n{line}\n```"
+    return line
 
 
 def _parameter(parameter: inspect.Parameter) -> str:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cosserat_casadi import Compiled, Model, StepMemory, StepState, build, export, load, scene_from_dict
+from cosserat_casadi import Compiled, Model, build, export, load, scene_from_dict
+from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -19,7 +19,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import Model, Solution, build, compiled_stage, read_scene, solve, solve_scene
+from cosserat_casadi import Model, Solution, build, read_scene, solve
+from cosserat_casadi.codegen.stage import compiled_stage
 
 SCENE = Path(__file__).parent / "two_section_robot.toml"
 TENDONS = ["lower_east", "lower_north", "upper_west", "upper_south"]
@@ -221,8 +222,8 @@ class Run:
 
 def robots() -> tuple[Solution, Model]:
     """What the controller knows, solved at the scene's tensions, and a finer robot whose payload is an input."""
-    known = solve_scene(read_scene(SCENE, [f"inputs={TENSIONS}", "accuracy.tolerance=1e-3"]))
-    fine = solve_scene(read_scene(SCENE, [f"inputs={TENSIONS}", "accuracy.tolerance=1e-6"]))
+    known = solve(read_scene(SCENE, [f"inputs={TENSIONS}", "accuracy.tolerance=1e-3"]))
+    fine = solve(read_scene(SCENE, [f"inputs={TENSIONS}", "accuracy.tolerance=1e-6"]))
     free = read_scene(SCENE, [f"inputs={[*TENSIONS, 'payload.force']}"])
     return known, build(free, fine.model.discretisation)
 

@@ -33,7 +33,7 @@ def test_the_page_leads_to_the_compiled_stage() -> None:
 
 
 LONG = {
-    'inverse_scene(read_scene("examples/finger_to_point.toml"))': "control/test_inverse.py",
+    'inverse(read_scene("examples/finger_to_point.toml"))': "control/test_inverse.py",
     'compiled_stage(model, "wire_stage"': "codegen/test_stage.py",
     "import rockit": "control/test_rockit.py",
 }

@@ -17,7 +17,7 @@ MOST_MODULES = 90
 PROGRAM = """
 import sys
 from pathlib import Path
-from cosserat_casadi import read_scene, solve_scene
+from cosserat_casadi import read_scene, solve
 
 ROOT = str(Path("cosserat_casadi").resolve())
 scene = read_scene("examples/nitinol_wire.toml")
@@ -36,7 +36,7 @@ def watch(frame, event, argument):
         stack.pop()
 
 sys.setprofile(watch)
-solve_scene(scene)
+solve(scene)
 sys.setprofile(None)
 print(deepest, len(modules))
 """

@@ -29,7 +29,7 @@ from cosserat_casadi import (
     Solution,
     build,
     export,
-    follow_path,
+    follow,
     identify,
     inverse,
     load,
@@ -38,7 +38,6 @@ from cosserat_casadi import (
     scene_from_dict,
     simulate,
     solve,
-    solve_scene,
 )
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.cli.main import REFUSED, app, run
@@ -469,12 +468,12 @@ def test_jacobian_vs_differences(solution: Solution) -> None:
 
 def test_path(name: str, solution: Solution) -> None:
     value = 1.2 * solution.model.inputs.unpack(solution.inputs)[CAUSES[name]]
-    path = follow_path(solution.model, CAUSES[name], value)
+    path = follow(solution.model, CAUSES[name], value)
     assert path.outcome.name == "CONVERGED", path.message
 
 
 def test_modes(solution: Solution) -> None:
-    found = modes_of(solution, 2)
+    found = modes_of(solution, count=2)
     assert len(found.modes) == 2
     assert all(mode.eigenvalue.imag > 0.0 for mode in found.modes)
 
@@ -603,7 +602,7 @@ def test_a_section_that_is_not_round_has_no_contact() -> None:
 def test_solution_vs_initial_value() -> None:
     """The clamp's wrench, the pull of the spring and the moment of the muscle lead to the tip that is reported."""
     scene = parse_scene(FINGER.replace("modes = 3, nodes = 6, tolerance = 0.05", "tolerance = 1e-6"))
-    solution = solve_scene(scene)
+    solution = solve(scene)
     assert solution.converged
     tip = solution.tip().position[0]
     pull = STIFFNESS * (ANCHOR - tip)
@@ -724,7 +723,7 @@ def test_exact_contact_with_the_endless_bar_vs_beams() -> None:
             }
         ],
     }
-    found = solve_scene(scene_from_dict(tables))
+    found = solve(scene_from_dict(tables))
     assert found.converged, found.message
     free = push * at**2 * (3 * 0.3 - at) / 6
     expected = (free - 0.05 * gap) * 3 / at**3

@@ -79,7 +79,7 @@ for module in cosserat_casadi._NAMES:
 EXTRAS = ("dask", "distributed", "matplotlib", "pyarrow", "scipy")
 """Packages that no program needs which solves a scene."""
 
-BEYOND_A_SOLVE = "bench codegen control environments estimation identification motion page plots sweep tubes view"
+BEYOND_A_SOLVE = "bench codegen control environments estimation identification motion page plots sweeps tubes view"
 """Rooms that an equilibrium of rods needs nothing of."""
 
 UNUSED_BY_A_SOLVE = (*EXTRAS, *(f"cosserat_casadi.{room}" for room in BEYOND_A_SOLVE.split()))
@@ -109,10 +109,10 @@ def test_program_loads_no_more_than_it_needs(program: str, unwanted: tuple[str, 
 
 def test_solve_loads_no_more_than_it_needs() -> None:
     program = """
-from cosserat_casadi import read_scene, result, solve_scene
+from cosserat_casadi import read_scene, solve
 from cosserat_casadi.scene.load_records import TipWrench
 from cosserat_casadi.scene.measurements import MeasuredPosition
-assert result(solve_scene(read_scene('examples/nitinol_wire.toml')))['converged']
+assert solve(read_scene('examples/nitinol_wire.toml')).to_dict()['converged']
 assert TipWrench.__pydantic_complete__
 # The schema of a record is made when the first of its kind is read.
 assert not MeasuredPosition.__pydantic_complete__

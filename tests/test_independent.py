@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
-from cosserat_casadi import Scene, Solution, build, discretise, solve, solve_scene
+from cosserat_casadi import Scene, Solution, build, discretise, solve
 from cosserat_casadi.rod.actuation import Actuation, StrainSum
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
@@ -81,7 +81,7 @@ def test_solution_vs_initial_value_integration(name: str) -> None:
 def test_error_estimate_vs_initial_value_integration(name: str) -> None:
     """Honest: at most ten times too small."""
     wanted = SCENES[name].model_copy(update={"accuracy": SCENES[name].accuracy.model_copy(update={"tolerance": 1e-5})})
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     fine = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))
     tip, true = solution.tip(), fine.tip()
     length = wanted.rods[0].length
@@ -101,7 +101,7 @@ def unit_rod(**changes: Any) -> dict[str, Any]:
 
 
 def solved(*loads: dict[str, Any], **changes: Any) -> Solution:
-    found = solve_scene(scene(*loads, rods=[unit_rod(**changes)], accuracy={"tolerance": 1e-10}))
+    found = solve(scene(*loads, rods=[unit_rod(**changes)], accuracy={"tolerance": 1e-10}))
     assert found.converged, found.message
     return found
 

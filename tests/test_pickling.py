@@ -22,18 +22,17 @@ from cosserat_casadi import (
     Problem,
     Scene,
     SceneError,
-    StepMemory,
     build,
     discretise,
     export,
-    follow_path,
+    follow,
     linearise,
     load,
     modes_of,
     simulate,
     solve,
-    solve_scene,
 )
+from cosserat_casadi.codegen.compiled_motion import StepMemory
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.tubes.tube_solve import solve_tubes
@@ -122,7 +121,7 @@ def test_motion_with_its_dense_output() -> None:
 
 def test_contact() -> None:
     wall = {"name": "wall", "kind": "plane", "point": [0.1, 0, 0], "normal": [-1, 0, 0]}
-    solution = solve_scene(scene(push(force=[1.5, 0, 0]), strain="planar", obstacles=[wall]))
+    solution = solve(scene(push(force=[1.5, 0, 0]), strain="planar", obstacles=[wall]))
     assert solution.contacts
     copied = by_pickle(solution)
     assert np.array_equal(copied.tip().position, solution.tip().position)
@@ -130,7 +129,7 @@ def test_contact() -> None:
 
 
 def test_path_modes_and_linear_model(model: Model) -> None:
-    path = follow_path(model, "push.force", [0.2, 0.0, -0.1])
+    path = follow(model, "push.force", [0.2, 0.0, -0.1])
     assert np.array_equal(by_pickle(path).x, path.x)
     modes = modes_of(solve(model))
     assert np.array_equal(by_pickle(modes).spectrum, modes.spectrum)

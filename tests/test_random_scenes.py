@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Scene, build, discretise, scene_from_dict, solve
 from tests.families import mostly_slow
 from tests.pose_errors import distance_between, pose_error
 from tests.reference.random_scenes import random_scene
@@ -20,7 +20,7 @@ def with_tolerance(seed: int, tolerance: float) -> Scene:
 def check(seed: int) -> bool:
     """Solve one scene; whether it converged. What did not must say so, what did must be right."""
     wanted = with_tolerance(seed, 1e-4)
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert np.all(np.isfinite(solution.x))
     if not solution.converged:
         assert solution.message.startswith(("No equilibrium", "An equilibrium of the discrete model"))
@@ -55,7 +55,7 @@ def test_random_scenes_vs_shooting(seed: int) -> None:
     except NoEquilibriumError:
         pytest.skip("the oracle finds no equilibrium")
     wanted = with_tolerance(seed, 1e-9)
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged, solution.message
     length, tip, base = wanted.rods[0].length, solution.tip(), solution.base_wrench()
     error = pose_error((tip.position[0], tip.rotation[0]), (oracle.tip_position, oracle.tip_rotation), length)

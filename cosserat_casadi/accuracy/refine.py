@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy.typing as npt
 
@@ -42,16 +42,19 @@ from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable
-from cosserat_casadi.model.build import build
+from cosserat_casadi.equilibrium.solve import NONE_STABLE, Start, check_potential, noted_unstable
+from cosserat_casadi.equilibrium.solve import solve as solve_model
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.rod.discretisation import Discretisation
 
 if TYPE_CHECKING:
+    from cosserat_casadi.tubes.tube_functions import TubeFunctions
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 LARGEST_SHAPE_ERROR = 0.1
@@ -76,41 +79,82 @@ FINER_NODES = 10
 """Intervals that are added to those of the user to estimate their error."""
 
 
-def solve_scene(
-    scene: scenes.Scene,
+@overload
+def solve(
+    subject: scenes.Scene,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
     stable: bool = False,
     progress: Progress | None = None,
     report: Report | None = None,
-) -> Solution | TubeSolution:
-    """Equilibrium of a scene to its tolerance, on the cheapest discretisation found that meets it.
+) -> Solution | TubeSolution: ...
 
-    The discretisation suits these inputs: a strain that they do not excite has one mode. Where
-    the scene fixes modes or nodes they are used as they are, and only the error is estimated.
+
+@overload
+def solve(
+    subject: Model,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
+    *,
+    parameters: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
+    start: Start = None,
+    method: str = "continuation",
+    stable: bool = False,
+    settings: ContinuationSettings | None = None,
+    progress: Progress | None = None,
+    raise_on_failure: bool = False,
+    estimate_error: bool = True,
+) -> Solution: ...
+
+
+@overload
+def solve(
+    subject: TubeFunctions, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None
+) -> TubeSolution: ...
+
+
+def solve(subject: scenes.Scene | Model | TubeFunctions, values: Any = None, **options: Any) -> Any:
+    """Equilibrium of a scene, or of a model on its discretisation.
+
+    A scene is solved to its tolerance, on the cheapest discretisation that meets it. The discretisation suits these
+    inputs: a strain that they do not excite has one mode. Where the scene fixes modes or nodes they are used as they
+    are, and only the error is estimated.
 
     A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one. Concentric tubes
     are straight at first, become curved where they are, and are loaded then; see :func:`all_equilibria` for the others.
 
     Args:
-        scene: a validated scene.
-        values: inputs by name; those not named keep the scene's values.
-        stable: whether a free rod is relaxed too, under loads that have a potential; of tubes whether the stable
-            equilibrium of least energy is wanted where the one found is not stable.
-        progress: told the share of the load path of rods that is done.
-        report: told the discretisation of rods being solved.
+        subject: a validated scene, or a model of it: of rods, or of concentric tubes.
+        values: inputs by name, where an input that is left out keeps the scene's value; of a model all stacked too.
+        options: named as follows.
+        stable: whether a free rod is relaxed too, under loads that have a potential; of a scene with tubes whether the
+            stable equilibrium of least energy is wanted where the first equilibrium is not stable.
+        progress: receives the share of the load path of rods that is done.
+        report: receives the discretisation of rods, in words; of a scene.
+        parameters: of a model of rods, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
+        start: of a model of rods, like all that follow: where to start; by default the unloaded rod. From a solution
+            of the same model, continuation follows the inputs from those of the solution to the wanted ones, and so
+            stays on its branch; of a scene with obstacles, the contacts of the solution are tried first. From unknowns
+            of shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
+        method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
+            at the full load and may find another branch, or none.
+        settings: limits of the continuation.
+        raise_on_failure: raise instead of returning what did not converge.
+        estimate_error: whether the error that modes and nodes leave is estimated; it costs about a Newton step.
 
     Raises:
         SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
             would have to hold a free rod.
+        SolveError: no equilibrium was found and ``raise_on_failure`` is set.
+        ValueError: the method is unknown, or the start is one of another model.
     """
-    if not scene.tubes:
-        return solve_rods(scene, values, stable=stable, progress=progress, report=report)
+    if isinstance(subject, Model):
+        return solve_model(subject, values, **options)
+    if isinstance(subject, scenes.Scene) and not subject.tubes:
+        return solve_rods(subject, values, **options)
     # Imported here, because no scene of rods needs the modules of tubes.
-    from cosserat_casadi.tubes.tube_equilibria import stable_tubes
-    from cosserat_casadi.tubes.tube_solve import solve_tubes
+    from cosserat_casadi.tubes.tube_equilibria import tubes_at_rest
 
-    return stable_tubes(scene, values) if stable else solve_tubes(scene, values)
+    return tubes_at_rest(subject, values, **options)
 
 
 def solve_rods(
@@ -121,7 +165,7 @@ def solve_rods(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Solution:
-    """As :func:`solve_scene`, of rods alone.
+    """As :func:`solve`, of a scene of rods.
 
     Raises:
         SceneError: likewise, and where the scene has tubes.

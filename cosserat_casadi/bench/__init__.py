@@ -1,1 +1,1 @@
-"""The work–precision bench: for one scene, the error of every method against what it costs."""
+"""The work–precision bench: for one scene, the error of every method against its cost."""

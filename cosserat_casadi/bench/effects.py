@@ -1,4 +1,4 @@
-"""What each effect of a scene costs in time: the compiled scene with it, and without it."""
+"""Time that each effect of a scene costs: the compiled scene with it, and without it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def effect_times(
     Args:
         scene: the scene.
         compiler: command of a C compiler.
-        progress: told what is compiled, how many programs are, and of how many.
+        progress: told the program that is compiled, how many programs are, and of how many.
     """
     with ExitStack() as stack:
         # The compiler works on all of them at once; nothing is timed until it is done.

@@ -78,7 +78,7 @@ def _draw_front(axes: Any, rows: Sequence[Measurement]) -> None:
 
 
 def _draw_method(axes: Any, method: str, rows: Sequence[Measurement]) -> None:
-    """All points of a method, faint, and a line through those that its own points do not beat."""
+    """All points of a method, faint, and a line through the points that no other point of it beats."""
     if not rows:
         return
     colour, marker, words = STYLES[method]

@@ -20,7 +20,7 @@ DIAL = "dial"
 """The method that picks modes, intervals and integrator for a tolerance."""
 
 METHODS = (*TRANSPORTS, DIAL)
-"""What may be measured."""
+"""Quantities that can be measured."""
 
 MODES = (2, 3, 4, 5, 6, 8, 10, 13, 17)
 """Modes of every admitted strain."""
@@ -108,7 +108,7 @@ def _spread(items: Sequence[Item], count: int | None) -> list[Item]:
 
 
 def method_problems(names: Sequence[str], points: int | None) -> list[Problem]:
-    """What is wrong with the wanted methods and the number of points."""
+    """Faults of the wanted methods and of the number of points."""
     known = ", ".join(METHODS)
     unknown = [name for name in names if name not in METHODS]
     problems = [Problem("--methods", f"{name!r} is no method", f"out of {known}") for name in unknown]

@@ -32,12 +32,12 @@ PATIENCE = 0.05
 
 @dataclass(frozen=True)
 class Measurement:
-    """A row of the table; what was not measured is not a number.
+    """A row of the table; a number that was not measured is NaN.
 
     Attributes:
         name: of the candidate.
         method: one of the grid's methods.
-        strain: strain model where it is not the scene's own.
+        strain: strain model where it differs from the scene's.
         tolerance: what the dial was set to.
         modes: of every rod and strain, such as "6 6 4".
         intervals: of every rod and element.

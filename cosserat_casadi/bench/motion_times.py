@@ -1,4 +1,4 @@
-"""What inertia and damping cost in time, in CasADi's virtual machine: equations of motion beside those of statics."""
+"""Time that inertia and damping cost, in CasADi's virtual machine: equations of motion beside those of statics."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class MotionTimes:
 
 @dataclass(frozen=True)
 class MotionCost:
-    """What the equations of motion of a model cost.
+    """Times of the equations of motion of a model.
 
     Attributes:
         price: their scalar operations.

@@ -1,4 +1,4 @@
-"""What a bench is asked for, refused where it cannot be done, and carried out."""
+"""The plan of a bench: refused where it cannot be done, and carried out."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.plots.figure import figure_class
 
 Report = Callable[[str, int, int], None]
-"""Told what is being done, how many points are done, and of how many (0: not known)."""
+"""Told the work under way, how many points are done, and of how many (0: not known)."""
 
 
 @dataclass
@@ -35,9 +35,9 @@ class Plan:
     Attributes:
         scene: the scene.
         compiler: command of a C compiler.
-        candidates: points to be measured, those that an earlier bench measured left out.
+        candidates: points to be measured, without the points that an earlier bench measured.
         output: folder for the files; None for none.
-        rows: what is measured, with what an earlier bench left.
+        rows: measurements, with the rows of an earlier bench.
     """
 
     scene: scenes.Scene

@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.model.build import Model
 
 NAME = "timed"
-"""What the symbols of the program begin with."""
+"""Beginning of the symbols of the program."""
 
 FLAGS = ("-O2", "-std=c99")
 
@@ -28,7 +28,7 @@ REPEAT = 500
 
 @dataclass(frozen=True)
 class Times:
-    """What the program measured of itself, µs.
+    """Times that the program measured, µs.
 
     Attributes:
         cold: solve from the unloaded rod.

@@ -35,7 +35,7 @@ _TYPES = get_type_hints(Measurement)
 
 
 def fingerprint(scene: scenes.Scene) -> str:
-    """What tells rows of one scene and version from those of another: the beginning of a hash."""
+    """Identity of the rows of one scene and version: the beginning of a hash."""
     # Rows do not depend on the title, nor on an accuracy that every candidate brings itself.
     plain = scene.model_copy(update={"title": "", "accuracy": scenes.Accuracy()})
     words = [
@@ -127,7 +127,7 @@ def _measurement(row: dict[str, str]) -> Measurement:
 
 
 def _cell(value: Any) -> str:
-    """A value as a cell; an empty one for what is not a number."""
+    """A value as a cell; an empty cell for NaN."""
     if not isinstance(value, float):
         return str(value)
     if not isfinite(value):

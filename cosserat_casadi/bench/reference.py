@@ -1,4 +1,4 @@
-"""What errors are measured against: a far finer discretisation of the same scene, solved in the same run.
+"""The reference of the errors: a far finer discretisation of the same scene, solved in the same run.
 
 The tests hold it to shooting on every scene that shooting knows.
 """
@@ -33,7 +33,7 @@ MORE_NODES = 8
 
 @dataclass(frozen=True)
 class RodState:
-    """What of a rod is compared: poses of sections, and the wrench of its clamp.
+    """Compared quantities of a rod: poses of sections, and the wrench of its clamp.
 
     Attributes:
         length: undeformed length, m.
@@ -106,7 +106,7 @@ def find_reference(scene: scenes.Scene) -> Reference:
 
 
 def states(solution: Solution) -> dict[str, RodState]:
-    """What is compared of a solution."""
+    """Compared quantities of a solution."""
     rods = {}
     for name, discrete_rod in solution.model.discrete.rods.items():
         sections = watched_sections(solution.model.scene, name)

@@ -66,7 +66,7 @@ class Session:
                 trial.close()
 
     def problem(self, strain: str) -> tuple[scenes.Scene, Reference]:
-        """The scene with a strain model, the empty name for its own, and the reference of that."""
+        """The scene with a strain model, the empty name for the scene's model, and its reference."""
         if not strain:
             return self.scene, self.reference
         scene = with_strain(self.scene, strain)
@@ -75,7 +75,7 @@ class Session:
         return scene, self._references[strain]
 
     def facts(self) -> dict[str, Any]:
-        """What a reader of the rows must know, as data."""
+        """Facts that a reader of the rows needs, as data."""
         return {"reference": {"method": self.reference.method}, "strain_models": self.model_distances}
 
     @property
@@ -91,7 +91,7 @@ def with_strain(scene: scenes.Scene, strain: str) -> scenes.Scene:
     """The scene with another strain model for all rods.
 
     Raises:
-        SceneError: a stiffness is not given.
+        SceneError: a stiffness is missing.
     """
     tables = scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
     tables["rods"] = [{**rod, "strain": strain} for rod in tables["rods"]]

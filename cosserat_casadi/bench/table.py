@@ -49,7 +49,7 @@ ROOM = 178
 
 
 def print_bench(console: Console, title: str, reference: Reference, rows: Sequence[Measurement]) -> None:
-    """The table with its front marked, what errors are measured against, and why what is missing is missing."""
+    """The table with its front marked, the reference of the errors, and the reasons for missing rows."""
     console.print(f"[bold]{escape(title or 'Untitled scene')}[/]", highlight=False)
     columns = WIDE if console.width >= ROOM else NARROW
     console.print(_table(rows, columns))
@@ -82,7 +82,7 @@ def _table(rows: Sequence[Measurement], columns: Sequence[str]) -> Table:
 
 
 def _order(row: Measurement) -> tuple[str, bool, float]:
-    """The scene's own strain model first, then the largest error; what has none stands last."""
+    """The scene's own strain model first, then the largest error; rows without error stand last."""
     unknown = not isfinite(row.pose_error)
     return row.strain, unknown, -row.pose_error
 
@@ -118,7 +118,7 @@ def _power(value: float) -> str:
 
 
 def _digits(value: float) -> str:
-    """Two digits behind the point of what is small, none of what is large."""
+    """Two digits behind the point of small numbers, none of large numbers."""
     if not isfinite(value):
         return "–"
     if value < 10:
@@ -129,7 +129,7 @@ def _digits(value: float) -> str:
 
 
 def print_effects(console: Console, rods: Sequence[str], whole: Times | str, parts: Mapping[str, Times | str]) -> None:
-    """What each effect adds to the compiled times, µs.
+    """Time that each effect adds to the compiled times, µs.
 
     Args:
         console: where to print.
@@ -164,7 +164,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
 def print_motion_times(
     console: Console, unknowns: int, statics: Price, motion: MotionCost, undamped: MotionCost | None = None
 ) -> None:
-    """What inertia and damping add to a residual and to a Jacobian.
+    """Time that inertia and damping add to a residual and to a Jacobian.
 
     Args:
         console: where to print.

@@ -1,1 +1,1 @@
-"""The command line: one file a command, what they print, and what they show while they run."""
+"""The command line: one file a command, their reports, and their progress."""

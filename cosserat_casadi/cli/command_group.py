@@ -54,7 +54,7 @@ class CommandGroup(TyperGroup):
             self.add_command(TyperCommand(name, help=line))
 
     def resolve_command(self, context: Any, arguments: list[str]) -> tuple[str | None, Any, list[str]]:
-        """The command that arguments begin with, and the arguments that are its own."""
+        """The command that arguments begin with, and the arguments behind it."""
         name, command, rest = super().resolve_command(context, arguments)
         if name in LINES:
             command = load_command(name)

@@ -4,7 +4,7 @@ REFUSED = 2
 """The input is refused, nothing was written."""
 
 NOT_FOUND = 3
-"""No equilibrium was found, or the error is above the tolerance; what was written says so."""
+"""No equilibrium was found, or the error is above the tolerance; the output says so."""
 
 NOT_WRITTEN = 4
 """A file or standard output could not be written, as on a full disk; nothing half-written stays."""

@@ -118,7 +118,7 @@ def run(command: Callable[..., object]) -> int:
 
 
 def _failed(console: Console, error: Exception) -> int:
-    """Print why a command could not do what it was asked for; return its exit code.
+    """Print why a command failed; return its exit code.
 
     Raises:
         Exception: the error itself, where it is none that a user can do something about.
@@ -164,7 +164,7 @@ def _stopped() -> int:
 
 
 def _system_sentence(error: OSError) -> str:
-    """What the system says, and of which file; without one it is standard output or a temporary file."""
+    """The message of the system with the file; without a file it is standard output or a temporary file."""
     if error.filename is None:
         return f"Standard output or a temporary file could not be written: {error.strerror}"
     return f"{error.filename}: {error.strerror}"

@@ -34,7 +34,7 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
     """Lower and upper end by column of what ``--range`` asks for.
 
     Raises:
-        SceneError: with every fault: what is no input or parameter, has no two finite ends, or stands twice.
+        SceneError: with every fault: a name that is unknown or stands twice; a range without two finite ends.
     """
     if not ranges:
         return {}
@@ -125,7 +125,7 @@ def _check_plot(plot: Path | None) -> None:
 
 @contextmanager
 def collect_problems(problems: list[Problem]) -> Iterator[None]:
-    """Keep the problems of what is refused inside, and let the checks go on.
+    """Keep the problems of a refusal inside, and let the checks go on.
 
     A user sees every fault of a command line at once.
     """

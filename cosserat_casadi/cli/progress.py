@@ -1,4 +1,4 @@
-"""What a running command shows on standard error, and how it is interrupted."""
+"""The progress of a running command on standard error, and its interruption."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def solve_display(command: str) -> Iterator[SolveDisplay]:
     """A bar for a solve; an interrupt inside ends the command with its exit code.
 
     Args:
-        command: what is being done, such as "Solving".
+        command: the work under way, such as "Solving".
     """
     with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task("Building the model", total=1.0)
@@ -148,7 +148,7 @@ def count_display(description: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def sweep_display() -> Iterator[CountCallback]:
-    """A bar for the stages of a sweep, one after the other, each with a rate of its own."""
+    """A bar for the stages of a sweep, one after the other, each with its rate."""
     with progress_bar(RateColumn()) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task("Reading the table", total=None)
         shown_stage = ""
@@ -167,11 +167,11 @@ def sweep_display() -> Iterator[CountCallback]:
 
 
 def count_reporter(bar: Progress, description: str) -> CountCallback:
-    """Shows what is being done, how much of it is done, and of how much, on a bar that is there.
+    """Shows the work under way, how much of it is done, and of how much, on an existing bar.
 
     Args:
         bar: where to show it.
-        description: of what is done before the first report.
+        description: of the work before the first report.
     """
     task = bar.add_task(description, total=None)
 

@@ -66,7 +66,7 @@ def page_title(page: Path) -> str:
 
 
 def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
-    """What else an example reads or speaks of.
+    """Other files that an example reads or mentions.
 
     Tables that a scene names, and what their folder says of source and licence; modules that a program imports from a
     folder beside it; scenes and sources in C whose names stand in a program, its modules, or a table of a sweep.
@@ -89,7 +89,7 @@ def _words(file: Path) -> set[str]:
 
 
 def _title(file: Path) -> str:
-    """What a file says of itself: the title of a scene, else its first comment; the first line of a program."""
+    """Description of a file by itself: the title of a scene, else its first comment; the first line of a program."""
     text = file.read_text(encoding="utf-8")
     if file.suffix == ".py":
         doc = ast.get_docstring(ast.parse(text)) or ""

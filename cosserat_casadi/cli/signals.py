@@ -1,7 +1,7 @@
 """Ctrl-C and SIGTERM: both end a command with a sentence, and with nothing half-written, within a second.
 
 A signal raises KeyboardInterrupt where Python runs. It does not inside a long call of CasADi, and where CasADi has
-called Python what is raised is lost: a thread that hears of signals by itself ends the process then.
+called Python the exception is lost: a thread that hears of signals by itself ends the process then.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ GRACE = 0.7
 """Time that a command has after a signal to end by itself, s."""
 
 LONG_GRACE = 30.0
-"""The same for one that writes what it has, such as a motion as far as it came."""
+"""The same for a command that writes partial results, such as the beginning of a motion."""
 
 LOOKS = 0.05
 """Time between two looks at whether it is over, s."""
 
 _received: list[int] = []
-"""Those that have come, in their order."""
+"""Signals that have come, in their order."""
 
 _temporary_folders: list[str] = []
-"""Folders made for what is temporary: one at the most."""
+"""Folders for temporary files: one at the most."""
 
 _unhurried = threading.Event()
-"""Whether the command writes what it has after a signal."""
+"""Whether the command writes its partial results after a signal."""
 
 _said = threading.Event()
 """Whether the user has been told that the command was stopped."""
@@ -52,7 +52,7 @@ _saying = threading.Lock()
 
 
 def install_handlers() -> None:
-    """Turn the signals into KeyboardInterrupt, so that what is unfinished is removed on the way out."""
+    """Turn the signals into KeyboardInterrupt, so that unfinished files are removed on the way out."""
     for number in SIGNALS:
         signal.signal(number, _interrupt)
     sys.unraisablehook = _report_unraisable
@@ -61,7 +61,7 @@ def install_handlers() -> None:
 def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
     """End the process where a command has not ended by itself some time after a signal, or at a second one.
 
-    What is temporary lies in one folder from now on, which is removed.
+    Temporary files lie in one folder from now on, which is removed.
 
     Args:
         sentence: printed on standard error then.
@@ -81,7 +81,7 @@ def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
 
 
 def remove_temporary_files() -> None:
-    """Remove the folder of what is temporary, where the process ends without its last rites."""
+    """Remove the folder of temporary files, where the process ends without its last rites."""
     for folder in _temporary_folders:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -102,7 +102,7 @@ def say_once(sentence: str) -> None:
 
 
 def take_time() -> None:
-    """Let the command that runs write what it has after a signal."""
+    """Let the command that runs write its partial results after a signal."""
     _unhurried.set()
 
 

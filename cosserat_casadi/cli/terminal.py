@@ -30,7 +30,7 @@ PLAIN = {
     "≥": ">=",
     "→": "->",
 }
-"""What stands for a letter that the terminal does not know."""
+"""Substitutes for letters that the terminal does not know."""
 
 HANDLER = "cosserat_plain"
 """Name of the error handler that writes it."""
@@ -75,7 +75,7 @@ def _open_missing_streams() -> None:
 
 
 class _Dropping(io.FileIO):
-    """A file that forgets what it cannot take: how a command ends is said by its exit code too."""
+    """A file that drops text that it cannot take: how a command ends is said by its exit code too."""
 
     def write(self, content: Any) -> int:
         """Write a content, as far as that goes."""
@@ -103,7 +103,7 @@ def flush_streams() -> None:
 
 
 def silence_output() -> None:
-    """Drop what is still to be written to standard output: its reader is gone, or its disk full.
+    """Drop the rest of standard output: its reader is gone, or its disk full.
 
     Python would try once more at its end, and print a traceback.
     """
@@ -115,7 +115,7 @@ def silence_output() -> None:
 
 
 def _plain_letters(error: UnicodeError) -> tuple[str, int]:
-    """The handler: plain letters for those that an encoding lacks, and where to go on."""
+    """The handler: plain letters in place of letters that an encoding lacks, and where to go on."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     letters = error.object[error.start : error.end]
@@ -135,7 +135,7 @@ def _is_superscript(letter: str) -> bool:
 
 
 def _plain_letter(letter: str) -> str:
-    """What stands for one letter; a question mark where nothing does."""
+    """The substitute for one letter; a question mark where there is none."""
     if letter in PLAIN:
         return PLAIN[letter]
     match unicodedata.name(letter, "").split():

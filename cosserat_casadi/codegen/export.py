@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
@@ -40,7 +41,7 @@ from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 
 def export(
-    model: Model | TubeFunctions,
+    model: Scene | Model | TubeFunctions,
     directory: str | os.PathLike[str],
     name: str | None = None,
     *,
@@ -54,10 +55,11 @@ def export(
     period: float | None = None,
     estimate_errors: bool = True,
 ) -> Path:
-    """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
+    """Write a scene or a model as a folder of C99 sources: equations with Jacobians, solver, demo, build file, README.
 
     Args:
-        model: what to export, with its discretisation; of concentric tubes, with its steps.
+        model: of rods, with its discretisation, or of concentric tubes, with its steps; or a scene, which is exported
+            as the model that :func:`cosserat_casadi.solve` solves it with.
         directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
         name: what every symbol begins with, a C identifier.
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
@@ -80,9 +82,11 @@ def export(
         the folder.
 
     Raises:
-        ExportError: the name, the folder, a motion, the stability, the contact or the period is refused; nothing was
-            written.
+        ExportError: a scene has no equilibrium at its inputs; or the name, the folder, a motion, the stability, the
+            contact or the period is refused. Nothing was written.
     """
+    if isinstance(model, Scene):
+        model, error_estimate = _solved(model)
     asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
     if isinstance(model, TubeFunctions):
         options = {f"--{word}": wanted for word, wanted in asked.items()}
@@ -114,6 +118,18 @@ def export(
         )
     write_folder(folder, files, stale)
     return folder
+
+
+def _solved(scene: Scene) -> tuple[Model | TubeFunctions, float | None]:
+    """The model that a scene is solved with at its inputs, and the estimated error there.
+
+    Raises:
+        ExportError: there is no equilibrium.
+    """
+    solution = solve(scene)
+    if not solution.converged:
+        raise ExportError(Problem("scene", solution.message, "change its inputs, or export a model"))
+    return solution.model, solution.error_estimate
 
 
 def check_export(directory: Path, name: str) -> set[str]:

@@ -2,8 +2,7 @@
 
 from cosserat_casadi.control.condensing import Condensed, Condensing, Horizon
 from cosserat_casadi.control.embedding import Lifted, embedded, lifted
-from cosserat_casadi.control.inverse import inverse
-from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.control.inverse_accuracy import inverse
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.judgement import judged
 from cosserat_casadi.control.margin import stability_margin
@@ -24,7 +23,6 @@ __all__ = [
     "embedded",
     "gauss",
     "inverse",
-    "inverse_scene",
     "judged",
     "lifted",
     "motion_stage",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any, overload
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
+from cosserat_casadi.control.inverse import inverse as inverse_model
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses
@@ -36,22 +38,53 @@ Targets = tuple[scenes.Target, ...]
 """Targets that are to be met at once."""
 
 
-def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report | None = None) -> Inverse:
-    """Inputs for which a scene meets its targets, with modes and nodes that meet its tolerance there.
+@overload
+def inverse(subject: scenes.Scene, *, stable: bool = False, report: Report | None = None) -> Inverse: ...
 
-    The equilibrium at these inputs is solved with more modes too. Where that moves the poses by more than half of the
-        tolerance, the search goes on with those modes. Where the scene fixes modes or nodes, the error is only
-        estimated: targets count as met where the target error and this estimate are both within the tolerance.
+
+@overload
+def inverse(
+    subject: Model,
+    *,
+    start: Solution | None = None,
+    stable: bool = False,
+    starts: int = STARTS,
+    estimate_error: bool = True,
+) -> Inverse: ...
+
+
+def inverse(subject: scenes.Scene | Model, **options: Any) -> Inverse:
+    """Inputs for which a scene, or a model, meets its targets.
+
+    Of several solutions it is one near the scene's own inputs. Where targets cannot all be met, within the bounds or
+    at all, the weighted sum of squared target errors is least, as far as a local method can tell.
+
+    A scene has modes and nodes that meet its tolerance at the inputs that result: the equilibrium there is solved with
+    more modes too, and where that moves the poses by more than half of the tolerance, the search goes on with these
+    modes. Where the scene fixes modes or nodes, the error is only estimated: targets count as met where the target
+    error and this estimate are both within the tolerance.
 
     Args:
-        scene: a validated scene with targets.
-        stable: as in :func:`inverse`.
-        report: told the discretisation.
+        subject: a validated scene with targets, and with inputs that it lists or bounds; or a model of it.
+        options: named as follows.
+        stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
+            once. For loads that have a potential.
+        report: told the discretisation; of a scene.
+        start: of a model, like all that follow: equilibrium to start from; by default the one at the scene's own
+            inputs, brought into bounds.
+        starts: further starts where a target error remains: scattered, by a fixed seed, over the inputs that are
+            bounded on both sides; the best end counts. 0 for none.
+        estimate_error: whether the error that modes and nodes leave at the resulting inputs is estimated; targets count
+            as met where it is within the tolerance too.
 
     Raises:
-        SceneError: as in :func:`inverse`.
+        SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
+            without a potential.
     """
-    (found,) = inverse_rows(scene, [scene.targets], stable=stable, report=report)
+    if isinstance(subject, Model):
+        return inverse_model(subject, **options)
+    refuse_tubes(subject)
+    (found,) = inverse_rows(subject, [subject.targets], **options)
     return found
 
 
@@ -66,7 +99,7 @@ def inverse_rows(
     """Inputs for each of many sets of targets, every model built once for all rows that need it.
 
     A row starts from the nearest one that has met its targets, the first from the scene's own inputs; the order is
-    that of nearness. Modes and nodes are chosen as in :func:`inverse_scene`, for each row.
+    that of nearness. Modes and nodes are chosen as in :func:`inverse`, for each row.
 
     Args:
         scene: a validated scene.

@@ -13,6 +13,7 @@ from cosserat_casadi.control.target_errors import target_errors, wanted_poses, w
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.result import Result
 
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
 """How the message of an unstable result begins."""
@@ -21,8 +22,8 @@ NOT_STABLE = " No stable equilibrium was found that comes as near."
 """How it ends where a stable one was wanted."""
 
 
-@dataclass(frozen=True)
-class Inverse:
+@dataclass(frozen=True, repr=False)
+class Inverse(Result):
     """Inputs found for targets.
 
     Attributes:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.result import Result
 
 
 @dataclass(frozen=True)
@@ -88,8 +89,8 @@ class Contact:
     inside: tuple[SectionForce, ...] = ()
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, repr=False)
+class Solution(Result):
     """The end of a solve; an equilibrium only where ``converged`` says so.
 
     Attributes:

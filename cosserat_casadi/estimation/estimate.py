@@ -38,7 +38,7 @@ from cosserat_casadi.estimation.beforehand import (
     with_unknown_parameters,
 )
 from cosserat_casadi.estimation.consistency import Consistency, consistency
-from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
+from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, information_of
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.row_library import row_library
@@ -50,7 +50,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.sweep.local import available_cores
+from cosserat_casadi.sweeps.local import available_cores
 
 CHUNK = 256
 """Cases that a thread takes at once."""
@@ -103,7 +103,7 @@ def estimate(
     tables = start_tables(table, layout, indices, model.scene)
     search = Search(library, tables, known, indices, cores or available_cores(), report)
     (found, second), shared, added = _rows_and_shared(search, layout)
-    told = what_is_known(found.first(own), known, layout.own_labels)
+    told = information_of(found.first(own), known, layout.own_labels)
     covariance = told.covariance
     drawn = None
     if model.scene.estimation.draws:

@@ -15,6 +15,7 @@ from cosserat_casadi.estimation.optima import SecondBest
 from cosserat_casadi.estimation.shared import SharedNumbers
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.result import Result
 
 BLIND = 1e-10
 """Share of the largest eigenvalue of the information, in typical sizes, below which data and prior say nothing."""
@@ -36,8 +37,8 @@ NOT_DETERMINED = "not_determined"
 """Word for a row whose unknowns neither data nor priors determine."""
 
 
-@dataclass(frozen=True)
-class Estimate:
+@dataclass(frozen=True, repr=False)
+class Estimate(Result):
     """Estimates of every case.
 
     Attributes:
@@ -155,7 +156,7 @@ class Known:
     unseen: dict[str, int]
 
 
-def what_is_known(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
+def information_of(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
     """Covariances, and the directions that the data do not see.
 
     Directions are told in the deviations of the priors, or in typical sizes where an unknown has no prior.

@@ -4,6 +4,6 @@ table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ stat
 """
 
 from cosserat_casadi.identification.identification_result import Identification, Row
-from cosserat_casadi.identification.model_identification import identify, identify_scene
+from cosserat_casadi.identification.model_identification import identify
 
-__all__ = ["Identification", "Row", "identify", "identify_scene"]
+__all__ = ["Identification", "Row", "identify"]

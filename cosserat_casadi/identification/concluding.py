@@ -86,7 +86,7 @@ class Ending:
             starts=(0, 0),
         )
 
-    def found(
+    def concluded(
         self,
         fit: Fit[MisfitState],
         known: Statistics,

@@ -16,8 +16,8 @@ from cosserat_casadi.identification.measured_cases import Case, Datum
 from cosserat_casadi.identification.misfit import inputs_of, moving
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.motion_refinement import simulate_scene
-from cosserat_casadi.motion.vibration_modes import ModesOutcome, modes_of_scene
+from cosserat_casadi.motion.motion_refinement import simulate
+from cosserat_casadi.motion.vibration_modes import ModesOutcome, modes_of
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.measurements import ModeMeasurement
@@ -73,14 +73,14 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
         row = next(i for i, case in enumerate(cases) if _vibrations(scene, case))
         values = draft.inputs.unpack(inputs[row])
         of_modes = _after("discretisation for frequencies", report)
-        modes = modes_of_scene(baked, values, count=max(numbers) + 1, report=of_modes)
+        modes = modes_of(baked, values, count=max(numbers) + 1, report=of_modes)
         chosen += modes.model.discretisation.values()
         if modes.outcome is not ModesOutcome.RESOLVED:
             warnings.append(f"The discretisation for frequencies: {modes.message}")
     if np.any(moves):
         moved = _moving_scene(baked, draft, cases[int(np.flatnonzero(moves)[0])])
         of_motion = _after("discretisation for motions", report)
-        motion = simulate_scene(moved, progress=lambda at: of_motion(f"{at.stage}, t = {at.time:.4g} s"))
+        motion = simulate(moved, progress=lambda at: of_motion(f"{at.stage}, t = {at.time:.4g} s"))
         chosen += motion.model.discretisation.values()
         if not motion.converged:
             warnings.append(f"The discretisation for motions: {motion.message}")

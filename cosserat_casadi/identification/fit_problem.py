@@ -135,7 +135,7 @@ class Task:
         ending.unstable += _unstable(misfit, fit.state.point)
         resolved = _resolved(misfit, fit.state)
         ending.unresolved += [case.where for case, is_so in zip(misfit.cases, resolved, strict=True) if not is_so]
-        found = ending.found(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
+        found = ending.concluded(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
         if not misfit.motions.times:
             return found
         return ending.with_steps(found, misfit.motions.size, step_error)

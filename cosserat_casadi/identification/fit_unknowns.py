@@ -68,14 +68,14 @@ class UnknownEntry:
         return _product_matrix(self.start) @ _quaternion(found)
 
     def derivative(self, found: FloatArray) -> FloatArray:
-        """Derivative of the values with the numbers that are found, (entries, n)."""
+        """Derivative of the values with the numbers of the search, (entries, n)."""
         if not self.turns:
             return np.eye(self.size)
         return _product_matrix(self.start) @ _quaternion_derivative(found)
 
     @property
-    def start_found(self) -> FloatArray:
-        """The numbers that are found where the scene has its own values, shape (n,)."""
+    def start_numbers(self) -> FloatArray:
+        """The numbers of the search at the values of the scene, shape (n,)."""
         return np.zeros(3) if self.turns else self.start.copy()
 
     def limits(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -140,8 +140,8 @@ class UnknownLayout:
 
     def start(self, cases: int) -> tuple[FloatArray, FloatArray]:
         """The scene's values, brought into the bounds: shared ones, (n,), and those of each case, (cases, k)."""
-        shared = np.concatenate([np.zeros(0), *(entry.start_found for entry in self.shared)])
-        own = np.concatenate([np.zeros(0), *(entry.start_found for entry in self.own)])
+        shared = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.shared)])
+        own = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.own)])
         return self.shared_limits.clipped(shared), np.tile(self.own_limits.clipped(own), (cases, 1))
 
     def scales(self, shared: FloatArray) -> FloatArray:
@@ -203,11 +203,11 @@ class UnknownLayout:
                 first += entry.size
         return derivatives
 
-    def found_parameters(self, shared: FloatArray) -> dict[str, FloatArray]:
+    def identified_parameters(self, shared: FloatArray) -> dict[str, FloatArray]:
         """Values by name of the parameters that were found, in the shape in which the model takes them."""
         return {entry.record.name: entry.values(found) for entry, found in self._kind(shared, of_input=False)}
 
-    def found_inputs(self, shared: FloatArray) -> dict[str, FloatArray]:
+    def identified_inputs(self, shared: FloatArray) -> dict[str, FloatArray]:
         """Values by name of the shared inputs that were found."""
         return {entry.record.name: entry.values(found) for entry, found in self._kind(shared, of_input=True)}
 

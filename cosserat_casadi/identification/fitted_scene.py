@@ -18,7 +18,7 @@ from cosserat_casadi.scene.reading import SCENE_KEYS
 from cosserat_casadi.scene.writing import scene_tables
 
 
-def with_found(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
+def with_identified(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
     """A scene with the identified values of its parameters and of the inputs that all cases share.
 
     Args:

@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
-from cosserat_casadi.identification.fitted_scene import with_found
+from cosserat_casadi.identification.fitted_scene import with_identified
 from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.identification.statistics import Statistics
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.result import Result
 from cosserat_casadi.scene import Scene
 
 OUTLIER = 4.0
@@ -92,8 +93,8 @@ class LeftOut:
     reason: str
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Result):
     """The end of an identification.
 
     Attributes:
@@ -158,7 +159,7 @@ class Identification:
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:
         """Values of the parameters by name, as ``solve(…, parameters=…)`` takes them."""
-        values = self.layout.found_parameters(self.shared)
+        values = self.layout.identified_parameters(self.shared)
         defaults = {entry.name: entry.shape for entry in self.model.parameters.entries}
         return {name: value.reshape(defaults[name], order="F") for name, value in values.items()}
 
@@ -234,7 +235,7 @@ class Identification:
         """
         if not self.converged and not (early and self.ended_early):
             raise SceneError(Problem("unknowns", "were not found", self.message))
-        return with_found(scene or self.model.scene, self.model, self.layout, self.shared)
+        return with_identified(scene or self.model.scene, self.model, self.layout, self.shared)
 
     def value(self, name: str) -> float | npt.NDArray[np.float64]:
         """The value found of an unknown that all cases share, by its name.
@@ -242,7 +243,7 @@ class Identification:
         Raises:
             KeyError: there is no such unknown.
         """
-        values = {**self.layout.found_parameters(self.shared), **self.layout.found_inputs(self.shared)}
+        values = {**self.layout.identified_parameters(self.shared), **self.layout.identified_inputs(self.shared)}
         if name not in values:
             raise KeyError(f"{name!r} is not an unknown that all cases share; they are {', '.join(values) or 'none'}")
         found = values[name]

@@ -19,6 +19,7 @@ from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.identification.model_error import with_model_error
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.spelling import counted
@@ -27,7 +28,7 @@ RECHOSEN = 2
 """Times that a discretisation is chosen again at the identified numbers."""
 
 
-def identify(
+def identify_model(
     model: Model,
     data: Data | None = None,
     *,
@@ -36,20 +37,7 @@ def identify(
     report: Report | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """Identify the unknowns of a model's scene from measurements.
-
-    Args:
-        model: of a scene with measurements and unknowns, which are its parameters and inputs:
-            ``build(scene.with_unknowns())``.
-        data: columns by measurement, by its name or its file, that stand for the file.
-        hold_out: share of the cases that is not fitted but predicted; by default that of the scene.
-        starts: places from which the search begins; by default that of the scene.
-        report: called with the work under way.
-        progress: told the steps of the search.
-
-    Raises:
-        SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
-    """
+    """As :func:`identify`, of a model on its modes and nodes."""
     refuse_obstacles(model.scene, "an identification")
     refuse_row_parameters(model.scene)
     scene = model.scene
@@ -77,8 +65,8 @@ def _untold(stage: str) -> None:
     """Take no note of a stage that nobody asked for."""
 
 
-def identify_scene(
-    scene: scenes.Scene,
+def identify(
+    subject: scenes.Scene | Model,
     data: Data | None = None,
     *,
     hold_out: float | None = None,
@@ -86,23 +74,29 @@ def identify_scene(
     report: Report | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """Identify the unknowns of a scene from measurements, on modes and nodes that meet its tolerance.
+    """Identify the unknowns of a scene, or of a model, from measurements.
 
-    They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at the identified ones,
-        which may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them. Where
-        the scene writes no tolerance and poses alone were measured, a tenth of the least of their deviations is enough.
+    A model keeps its modes and nodes. A scene has modes and nodes that meet its tolerance. They are chosen on the cases
+    that lie farthest apart: at the scene's own numbers, and again at the identified numbers, which may bend the rods
+    otherwise. Where that asks for other modes or nodes, the search is made on them. Where the scene writes no tolerance
+    and poses alone were measured, a tenth of the least of their deviations is enough.
 
     Args:
-        scene: with measurements and unknowns.
-        data: as in :func:`identify`.
-        hold_out: as there.
-        starts: as there.
-        report: as there.
-        progress: as there.
+        subject: a scene with measurements and unknowns; or a model in which these are parameters and inputs:
+            ``build(scene.with_unknowns())``.
+        data: columns by measurement, by its name or its file, that stand for the file.
+        hold_out: share of the cases that is not fitted but predicted; by default that of the scene.
+        starts: places from which the search begins; by default that of the scene.
+        report: called with the work under way.
+        progress: told the steps of the search.
 
     Raises:
-        SceneError: as in :func:`identify`.
+        SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
     """
+    if isinstance(subject, Model):
+        return identify_model(subject, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    refuse_tubes(subject)
+    scene = subject
     refuse_obstacles(scene, "an identification")
     refuse_row_parameters(scene)
     completed = scene.with_unknowns()
@@ -114,7 +108,9 @@ def identify_scene(
     tell = report or _untold
     tell("choosing the discretisation")
     choice = with_discretisation(completed, draft, cases, tell)
-    found = identify(build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    found = identify_model(
+        build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress
+    )
     for _ in range(RECHOSEN):
         if scene.accuracy.fixed or not found.converged:
             break
@@ -124,15 +120,17 @@ def identify_scene(
         except SceneError:
             # What was found is told all the same; whoever wants the scene is told why there is none.
             break
-        judged = with_discretisation(fitted, draft, _with_found_inputs(cases, found), tell)
+        judged = with_discretisation(fitted, draft, _with_identified_inputs(cases, found), tell)
         if judged.scene.accuracy == choice.scene.accuracy:
             break
         choice = replace(judged, scene=completed.model_copy(update={"accuracy": judged.scene.accuracy}))
-        found = identify(build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+        found = identify_model(
+            build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress
+        )
     return replace(found, warnings=(*choice.warnings, *found.warnings))
 
 
-def _with_found_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
+def _with_identified_inputs(cases: Sequence[Case], found: Identification) -> list[Case]:
     """The cases that took part, with the inputs that were found for them."""
     by_name = {case.where: case for case in cases}
     added = StartInputs(found.model).added

@@ -210,7 +210,7 @@ def build(
     Args:
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
-            :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
+            :func:`cosserat_casadi.solve` to have it chosen for a tolerance.
         moving: whether it is for a motion, in which bodies may turn freely.
 
     Raises:

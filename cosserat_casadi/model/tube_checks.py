@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 
 
-def refuse_tubes(scene: scenes.Scene) -> None:
-    """Refuse a scene of concentric tubes where rods are asked for.
+class OfScene(Protocol):
+    """A model of rods or of concentric tubes."""
+
+    @property
+    def scene(self) -> scenes.Scene:
+        """The scene of the model."""
+
+
+def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
+    """Refuse concentric tubes, as a scene or as a model, where rods are asked for.
 
     Raises:
         SceneError: the scene has tubes.
     """
+    scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     if scene.tubes:
         problem = "this works on rods, and the scene has concentric tubes"
         remedy = "solve, path, sweep, export and check take them"

@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.simulate import (
@@ -32,6 +33,7 @@ from cosserat_casadi.motion.simulate import (
     started,
     tolerance_of,
 )
+from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_times
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -163,20 +165,33 @@ class _Search:
         return min(rung + above, last)
 
 
-def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: Tell | None = None) -> Motion:
-    """Motion of a scene to its tolerance, on modes, nodes and steps that are chosen for it.
+def simulate(
+    subject: Scene | Model,
+    *,
+    start: Solution | None = None,
+    simulation: Simulation | None = None,
+    progress: Tell | None = None,
+) -> Motion:
+    """Motion of a scene, or of a model on its modes and nodes.
 
-    Where the scene fixes modes or nodes they are used as they are, and their error is estimated; where it fixes the
-    step, likewise.
+    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
+    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
+    the error of the time steps is controlled, and told.
 
     Args:
-        scene: a validated scene with a table ``[simulation]``.
-        start: an equilibrium of the scene to start from at rest; by default what the simulation says.
+        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
+            ``build(scene.with_motion_inputs(), …, moving=True)``.
+        start: an equilibrium of the scene to start from at rest; by default the one that the simulation asks for.
+        simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
 
     Raises:
-        SceneError: the scene cannot be simulated.
+        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
+    if isinstance(subject, Model):
+        return simulate_model(subject, start=start, simulation=simulation, progress=progress)
+    refuse_tubes(subject)
+    scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
     coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)
     simulation = scene.simulation

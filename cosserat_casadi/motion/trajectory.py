@@ -20,6 +20,7 @@ from cosserat_casadi.motion.pose_series import (
     section_poses,
     tip_poses,
 )
+from cosserat_casadi.result import Result
 
 
 class MotionOutcome(Enum):
@@ -151,8 +152,8 @@ class StepStatistics:
     largest_step: float
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, repr=False)
+class Motion(Result):
     """The end of a simulation; the whole motion only where ``converged`` says so.
 
     Attributes:

@@ -28,12 +28,14 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.motion.stability_sentences import stability_sentences
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.result import Result
 
 DEFAULT_COUNT = 8
 """Modes that are sought where the caller does not say how many."""
@@ -124,8 +126,8 @@ class Mode:
         return "grows" if self.grows else "decays"
 
 
-@dataclass(frozen=True)
-class Modes:
+@dataclass(frozen=True, repr=False)
+class Modes(Result):
     """Modes about an equilibrium.
 
     Attributes:
@@ -225,7 +227,7 @@ def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
     return gradients
 
 
-def modes_of(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:
+def modes_at(solution: Solution, count: int | None = None, *, report: Report | None = None) -> Modes:
     """Modes of a model about one of its equilibria; their errors are not estimated.
 
     Args:
@@ -272,29 +274,39 @@ def _untold(stage: str) -> None:
     """Take no note of a stage that nobody asked for."""
 
 
-def modes_of_scene(
-    scene: scenes.Scene,
+def modes_of(
+    subject: scenes.Scene | Model | Solution,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
-    count: int = DEFAULT_COUNT,
+    count: int | None = None,
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Modes:
-    """Modes of a scene about its static equilibrium, each with an estimated error.
+    """Modes of vibration about an equilibrium.
 
-    Where the scene fixes modes or nodes they are used as they are, and only the errors are estimated.
+    Each mode of a scene has an estimated error: where the scene fixes modes or nodes they are used as they are, and
+    only the errors are estimated. The modes of a model about one of its equilibria have none.
 
     Args:
-        scene: a validated scene.
-        values: inputs by name; those not named keep the scene's values.
-        count: how many modes of lowest |λ|.
+        subject: a validated scene, or a model, which is solved; or an equilibrium.
+        values: inputs by name, where an input that is left out keeps the scene's value; not of an equilibrium.
+        count: how many modes of lowest |λ|; by default eight of a scene, and all that a model has.
         progress: told the share of the present stage that is done.
         report: told the stage.
 
     Raises:
-        ValueError: the count is not positive.
+        ValueError: the count is not positive, or values stand beside an equilibrium.
         SceneError: a value is refused, or nothing that may move has mass.
     """
+    if isinstance(subject, Solution):
+        if values is not None:
+            raise ValueError("values stand beside an equilibrium, which has its inputs: leave them out")
+        return modes_at(subject, count, report=report)
+    if isinstance(subject, Model):
+        return modes_at(solve(subject, values, progress=progress), count, report=report)
+    refuse_tubes(subject)
+    scene = subject
+    count = DEFAULT_COUNT if count is None else count
     refuse_obstacles(scene, "an analysis of modes")
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
@@ -308,8 +320,8 @@ def modes_of_scene(
 
 def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes:
     """Modes on the discretisation of an equilibrium, judged by a finer one."""
-    own = modes_of(equilibrium, count, report=report)
-    witness = modes_of(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
+    own = modes_at(equilibrium, count, report=report)
+    witness = modes_at(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
     return _judged(own, witness)
 
 
@@ -318,10 +330,10 @@ def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> M
     scene = equilibrium.model.scene
     # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
     first = max(ceil(count / 2) + SPARE_MODES, signal_modes(scene), _most_modes(equilibrium))
-    coarser = modes_of(_on_level(equilibrium, first, report), count, report=report)
+    coarser = modes_at(_on_level(equilibrium, first, report), count, report=report)
     while coarser.solution.converged:
         more = ceil((LEVEL_FACTOR - 1.0) * _most_modes(coarser.solution))
-        finer = modes_of(_finer_equilibrium(coarser.solution, more, report), count, report=report)
+        finer = modes_at(_finer_equilibrium(coarser.solution, more, report), count, report=report)
         judged = _judged(finer, coarser)
         if judged.outcome is not ModesOutcome.UNRESOLVED or _most_modes(finer.solution) >= MOST_MODES:
             return judged

@@ -17,7 +17,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.contact_judgement import FLAT
-from cosserat_casadi.equilibrium.contact.contact_search import Found, found_at
+from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations
 from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
@@ -172,9 +172,9 @@ class Arrangement:
         _, _, places = self.equations.parts(z)
         return self.equations.state.at(places.tolist())
 
-    def found(self, z: FloatArray, load_factor: float) -> Found:
+    def equilibrium_at(self, z: FloatArray, load_factor: float) -> ContactEquilibrium:
         """A point of the curve solved on new elements, which answers all questions that a solution answers."""
-        return found_at(self.equations, z, self.inputs(load_factor))
+        return contact_equilibrium(self.equations, z, self.inputs(load_factor))
 
     def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
         """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""

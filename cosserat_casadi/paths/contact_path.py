@@ -40,7 +40,7 @@ AT_SECTION = 1e-4
 """Distance of a place of contact from a section with a load at which a path that ends has been stopped by it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ContactPath(EquilibriumPath):
     """A path along which contacts come, go, slide and turn from points into lines and back.
 
@@ -95,7 +95,7 @@ class ContactPath(EquilibriumPath):
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
         arrangement = self.arrangements[self.arrangement[index]]
-        found = arrangement.found(self.x[index], float(self.factor[index]))
+        found = arrangement.equilibrium_at(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
     def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:

@@ -180,7 +180,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
     equations = ContactEquations(
         arrangement.scene, arrangement.equations.given, arrangement.equations.grids, change.state
     )
-    found = arrangement.found(z, point.load_factor)
+    found = arrangement.equilibrium_at(z, point.load_factor)
     nominal = replace(equations.nominal, given=arrangement.inputs(point.load_factor))
     x = projected(found.solution, nominal.model)
     near = np.concatenate([x, nominal.fitting_forces(x), change.state.places])

@@ -15,6 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.trace import PathOutcome
+from cosserat_casadi.result import Result
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,8 @@ CONTACT_WORDS = {
 """Kinds of events that are changes of contact, in words."""
 
 
-@dataclass(frozen=True)
-class EquilibriumPath:
+@dataclass(frozen=True, repr=False)
+class EquilibriumPath(Result):
     """Equilibria of a model along one of its inputs.
 
     Attributes:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from math import ceil
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.follow import follow_path
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_path import TubePath, follow_tubes
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
@@ -39,8 +41,9 @@ SMALLEST_FACTOR = 1e-12
 """Factor of an event below which differences count absolutely."""
 
 
-def follow_scene_path(
-    scene: scenes.Scene,
+@overload
+def follow(
+    subject: scenes.Scene,
     name: str,
     value: npt.ArrayLike,
     values: Mapping[str, npt.ArrayLike] | None = None,
@@ -50,22 +53,59 @@ def follow_scene_path(
     first: TubeSolution | None = None,
     progress: Progress | None = None,
     report: Report | None = None,
-) -> EquilibriumPath | TubePath:
-    """Follow a path of a scene on modes and nodes, or steps, that meet its tolerance.
+) -> EquilibriumPath | TubePath: ...
 
-    Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path is
-    followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
+
+@overload
+def follow(
+    subject: Model,
+    name: str,
+    value: npt.ArrayLike,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    branch: int = 0,
+    settings: ArcSettings | None = None,
+    progress: Progress | None = None,
+) -> EquilibriumPath: ...
+
+
+@overload
+def follow(
+    subject: TubeFunctions,
+    name: str,
+    value: npt.ArrayLike,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
+    *,
+    first: TubeSolution | None = None,
+    settings: ArcSettings | None = None,
+    progress: Progress | None = None,
+) -> TubePath: ...
+
+
+def follow(
+    subject: scenes.Scene | Model | TubeFunctions,
+    name: str,
+    value: npt.ArrayLike,
+    values: Any = None,
+    **options: Any,
+) -> EquilibriumPath | TubePath:
+    """Follow the equilibria of a scene, or of a model, while one input moves.
+
+    A model keeps its modes and nodes, or its steps. A scene is followed on modes and nodes, or steps, that meet its
+    tolerance. Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path
+    is followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
     relative to the lengths, change by less than the tolerance; the last change is ``error_estimate``.
 
     An input of rods grows from zero; one of concentric tubes moves on from the value that it has.
 
     Args:
-        scene: a validated scene.
-        name: as in :func:`follow_path`, like all that follow but ``first`` and ``report``; of concentric tubes an input
-            that is one number, such as "inner.rotation" or "push.force.z".
+        subject: a validated scene, or a model of it: of rods, or of concentric tubes.
+        name: an input; of concentric tubes one that is one number, such as "inner.rotation" or "push.force.z".
         value: its value at factor 1.
-        values: other inputs.
-        branch: number of the bifurcation to leave at.
+        values: other inputs, by name; inputs that are left out keep the scene's values.
+        options: named as follows.
+        branch: of rods: number of the bifurcation, counted from 1, to leave at along the branch that crosses there;
+            negative for the other half of that branch, 0 goes straight on.
         settings: limits.
         first: an equilibrium of the same tubes to begin at, such as one of another path.
         progress: receives the largest factor reached.
@@ -75,16 +115,34 @@ def follow_scene_path(
         SceneError: the input is unknown, a value is refused, a path of tubes is to leave at a bifurcation, or one of
             rods to begin at an equilibrium of tubes.
     """
-    if scene.tubes:
-        if branch:
+    if isinstance(subject, Model):
+        return follow_path(subject, name, value, values, **options)
+    if isinstance(subject, TubeFunctions) or subject.tubes:
+        if options.pop("branch", 0):
             problem = "is for rods: a path of tubes goes straight on"
             raise SceneError(Problem("--branch", problem, "leave it out"))
-        return follow_tubes(scene, name, value, values, first=first, settings=settings, progress=progress)
-    if first is not None:
+        options.pop("report", None)
+        return follow_tubes(subject, name, value, values, **options)
+    if options.pop("first", None) is not None:
         problem = "is for concentric tubes: a path of rods begins without the input"
         raise SceneError(Problem("first", problem, "leave it out"))
+    return _follow_refined(subject, name, value, values, **options)
 
-    def follow(model: Model) -> EquilibriumPath:
+
+def _follow_refined(
+    scene: scenes.Scene,
+    name: str,
+    value: npt.ArrayLike,
+    values: Mapping[str, npt.ArrayLike] | None,
+    *,
+    branch: int = 0,
+    settings: ArcSettings | None = None,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> EquilibriumPath:
+    """Follow a path of rods on modes and nodes that meet the tolerance of their scene, as :func:`follow`."""
+
+    def followed(model: Model) -> EquilibriumPath:
         if report is not None:
             discretisations = model.discretisation.values()
             intervals = max(discretisation.nodes for discretisation in discretisations)
@@ -104,7 +162,7 @@ def follow_scene_path(
     fixed = accuracy.modes is not None or accuracy.nodes is not None
     if fixed:
         # There is nothing to refine, and so nothing to estimate an error by.
-        return follow(build(scene))
+        return followed(build(scene))
     coarse: EquilibriumPath | None = None
     for modes in seeing_modes(scene, MODES):
         turn = 0.0
@@ -114,7 +172,7 @@ def follow_scene_path(
         nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
         # The rotation of highest order: what changes from level to level is the modes' error alone.
         discretisation = discretise(scene, modes, nodes, "magnus8")
-        fine = follow(build(scene, discretisation))
+        fine = followed(build(scene, discretisation))
         if coarse is not None:
             change = path_distance(coarse, fine)
             if change <= accuracy.tolerance:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.plots.arrow_drawing import scene_arrows
@@ -67,6 +68,11 @@ def plot_solution(solution: Solution) -> Any:
     add_title(figure, solution.model.scene.title)
     _draw_subtitle(canvas.axes, solution)
     return figure
+
+
+def plot_inverse(inverse: Inverse) -> Any:
+    """Figure of an inverse problem: the equilibrium at its inputs, with the targets; as :func:`plot_solution`."""
+    return plot_solution(inverse.solution)
 
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:

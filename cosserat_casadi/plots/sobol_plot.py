@@ -14,7 +14,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.colours import CATEGORIES
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.sweep.sobol import Estimates, SobolIndices
+from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 
 COLUMNS = 3
 """Panels in a row."""

@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.canvas import AXIS_NAMES, Plane
 from cosserat_casadi.plots.colours import category_style
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.sweep.outcome_table import LABELS, Sweep
+from cosserat_casadi.sweeps.outcome_table import LABELS, Sweep
 
 FLAT = 1e-6
 """Share of the largest extent below which a set of points lies in a coordinate plane."""

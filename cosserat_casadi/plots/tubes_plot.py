@@ -44,12 +44,11 @@ def save_tubes_plot(solution: TubeSolution | TubeEquilibria, file: str | Path) -
         SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
         PlotUnavailableError: matplotlib is not installed.
     """
-    solutions = [solution] if isinstance(solution, TubeSolution) else solution.solutions
-    save_figure(lambda: plot_tubes(solutions), file)
+    save_figure(lambda: plot_tubes(solution), file)
 
 
-def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
-    """Figure of equilibria at the same inputs: left in space, right the angles of the tubes along the centre line.
+def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
+    """Figure of an equilibrium, or of all at the same inputs: left in space, right the angles along the centre line.
 
     Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
 
@@ -59,15 +58,16 @@ def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
+    solutions = [solution] if isinstance(solution, TubeSolution) else solution.solutions
     figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
     grid = figure.add_gridspec(1, 2, width_ratios=(1.3, 1.0))
     points = np.concatenate([solution.shape.position for solution in solutions])
     size = float(np.ptp(points, axis=0).max())
     canvas = Canvas(figure.add_subplot(grid[0, 0], projection="3d"), None, size)
     panel = figure.add_subplot(grid[0, 1])
-    for number, solution in enumerate(solutions):
-        _draw_robot(canvas, solution, number, several=len(solutions) > 1)
-        _draw_angles(panel, solution, number, several=len(solutions) > 1)
+    for number, equilibrium in enumerate(solutions):
+        _draw_robot(canvas, equilibrium, number, several=len(solutions) > 1)
+        _draw_angles(panel, equilibrium, number, several=len(solutions) > 1)
     # Loads that follow a tube turn with it: those of the first equilibrium are shown.
     draw_arrows(canvas, load_arrows(solutions[0]))
     canvas.label_axes()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.estimation import Estimate
+from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 
@@ -92,3 +94,8 @@ def estimate_table(found: Estimate) -> str:
     for case, outcome, row in zip(found.cases, found.outcomes, numbers.tolist(), strict=True):
         writer.writerow([case, outcome, *("" if np.isnan(number) else repr(number) for number in row)])
     return lines.getvalue()
+
+
+def write_estimate_table(found: Estimate, file: Path) -> None:
+    """Write the rows as CSV, whole or not at all."""
+    write_atomically(file, estimate_table(found).encode())

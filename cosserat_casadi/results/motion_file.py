@@ -25,7 +25,7 @@ from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
-from cosserat_casadi.sweep.outcome_file import arrow_module
+from cosserat_casadi.sweeps.outcome_file import arrow_module
 
 FORMATS = (".json", ".csv", ".parquet", ".npz")
 """Suffixes that a file of a motion may have."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.equilibrium.solution import SolvedPoses
+from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
@@ -93,6 +95,11 @@ def path_table(path: EquilibriumPath | TubePath) -> str:
             row += [repr(float(number)) for number in pose]
         writer.writerow(row)
     return lines.getvalue()
+
+
+def write_path_table(path: EquilibriumPath | TubePath, file: Path) -> None:
+    """Write the points of a path as CSV, whole or not at all."""
+    write_atomically(file, path_table(path).encode())
 
 
 def _cell(value: bool | float | None) -> str:

@@ -171,10 +171,10 @@ def _index(container: Any, segment: str) -> Any:
         # At most nine digits: Python refuses to read integers of thousands.
         if re.fullmatch(r"[0-9]{1,9}", segment) and int(segment) < len(container):
             return int(segment)
-    raise RefusedOverride(f"there is no {shown(segment)} to set", _what_there_is(container))
+    raise RefusedOverride(f"there is no {shown(segment)} to set", _entries_in_words(container))
 
 
-def _what_there_is(container: Any) -> str:
+def _entries_in_words(container: Any) -> str:
     """Names or indices that a list has, for an override that leads to another; empty for a value that is no list."""
     if not isinstance(container, list) or not container:
         return ""

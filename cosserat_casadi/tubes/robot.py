@@ -177,7 +177,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
         SceneError: the scene has no tubes.
     """
     if not scene.tubes:
-        raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve_scene"))
+        raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve"))
     stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
     return Robot(
         scene=scene,

@@ -22,12 +22,14 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.result import Result
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_model import TubeModel
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.tube_solve import MOST_STEPS, judged, loaded_from, solution_near, solve_tubes
+from cosserat_casadi.tubes.tube_solve import MOST_STEPS, judged, loaded_from, solution_near, solve_at, solve_tubes
 
 MOST_TUBES = 4
 """Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
@@ -55,8 +57,8 @@ SAME = 1e-6
 """Angles at the tips, rad, that differ by less are those of one equilibrium."""
 
 
-@dataclass(frozen=True)
-class TubeEquilibria:
+@dataclass(frozen=True, repr=False)
+class TubeEquilibria(Result):
     """The equilibria of concentric tubes at the same inputs.
 
     Attributes:
@@ -115,6 +117,31 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
     if isinstance(model, LoadedTubeModel):
         return _under_loads(model, at)
     return _without_loads(TubeModel(robot, model.steps), at)
+
+
+def tubes_at_rest(
+    subject: scenes.Scene | TubeFunctions,
+    values: Values = None,
+    *,
+    stable: bool = False,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> TubeSolution:
+    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps, whose error is not estimated.
+
+    Args:
+        subject: the scene or the model.
+        values: as in :func:`solve_tubes`.
+        stable: of a scene, as in :func:`cosserat_casadi.solve`.
+        progress: not called: the search takes a moment.
+        report: likewise.
+
+    Raises:
+        SceneError: a value is refused, or a stable equilibrium is wanted where the loads have no energy.
+    """
+    if isinstance(subject, TubeFunctions):
+        return solve_at(subject, subject.robot.packed(values))
+    return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:

@@ -19,6 +19,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
+from cosserat_casadi.result import Result
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
@@ -69,8 +70,8 @@ class TubeEvent:
         return self.solution.energy - self.snaps_to.energy
 
 
-@dataclass(frozen=True)
-class TubePath:
+@dataclass(frozen=True, repr=False)
+class TubePath(Result):
     """Equilibria of concentric tubes along one input.
 
     Attributes:
@@ -123,7 +124,7 @@ class TubePath:
 
 
 def follow_tubes(
-    scene: scenes.Scene,
+    subject: scenes.Scene | TubeFunctions,
     name: str,
     to: npt.ArrayLike,
     values: Values = None,
@@ -135,7 +136,7 @@ def follow_tubes(
     """Follow the equilibrium of concentric tubes while one input moves from its value to another.
 
     Args:
-        scene: a scene with tubes.
+        subject: a scene with tubes, followed to its tolerance; or a model, which keeps its steps.
         name: of the input, such as "inner.rotation" or "push.force.z".
         to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
@@ -147,6 +148,7 @@ def follow_tubes(
         SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move; the equilibrium
             to begin at is of another robot, or stands beside values.
     """
+    scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     robot = robot_of(scene)
     if np.size(to) != 1:
         remedy = "name one number of a load, such as push.force.z"
@@ -160,6 +162,8 @@ def follow_tubes(
     if end[index] == start[index]:
         raise SceneError(Problem(name, f"is {end[index]:g} where the path begins", "give another value to go to"))
     way = _Way(robot, name, start, end, first, settings)
+    if isinstance(subject, TubeFunctions):
+        return way.followed(subject.steps, progress)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)

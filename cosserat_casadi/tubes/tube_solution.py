@@ -12,6 +12,7 @@ from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -37,8 +38,8 @@ class TubeShape:
     torques: FloatArray
 
 
-@dataclass(frozen=True)
-class TubeSolution:
+@dataclass(frozen=True, repr=False)
+class TubeSolution(Result):
     """An equilibrium of concentric tubes.
 
     Attributes:

@@ -32,7 +32,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.motion.motion_refinement import simulate_scene
+from cosserat_casadi.motion.motion_refinement import simulate
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.motion.vibration_modes import modes_of
 from cosserat_casadi.page.drawn_model import DrawnModel, drawn_numbers
@@ -210,7 +210,7 @@ class ViewSession:
         """
         model = self.first.model
         solution = solve(model, model.inputs.unpack(self._inputs), start=self._x)
-        found = modes_of(solution, MODES)
+        found = modes_of(solution, count=MODES)
         phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
         entries = []
         for mode in found.modes:
@@ -227,7 +227,7 @@ class ViewSession:
         Raises:
             SceneError: nothing that may move has mass.
         """
-        motion: Motion = simulate_scene(self.first.model.scene)
+        motion: Motion = simulate(self.first.model.scene)
         if not len(motion.times):
             return {"text": motion.message, "times": [], "frames": ""}
         first, last = float(motion.times[0]), float(motion.times[-1])

@@ -7,7 +7,8 @@ import numpy as np
 from swing_free.plans import ADMITTED, NEWTON, SOLVED, TRACKING, Controller, Measured, Plan, blocks, following
 from swing_free.task import COUNT, STAGES, STEP
 
-from cosserat_casadi import Model, compiled_stage
+from cosserat_casadi import Model
+from cosserat_casadi.codegen.stage import compiled_stage
 
 
 class Resting(Controller):

@@ -21,7 +21,8 @@ from swing_free.plans import (
 )
 from swing_free.task import COUNT, STAGES, STEP
 
-from cosserat_casadi import Model, compiled_motion_stage
+from cosserat_casadi import Model
+from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
 from cosserat_casadi.control import Condensed, Condensing, Horizon, motion_stage
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Model, Scene, Solution, build, discretise, read_scene, scene_from_dict, solve
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.cost import (
     MOST_IN_COLUMNS,
@@ -45,7 +45,7 @@ def fine(wanted: Scene, modes: int = 14, nodes: int = 36) -> Solution:
 @pytest.mark.skipif(not B1.exists(), reason="the reference cases are not beside this checkout")
 def test_planar_load_takes_modes_in_its_plane_only() -> None:
     wanted = read_scene(B1, ("accuracy.tolerance=1e-8",))
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged
     assert solution.model.size <= 10
     assert pose_distance(solution, fine(wanted)) <= 1e-8
@@ -56,7 +56,7 @@ def test_tolerance_is_met(seed: int) -> None:
     """And the estimate is not below the truth."""
     tolerance = (1e-3, 1e-5, 1e-7, 1e-9)[seed % 4]
     wanted = scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": tolerance}})
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged, solution.message
     chosen = solution.model.discretisation["rod"]
     error = pose_distance(solution, fine(wanted, max(chosen.modes) + 7, 2 * chosen.nodes + 14))
@@ -65,7 +65,7 @@ def test_tolerance_is_met(seed: int) -> None:
 
 
 def test_unloaded_rod_takes_one_mode() -> None:
-    solution = solve_scene(scene(accuracy={"tolerance": 1e-9}))
+    solution = solve(scene(accuracy={"tolerance": 1e-9}))
     assert solution.converged
     assert solution.model.discretisation["rod"].modes == (1, 1, 1)
     assert solution.error_estimate is not None
@@ -74,14 +74,14 @@ def test_unloaded_rod_takes_one_mode() -> None:
 
 
 def test_fixed_modes_are_kept_and_nodes_follow() -> None:
-    solution = solve_scene(scene(push(), accuracy={"modes": [5, 5, 4], "tolerance": 1e-3}))
+    solution = solve(scene(push(), accuracy={"modes": [5, 5, 4], "tolerance": 1e-3}))
     assert solution.model.discretisation["rod"].modes == (5, 5, 4)
     assert solution.error_estimate is not None
 
 
 def test_modes_follow_the_inputs_given() -> None:
-    flat = solve_scene(scene(push(force=[0.9, 0.0, 0.0])))
-    turned = solve_scene(scene(push(force=[0.9, 0.0, 0.0])), {"push.force": [0.0, 0.9, 0.0]})
+    flat = solve(scene(push(force=[0.9, 0.0, 0.0])))
+    turned = solve(scene(push(force=[0.9, 0.0, 0.0])), {"push.force": [0.0, 0.9, 0.0]})
     assert flat.model.discretisation["rod"].modes[::2] == (1, 1)
     assert turned.model.discretisation["rod"].modes[1:] == (1, 1)
     assert min(flat.model.discretisation["rod"].modes[1], turned.model.discretisation["rod"].modes[0]) > 2
@@ -93,7 +93,7 @@ def test_held_rod_is_right_between_its_ends(kind: str) -> None:
     held = {"rod": "rod", "kind": kind, "position": [0.2, 0.15, 0.6]}
     pose = {"quaternion": [1.0, 0.0, 0.0, 0.0]} if kind == "clamped" else {}
     wanted = scene(WEIGHT, supports=[{**held, **pose}], accuracy={"tolerance": 1e-3})
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged, solution.message
     assert pose_distance(solution, fine(wanted, 11, 26)) <= 1e-3
 
@@ -144,7 +144,7 @@ def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
         scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": 1e-7, "shape": shape}})
         for shape in (False, True)
     ]
-    of_tip, of_shape = (solve_scene(one) for one in wanted)
+    of_tip, of_shape = (solve(one) for one in wanted)
     chosen = of_shape.model.discretisation["rod"]
     truth, X = fine(wanted[1], max(chosen.modes) + 7, 2 * chosen.nodes + 14), np.linspace(0, 1, 101)
     assert of_shape.converged
@@ -274,7 +274,7 @@ def test_components_give_up_modes_together() -> None:
         if load["kind"] == "tip_wrench":
             load["force"] = [2 * v for v in load["force"]]
     wanted = scene_from_dict({**tables, "accuracy": {"tolerance": tolerance}})
-    solution, truth = solve_scene(wanted), fine(wanted)
+    solution, truth = solve(wanted), fine(wanted)
     chosen = solution.model.discretisation["rod"]
     assert chosen.modes == (5, 5, 5)
     assert pose_distance(solution, truth) <= tolerance
@@ -284,7 +284,7 @@ def test_components_give_up_modes_together() -> None:
 def test_choice_is_cheaper_than_its_neighbours() -> None:
     """One mode or one interval less, and the tolerance is missed."""
     wanted = scene(push(force=[3.0, 0.0, -1.0]), accuracy={"tolerance": 1e-7})
-    solution, truth = solve_scene(wanted), fine(wanted)
+    solution, truth = solve(wanted), fine(wanted)
     chosen = solution.model.discretisation["rod"]
     assert chosen.modes[::2] == (1, 1)
     fewer = replace(chosen, modes=(1, chosen.modes[1] - 1, 1))

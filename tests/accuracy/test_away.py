@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cosserat_casadi import build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi import build, discretise, scene_from_dict, solve
 from cosserat_casadi.accuracy.choose import choose
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom, has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import pose_distance
@@ -41,7 +41,7 @@ def test_a_robot_of_six_tendons_is_right_at_random_tensions() -> None:
     assert choice.met
     assert not choice.without_equilibrium
     fine = build(robot, discretise(robot, 10, 20, "magnus8"))
-    own = build(robot, solve_scene(robot).model.discretisation)
+    own = build(robot, solve(robot).model.discretisation)
     random = np.random.default_rng(31)
     missed = 0
     for tensions in random.uniform(0, 8, (20, 6)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, choose, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi import SceneError, build, choose, discretise, parse_scene, solve
 from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
@@ -19,14 +19,14 @@ def test_a_discretisation_holds_at_every_case() -> None:
     choice = choose(wanted, cases=cases)
     assert choice.met
     assert choice.solves == 3
-    own = [solve_scene(wanted, case).model.size for case in cases]
+    own = [solve(wanted, case).model.size for case in cases]
     assert max(own) <= choice.model.size
     fine = build(wanted, discretise(wanted, 14, 34, "magnus8"))
     for case in cases:
         assert pose_distance(solve(choice.model, case), solve(fine, case)) <= 1e-5
     again = parse_scene(scene_text(choice.scene))
     assert again == choice.scene
-    assert solve_scene(again).model.discretisation == choice.model.discretisation
+    assert solve(again).model.discretisation == choice.model.discretisation
 
 
 def test_the_worst_case_is_the_one_with_the_largest_estimate() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi import SceneError, build, discretise, parse_scene, solve
 from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.ranges import Origin, input_ranges
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom
@@ -108,7 +108,7 @@ def test_the_tolerance_holds_all_over_the_ranges(chosen: Choice) -> None:
     for force in ([2.0, 2.0, -2.0], [-2.0, 2.0, 2.0], *random.uniform(-2, 2, (6, 3))):
         coarse = solve(chosen.model, {"push.force": force}, estimate_error=False)
         assert pose_distance(coarse, solve(fine, {"push.force": force}, estimate_error=False)) <= 1e-3
-    own = solve_scene(scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-3}))
+    own = solve(scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-3}))
     assert own.model.size < chosen.model.size
 
 

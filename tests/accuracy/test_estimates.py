@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Scene, Solution, build, discretise, scene_from_dict, solve
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import FURTHER_MODES, HIDDEN_SAFETY, NEGLIGIBLE, Resolution
@@ -162,7 +162,7 @@ MAKERS = {"strong": strong_scene, "rich": rich_scene}
 
 @pytest.mark.parametrize(("kind", "seed", "tolerance"), mostly_slow(TOO_SMALL, quick=[("strong", 13, 1e-8)]))
 def test_estimates_bound_what_they_did_not(kind: str, seed: int, tolerance: float) -> None:
-    solution = solve_scene(with_tolerance(MAKERS[kind](seed), tolerance))
+    solution = solve(with_tolerance(MAKERS[kind](seed), tolerance))
     check(solution, by_shooting(solution))
 
 
@@ -171,14 +171,14 @@ def test_estimates_bound_what_they_did_not(kind: str, seed: int, tolerance: floa
 @pytest.mark.parametrize("first", range(0, 60, 10))
 def test_estimates_of_one_rod_bound_its_errors(kind: str, first: int) -> None:
     for seed in range(first, first + 10):
-        solution = solve_scene(with_tolerance(MAKERS[kind](seed), drawn_tolerance(seed)))
+        solution = solve(with_tolerance(MAKERS[kind](seed), drawn_tolerance(seed)))
         check(solution, by_shooting(solution))
 
 
 @pytest.mark.parametrize("tendons", mostly_slow([False, True], quick=[False]), ids=["rods", "tendons"])
 @pytest.mark.parametrize("seed", mostly_slow(range(60), quick=[1]))
 def test_estimates_of_assemblies_bound_their_errors(seed: int, tendons: bool) -> None:
-    solution = solve_scene(with_tolerance(assembled_scene(seed, tendons=tendons), drawn_tolerance(seed)))
+    solution = solve(with_tolerance(assembled_scene(seed, tendons=tendons), drawn_tolerance(seed)))
     if not solution.converged:
         # What is not found claims nothing: no estimate stands beside it.
         assert solution.error_estimate is None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve_scene
+from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import FURTHER_MODES, HIDDEN_SAFETY, Resolution
@@ -56,7 +56,7 @@ def turned_towards(solution: Solution, truth: Solution) -> Solution:
 
 @pytest.mark.parametrize(("seed", "modes"), mostly_slow(UNEVEN, quick=[(2, 12)]))
 def test_an_uneven_step_is_seen(seed: int, modes: int) -> None:
-    near = solve_scene(drawn(seed, 1e-6))
+    near = solve(drawn(seed, 1e-6))
     truth = solved_near(near, model_with(TRUE_MODES, near))
     solution = solved_near(truth, model_with(modes, near))
     more = solved_near(truth, model_with(modes + FURTHER_MODES, near))
@@ -79,7 +79,7 @@ TOLERANCES = (4e-8, 1e-7, 1e-6, 1e-4)
     mostly_slow([(4, TOLERANCES[2:]), *((seed, TOLERANCES) for seed in range(21))], quick=[(4, TOLERANCES[2:])]),
 )
 def test_tolerance_is_met_by_held_rods(seed: int, tolerances: tuple[float, ...]) -> None:
-    solutions = [solve_scene(drawn(seed, tolerance)) for tolerance in tolerances]
+    solutions = [solve(drawn(seed, tolerance)) for tolerance in tolerances]
     true_model = model_with(TRUE_MODES, solutions[0])
     for solution, tolerance in zip(solutions, tolerances, strict=True):
         assert solution.converged

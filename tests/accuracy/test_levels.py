@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cosserat_casadi import Scene, Solution, build, discretise, read_scene, solve, solve_scene
+from cosserat_casadi import Scene, Solution, build, discretise, read_scene, solve
 from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
 from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level
 from cosserat_casadi.numerics.outcome import Outcome
@@ -111,7 +111,7 @@ def test_first_level_of_an_assembly_tells_how_fast_it_converges() -> None:
     platform = read_scene(ROOT / "examples" / "shaken_platform.toml")
     assert Level.first(platform.accuracy.tolerance).modes == 5
     tried: list[str] = []
-    solve_scene(platform, report=tried.append)
+    solve(platform, report=tried.append)
     first = discretise(platform, 7, 10)
     assert tried[0].startswith(f"{build(platform, first).size} unknowns")
     # Nothing finer is needed: what follows is the coarsened model.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, discretise, read_scene, solve, solve_scene
+from cosserat_casadi import build, discretise, read_scene, solve
 from cosserat_casadi.accuracy.preview import LEAST_COMPLIANCE, Preview
 from cosserat_casadi.equilibrium.locking import locked_inputs, residual_by_inputs
 from cosserat_casadi.model.build import Model
@@ -75,5 +75,5 @@ def test_a_scene_without_inputs_is_not_locked() -> None:
 
 @pytest.mark.slow
 def test_platform_moves_on_the_modes_that_its_scene_chooses(platform: Model) -> None:
-    chosen = solve_scene(platform.scene).model.discretisation
+    chosen = solve(platform.scene).model.discretisation
     assert moved_by_push(build(platform.scene, chosen)) > LEAST_COMPLIANCE * moved_by_push(platform)

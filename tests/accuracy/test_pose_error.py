@@ -7,13 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Solution, build, discretise, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, follow, solve
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.maths.pose_change import change_size, rotation_angles, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import follow_path
 from cosserat_casadi.paths.path_refinement import path_distance
 from tests.pose_errors import distance_between, pose_error
 from tests.scenes import WEIGHT, push, rod, scene
@@ -95,7 +94,7 @@ def test_error_along_a_diagonal_is_refined() -> None:
     assert max(by_components, by_entries) < 0.7 * tolerance
     wanted = truth.model.scene
     accuracy = wanted.accuracy.model_copy(update={"tolerance": tolerance})
-    found = solve_scene(wanted.model_copy(update={"accuracy": accuracy}))
+    found = solve(wanted.model_copy(update={"accuracy": accuracy}))
     assert found.error_estimate is not None
     assert pose_distance(found, truth) <= found.error_estimate <= tolerance
     assert found.model.discretisation["rod"].modes[1] > 4
@@ -119,6 +118,6 @@ def test_paths_are_compared_by_distances() -> None:
         base = {"quaternion": quaternion(turn).tolist()}
         free = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod(base=base)])
         force = turn.apply([2.0, 0.0, -1.0]).tolist()
-        paths = [follow_path(build(free, discretise(free, m, 20, "magnus8")), "push.force", force) for m in (3, 12)]
+        paths = [follow(build(free, discretise(free, m, 20, "magnus8")), "push.force", force) for m in (3, 12)]
         distances.append(path_distance(*paths))
     assert_allclose(distances[0], distances[1], rtol=1e-5, atol=0)

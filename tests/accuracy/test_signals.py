@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, build, discretise, solve, solve_scene
+from cosserat_casadi import Scene, build, discretise, solve
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, USUAL_MODES, Level
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import LOADED_SWEEPS, Resolution
@@ -71,7 +71,7 @@ def test_first_level_sees_the_signals() -> None:
 
 
 def test_waves_beyond_all_levels_are_said_to_be_unresolved() -> None:
-    solution = solve_scene(wound(70.0))
+    solution = solve(wound(70.0))
     assert not solution.converged
     assert solution.message.startswith("An equilibrium of the discrete model")
 
@@ -101,7 +101,7 @@ def test_hidden_modes_count_where_there_are_waves() -> None:
 def test_length_of_a_cable_is_within_the_tolerance() -> None:
     wanted = wound(6.0)
     tolerance = wanted.accuracy.tolerance
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     fine = solve(build(wanted, discretise(wanted, 40, 90, "magnus8")))
     assert solution.error_estimate is not None
     assert cable_distance(solution, fine) <= min(tolerance, 1.01 * solution.error_estimate)

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from cosserat_casadi import Solution, solve_scene
+from cosserat_casadi import Solution, solve
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.rod.rubbing_cable import BETWEEN, STRAIGHT, _missed_by_gauss
 from cosserat_casadi.scene import scene_from_dict
@@ -42,7 +42,7 @@ TABLES = {
 
 
 def solved(*loads: dict[str, object], **accuracy: object) -> Solution:
-    found = solve_scene(scene_from_dict({**TABLES, "loads": [*TABLES["loads"], *loads], "accuracy": accuracy}))
+    found = solve(scene_from_dict({**TABLES, "loads": [*TABLES["loads"], *loads], "accuracy": accuracy}))
     assert isinstance(found, Solution)
     assert found.converged
     return found

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cosserat_casadi import Scene, read_scene, solve_scene
+from cosserat_casadi import Scene, read_scene, solve
 from cosserat_casadi.bench.reference import Errors, distance, find_reference
 from tests.conftest import ROOT
 from tests.families import mostly_slow
@@ -38,7 +38,7 @@ QUICK = [path for path in PLAIN if path.stem in ("nitinol_wire", "follower_reiss
 
 def distance_to_shooting(wanted: Scene) -> Errors:
     """Of the reference."""
-    truth = shoot(solve_scene(wanted))
+    truth = shoot(solve(wanted))
     reference = find_reference(wanted)
     assert reference.method.startswith("a far finer discretisation")
     return distance(dict.fromkeys(reference.rods, truth), reference.rods)

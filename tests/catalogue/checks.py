@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from tests.catalogue.cases import Table, twisted_column, twisted_ring
 from tests.pose_errors import pose_error
@@ -26,7 +26,7 @@ def scene_of(tables: Table, tolerance: float = 1e-9) -> Scene:
 
 def solved(tables: Table, tolerance: float = 1e-9) -> Solution:
     """The equilibrium from a cold start with default settings."""
-    found = solve_scene(scene_of(tables, tolerance))
+    found = solve(scene_of(tables, tolerance))
     assert found.converged, found.message
     return found
 

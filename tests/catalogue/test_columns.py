@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, discretise, follow_path, read_scene, solve
+from cosserat_casadi import build, discretise, follow, read_scene, solve
 from tests.catalogue import cases
 from tests.catalogue.checks import fine_model
 from tests.conftest import ROOT
@@ -32,7 +32,7 @@ def test_arch_beyond_its_limit_load_is_in_equilibrium() -> None:
     """A point between the limits and the end, integrated from the clamp: the hinge is met, no moment is left."""
     file = ROOT / "examples" / "deep_arch.toml"
     scene = read_scene(file)
-    path = follow_path(build(scene, discretise(scene, 18, 44, "magnus8")), "crown.force", [0, 0, -1000.0])
+    path = follow(build(scene, discretise(scene, 18, 44, "magnus8")), "crown.force", [0, 0, -1000.0])
     assert path.converged
     first, second = (event.position for event in path.events)
     for index in ((first + second) // 2, -1):

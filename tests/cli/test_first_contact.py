@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 
 import cosserat_casadi
-from cosserat_casadi import SceneError, __version__, read_scene, solve_scene
+from cosserat_casadi import SceneError, __version__, read_scene, solve
 from cosserat_casadi.cli.command_group import LINES, load_command
 from cosserat_casadi.cli.commands.new import TEMPLATES, Template
 from cosserat_casadi.cli.main import app, run
@@ -34,7 +34,7 @@ def cosserat(*arguments: str) -> int:
 def test_template_solves_as_it_stands(template: Template, tmp_path: Path) -> None:
     file = tmp_path / "robot.toml"
     assert cosserat("new", str(file), "--template", template.value) == 0
-    solution = solve_scene(read_scene(file))
+    solution = solve(read_scene(file))
     assert solution.converged
     assert solution.stable
     # It explains itself.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cosserat_casadi import choose, read_scene, solve_scene
+from cosserat_casadi import choose, read_scene, solve
 from tests.commands import cosserat
 
 LOCKED = """
@@ -74,7 +74,7 @@ def test_an_export_of_locked_modes_says_so_and_does_not_end_well(held: Path) -> 
 
 def test_locked_modes_are_told_in_python(held: Path) -> None:
     scene = read_scene(held / "held.toml")
-    assert "kinematically locked" in solve_scene(scene).message
+    assert "kinematically locked" in solve(scene).message
     choice = choose(scene, samples=2)
     assert choice.locked == ("wind.force",)
     assert not choice.met

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import read_scene
-from cosserat_casadi.motion.vibration_modes import modes_of_scene
+from cosserat_casadi import modes_of, read_scene
 from cosserat_casadi.plots import modes_plot
 from tests.commands import Ended, cosserat
 
@@ -52,7 +51,7 @@ def test_modes_are_printed_written_and_drawn(blade: Path, monkeypatch: pytest.Mo
     assert (blade / "m.png").read_bytes().startswith(b"\x89PNG")
     assert (blade / "m.gif").read_bytes().startswith(b"GIF")
     written = json.loads((blade / "m.json").read_text())
-    modes = modes_of_scene(read_scene(blade / "blade.toml"), count=3)
+    modes = modes_of(read_scene(blade / "blade.toml"), count=3)
     assert written["converged"] is True
     assert written["outcome"] == "resolved"
     assert written["equilibrium"]["converged"] is True

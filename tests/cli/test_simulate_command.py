@@ -68,7 +68,7 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
 
     def run_with(*arguments: str, simulate: Simulate = swing) -> int:
         module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
-        module.simulate_scene = simulate  # type: ignore[attr-defined]
+        module.simulate = simulate  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, module.__name__, module)
         return run(lambda **options: app(["simulate", *arguments], **options))
 
@@ -261,7 +261,7 @@ from cosserat_casadi.cli.main import main
 from cosserat_casadi.motion.trajectory import MotionOutcome, MotionProgress
 from tests.motions import motion_of
 
-def simulate_scene(scene, *, start, progress):
+def simulate(scene, *, start, progress):
     motion = motion_of(scene, {"push.force": [0.1, 0.3, 0.0]}, duration=0.2, frames=5)
     outcome = MotionOutcome.INTERRUPTED
     try:
@@ -273,7 +273,7 @@ def simulate_scene(scene, *, start, progress):
         return replace(motion, outcome=outcome, message=outcome.value)
 
 module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
-module.simulate_scene = simulate_scene
+module.simulate = simulate
 sys.modules[module.__name__] = module
 main()
 """

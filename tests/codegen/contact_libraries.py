@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi import CompiledContact, CompiledContactSolution, Model, Scene, Solution, build, discretise, export
+from cosserat_casadi import Model, Scene, Solution, build, discretise, export
+from cosserat_casadi.codegen.contact.compiled import CompiledContact, CompiledContactSolution
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import QUICK, compile_quickly
 from tests.scenes import rod, scene

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, acados_expressions, build, scene_from_dict, write_acados
-from cosserat_casadi.codegen.acados import acados_functions
+from cosserat_casadi import Model, SceneError, build, scene_from_dict
+from cosserat_casadi.codegen.acados import acados_expressions, acados_functions, write_acados
 from cosserat_casadi.control import radau
 from cosserat_casadi.maths.typing import FloatArray
 from tests.control.swing import STEP, arm, replayed, task

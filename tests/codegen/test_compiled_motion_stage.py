@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import ExportError, Model, build, compiled_motion_stage, scene_from_dict
+from cosserat_casadi import ExportError, Model, build, scene_from_dict
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen import motion_stage as motion_stage_module
 from cosserat_casadi.codegen import stage as stage_module
-from cosserat_casadi.codegen.motion_stage import equations_functions, poses_functions
+from cosserat_casadi.codegen.motion_stage import compiled_motion_stage, equations_functions, poses_functions
 from cosserat_casadi.control import MotionStage, motion_stage, radau
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_load import cached, needs_compiler

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosserat_casadi import CompiledContact, ExportError, build, discretise, export, load, read_scene, solve
+from cosserat_casadi import ExportError, build, discretise, export, load, read_scene, solve
 from cosserat_casadi.accuracy.verified import Verified
+from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import (
     BAR,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from cosserat_casadi import read_scene, solve_scene
+from cosserat_casadi import read_scene, solve
 from cosserat_casadi.codegen.export import folder_files
 from tests.conftest import ROOT
 from tests.families import mostly_slow
@@ -31,7 +31,7 @@ def bytes_of_c(files: Mapping[str, str]) -> int:
 
 @pytest.mark.parametrize("name", mostly_slow(BUDGETS, quick=["planar_strip"]))
 def test_bytes_of_c_of_examples(name: str) -> None:
-    solution = solve_scene(read_scene(ROOT / "examples" / f"{name}.toml"))
+    solution = solve(read_scene(ROOT / "examples" / f"{name}.toml"))
     assert solution.converged
     without = bytes_of_c(folder_files(solution.model, "sized", estimate_errors=False))
     assert without <= BUDGETS[name]

@@ -33,7 +33,6 @@ from cosserat_casadi import (
     parse_scene,
     read_scene,
     solve,
-    solve_scene,
 )
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
@@ -117,7 +116,7 @@ def write() -> None:
     FOLDER.mkdir(exist_ok=True)
     hashed: dict[str, Any] = {}
     for name, (file, overrides) in GENERATED.items():
-        solution = solve_scene(read_scene(ROOT / "examples" / file, overrides))
+        solution = solve(read_scene(ROOT / "examples" / file, overrides))
         assert solution.converged, solution.message
         found = write_one(solution, name, solution.error_estimate)
         if name in HASHED:

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, Solution, compiled_motion_stage, compiled_stage, solve
+from cosserat_casadi import Model, SceneError, Solution, solve
 from cosserat_casadi.codegen.acados import acados_expressions, acados_functions
-from cosserat_casadi.codegen.motion_stage import equations_functions, poses_functions
-from cosserat_casadi.codegen.stage import stage_functions
+from cosserat_casadi.codegen.motion_stage import compiled_motion_stage, equations_functions, poses_functions
+from cosserat_casadi.codegen.stage import compiled_stage, stage_functions
 from cosserat_casadi.control import Condensing, embedded, lifted, motion_stage
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_parameters_in_c import RECIPES

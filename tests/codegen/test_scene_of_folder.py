@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, build, discretise, export, read_scene, scene_from_dict, solve_scene
+from cosserat_casadi import Model, Scene, build, discretise, export, read_scene, scene_from_dict, solve
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.scene.writing import scene_tables
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS, Exported
@@ -47,7 +47,7 @@ def test_rods_that_differ(tmp_path: Path) -> None:
     read = read_scene(export(model, tmp_path / "uneven") / "scene.toml")
     assert [own.rod for own in read.accuracy.of_rods] == ["right", "finger"]
     assert build(read).discretisation == model.discretisation
-    assert solve_scene(read).model.discretisation == model.discretisation
+    assert solve(read).model.discretisation == model.discretisation
 
 
 def test_rods_of_several_strains_with_lists_of_modes() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, follow_path, load, solve
+from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, follow, load, solve
 from cosserat_casadi.codegen.compiled_results import CompiledStability
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
@@ -148,7 +148,7 @@ def test_critical_equilibrium_is_not_stable(library: Callable[[str], Library]) -
     """A column at its critical load leads nowhere along its zero eigenvalue: it is not taken for a neutral one."""
     planar = library("planar")
     towards = [0.0, 0.0, -2.0 * CRITICAL]
-    (event, *_) = follow_path(planar.model, "push.force", towards).events
+    (event, *_) = follow(planar.model, "push.force", towards).events
     at_event = planar.model.pack({"push.force": np.array(towards) * event.factor})
     straight = planar.compiled.solve(at_event)
     assert straight.converged

@@ -15,30 +15,26 @@ from scipy.optimize import brentq, fsolve, minimize_scalar
 
 from cosserat_casadi import (
     Solution,
-    acados_expressions,
     build,
     discretise,
-    export_page,
-    follow_path,
+    follow,
     inverse,
-    inverse_scene,
     linearise,
     modes_of,
-    modes_of_scene,
     parse_scene,
     read_scene,
     solve,
-    solve_scene,
 )
 from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
+from cosserat_casadi.codegen.acados import acados_expressions
 from cosserat_casadi.control import embedded, stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.motion.collocated_stage import motion_stage
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.page.page import export_page
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
-from cosserat_casadi.results.solution_file import result
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
@@ -224,7 +220,7 @@ def test_the_internal_wrench_knows_of_contact(bars: Solution) -> None:
 
 
 def test_result_names_contacts(table: Solution) -> None:
-    data = result(table)
+    data = table.to_dict()
     # The forces of contacts are found, not given.
     assert list(data["inputs"]) == ["weight.acceleration"]
     (line,) = data["contacts"]
@@ -253,10 +249,10 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
     model = table.model
     uses: list[Callable[[], object]] = [
         lambda: inverse(model),
-        lambda: inverse_scene(scene),
+        lambda: inverse(scene),
         lambda: motion_stage(model, 0.1),
         lambda: modes_of(table),
-        lambda: modes_of_scene(scene),
+        lambda: modes_of(scene),
         lambda: linearise(table),
         lambda: acados_expressions(model, "rod"),
         lambda: export_page(table, tmp_path / "page.html"),
@@ -360,7 +356,7 @@ force = [0, 0, -1.0]
     held = solve(build(parse_scene(rod + bar)))
     (contact,) = held.contacts
     assert held.stable
-    followed = follow_path(build(parse_scene(rod + bar)), "push.force", [0.0, 0.0, -1.0])
+    followed = follow(build(parse_scene(rod + bar)), "push.force", [0.0, 0.0, -1.0])
     assert_allclose(held.tip().position, followed.tip().position[-1:], rtol=0, atol=1e-8)
     assert_allclose(contact.start, followed.contacts(-1)[0].start, rtol=0, atol=1e-8)
 
@@ -578,7 +574,7 @@ def test_reference_cases(name: str) -> None:
     if not EFFECTS.is_dir():
         pytest.skip("the reference cases are not at hand")
     expected = json.loads((EFFECTS / f"{name}.json").read_text())["expected"]
-    found = solve_scene(read_scene(EFFECTS / f"{name}.toml"))
+    found = solve(read_scene(EFFECTS / f"{name}.toml"))
     assert found.converged
     assert found.stable
     assert found.error_estimate is not None

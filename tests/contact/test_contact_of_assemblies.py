@@ -12,16 +12,7 @@ from numpy.testing import assert_allclose
 from rich.console import Console
 from scipy.optimize import brentq
 
-from cosserat_casadi import (
-    Solution,
-    build,
-    export,
-    follow_path,
-    parse_scene,
-    solve,
-    solve_scene,
-    with_exact_contact,
-)
+from cosserat_casadi import Solution, build, export, follow, parse_scene, solve
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
@@ -32,12 +23,10 @@ from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.scene_plot import save_plot
-from cosserat_casadi.results.path_file import path_result
-from cosserat_casadi.results.solution_file import result
-from cosserat_casadi.scene import Scene
-from cosserat_casadi.sweep.row_model import RowModel
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.scene import Scene, with_exact_contact
+from cosserat_casadi.sweeps.row_model import RowModel
+from cosserat_casadi.sweeps.run import plan_sweep
+from cosserat_casadi.sweeps.table import table_of
 
 DENSE = np.linspace(0.0, 1.0, 3001)
 
@@ -471,7 +460,7 @@ def test_the_jacobian_is_exact(frame: Solution) -> None:
 
 @pytest.fixture(scope="module")
 def lowered() -> ContactPath:
-    path = follow_path(build(parse_scene(HEAD + ROD + PUSH + BALL + DOME)), "push.force", [0.0, 0.0, -1.0])
+    path = follow(build(parse_scene(HEAD + ROD + PUSH + BALL + DOME)), "push.force", [0.0, 0.0, -1.0])
     assert isinstance(path, ContactPath)
     return path
 
@@ -491,7 +480,7 @@ def test_a_ball_comes_down_on_a_dome(lowered: ContactPath, on_dome: Solution) ->
     assert_allclose(end.contacts[0].ends, on_dome.contacts[0].ends, rtol=1e-9, atol=0)
     assert end.smallest_eigenvalue is not None and lowered.smallest_eigenvalue is not None
     assert_allclose(lowered.smallest_eigenvalue[-1], end.smallest_eigenvalue, rtol=1e-9, atol=0)
-    entry = path_result(lowered)["events"][0]["contact"]
+    entry = lowered.to_dict()["events"][0]["contact"]
     assert entry == {"obstacle": "dome", "body": "ball", "kind": "point"}
 
 
@@ -499,7 +488,7 @@ def test_a_ball_comes_down_on_a_dome(lowered: ContactPath, on_dome: Solution) ->
 def test_a_ball_lifts_off_where_it_came_down(lowered: ContactPath) -> None:
     lift = PUSH.replace('"push"', '"lift"').replace("-1.0", "0.0")
     model = build(parse_scene(HEAD + ROD + PUSH + lift + BALL + DOME))
-    lifted = follow_path(model, "lift.force", [0.0, 0.0, 0.95])
+    lifted = follow(model, "lift.force", [0.0, 0.0, 0.95])
     (event,) = lifted.events
     assert event.kind == "lift_off"
     assert_allclose(1.0 - 0.95 * event.factor, lowered.events[0].factor, rtol=0, atol=1e-8)
@@ -510,8 +499,8 @@ def test_a_ball_lifts_off_where_it_came_down(lowered: ContactPath) -> None:
 def test_along_a_path_a_point_slides_from_one_rod_to_the_next(share: float) -> None:
     """As along one rod: at the same loads it touches, and ends with the same place, force and stability."""
     growing = ("push.force", [0.0, 0.0, -2.0])
-    whole = follow_path(build(parse_scene(HEAD + ROD + PUSH + BAR)), *growing)
-    cut = follow_path(build(parse_scene(HEAD + chain(share))), *growing)
+    whole = follow(build(parse_scene(HEAD + ROD + PUSH + BAR)), *growing)
+    cut = follow(build(parse_scene(HEAD + chain(share))), *growing)
     assert [event.kind for event in cut.events] == ["touch", "slide_over_joint"]
     assert_allclose(cut.events[0].factor, whole.events[0].factor, rtol=0, atol=1e-9)
     (expected,) = whole.contacts(-1)
@@ -535,7 +524,7 @@ def test_a_point_slides_back_over_the_joint() -> None:
     """Against the force that has drawn it on to the second rod another draws it back."""
     lift = PUSH.replace('"push"', '"lift"').replace("-1.0", "0.0")
     model = build(parse_scene(HEAD + chain(0.46) + lift))
-    path = follow_path(model, "lift.force", [0.0, 0.0, 0.95])
+    path = follow(model, "lift.force", [0.0, 0.0, 0.95])
     assert [event.kind for event in path.events] == ["slide_over_joint", "lift_off"]
     back = path.events[0].contact
     assert back is not None and back.owner == "rod"
@@ -553,7 +542,7 @@ stiffness = { bending_y = 0.5 }
 base = { rod = "rod", at = 0.46, quaternion = [0.8, 0.6, 0, 0] }
 """
     model = build(parse_scene(HEAD + ROD + twig + PUSH + BAR + 'rods = ["rod"]\n'))
-    path = follow_path(model, "push.force", [0.0, 0.0, -1.0])
+    path = follow(model, "push.force", [0.0, 0.0, -1.0])
     assert not path.converged
     assert path.factor[-1] < 1.0
     assert "'rod' with 'bar' has come to X = 0.46, where a load or another rod acts" in path.message
@@ -567,7 +556,7 @@ base = { rod = "rod", at = 0.46, quaternion = [0.8, 0.6, 0, 0] }
 
 
 def test_results_name_the_body(on_dome: Solution, tmp_path: Path) -> None:
-    (entry,) = result(on_dome)["contacts"]
+    (entry,) = on_dome.to_dict()["contacts"]
     assert (entry["body"], entry["kind"]) == ("ball", "point")
     assert "rod" not in entry and len(entry["point_forces"]) == 1
     console = Console(record=True, width=200)
@@ -591,9 +580,9 @@ FREE = ROD.replace("base = { position = [0, 0, 0], tangent = [1, 0, 0] }", "base
 HELD_BY_CONTACT = {"free rod": FREE + BAR, "ball of a free rod": FREE + BALL + DOME}
 
 STATICS: dict[str, Callable[[Scene, Path], object]] = {
-    "solve": lambda scene, _: solve(build(scene)),
-    "solve_scene": lambda scene, _: solve_scene(scene),
-    "follow_path": lambda scene, _: follow_path(build(scene), "push.force", [0, 0, -2.0]),
+    "solve a model": lambda scene, _: solve(build(scene)),
+    "solve": lambda scene, _: solve(scene),
+    "follow": lambda scene, _: follow(build(scene), "push.force", [0, 0, -2.0]),
     "plan_sweep": lambda scene, _: plan_sweep(scene, table_of({"push.force.z": [-1.0]})),
     "export": lambda scene, folder: export(build(scene), folder),
 }

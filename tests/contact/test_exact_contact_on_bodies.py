@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Outcome, Solution, build, export, follow_path, parse_scene, read_scene, solve
+from cosserat_casadi import Outcome, Solution, build, export, follow, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
-from cosserat_casadi.equilibrium.contact.contact_search import found_at
+from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import ExportError, SceneError
@@ -28,7 +28,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
 from cosserat_casadi.plots.scene_plot import save_plot
-from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweeps.row_model import RowModel
 from tests.conftest import ROOT
 from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH
 
@@ -200,7 +200,7 @@ def test_equations_have_their_exact_derivative(touching: Solution, lying: Soluti
 def test_the_gap_curves_as_its_differences_say(touching: Solution) -> None:
     """How the place slides hangs on it, and so does stability."""
     equations, z = _equations(touching)
-    found = found_at(equations, z, equations.given)
+    found = contact_equilibrium(equations, z, equations.given)
     (touch,) = equations.state.touches
     ((rod, disk),) = pairs(equations.scene)
     step = 2e-3
@@ -367,7 +367,7 @@ def test_every_motion_that_keeps_the_contact_costs_energy(touching: Solution) ->
 def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
     """The finger alone bends until its disk is at the other, which is straight: z = −0.05 and X from its x."""
     model = build(parse_scene(FINGERS))
-    path = follow_path(model, "push.force", [0.0, 0.0, -PUSH], values={"push.force": [0.0, 0.0, 0.0]})
+    path = follow(model, "push.force", [0.0, 0.0, -PUSH], values={"push.force": [0.0, 0.0, 0.0]})
     assert path.converged and isinstance(path, ContactPath)
     (touch,) = path.events
     assert (touch.kind, touch.contact.obstacle, touch.contact.owner) == ("touch", "disk", "pushed")
@@ -389,7 +389,7 @@ def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
 def test_a_disk_that_slips_off_loses_stability_at_the_limit() -> None:
     """The curve turns back where the smallest eigenvalue of the second variation changes its sign, told apart."""
     short = FINGERS.replace("length = 0.9", "length = 0.555").replace("[0.3, 0, -0.1]", "[0.4, 0, -0.1]")
-    path = follow_path(build(parse_scene(short)), "push.force", [0, 0, -4.0], values={"push.force": [0, 0, 0]})
+    path = follow(build(parse_scene(short)), "push.force", [0, 0, -4.0], values={"push.force": [0, 0, 0]})
     assert path.converged and isinstance(path, ContactPath)
     assert [event.kind for event in path.events][:2] == ["touch", "limit"]
     turns = int(np.argmax(np.diff(path.factor) < 0.0))

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Model, Outcome, Solution, build, export, follow_path, load, parse_scene, solve
+from cosserat_casadi import Model, Outcome, Solution, build, export, follow, load, parse_scene, solve
 from cosserat_casadi.control import embedded
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -313,7 +313,7 @@ def test_the_jacobian_of_an_equilibrium_is_symmetric(pressed: Solution) -> None:
 
 def test_what_takes_loads_takes_obstacles_on_bodies(pressed: Solution) -> None:
     model = pressed.model
-    followed = follow_path(model, "push.force", [0.0, 0.0, -0.5], values={"push.force": [0.0, 0.0, -0.1]})
+    followed = follow(model, "push.force", [0.0, 0.0, -0.5], values={"push.force": [0.0, 0.0, -0.1]})
     assert followed.converged
     assert_allclose(followed.tip("pushed").position[-1], pressed.tip("pushed").position[0], rtol=0, atol=1e-9)
     assert embedded(model, pressed) is not None

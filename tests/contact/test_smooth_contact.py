@@ -18,7 +18,7 @@ from cosserat_casadi import (
     build,
     discretise,
     export,
-    follow_path,
+    follow,
     inverse,
     linearise,
     load,
@@ -27,17 +27,14 @@ from cosserat_casadi import (
     read_scene,
     simulate,
     solve,
-    solve_scene,
-    with_exact_contact,
 )
 from cosserat_casadi.control import embedded
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.load_trace import traced
-from cosserat_casadi.results.path_file import path_result
-from cosserat_casadi.results.solution_file import result
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.scene import with_exact_contact
+from cosserat_casadi.sweeps.run import plan_sweep
+from cosserat_casadi.sweeps.table import table_of
 from tests.commands import cosserat
 from tests.conftest import ROOT
 
@@ -176,7 +173,7 @@ width = {WIDTH}
 stiffness = {STIFFNESS}
 """
     )
-    lying = solve_scene(parse_scene(text))
+    lying = solve(parse_scene(text))
     assert lying.converged
     assert lying.stable
     assert_allclose(lying.pose([0.3, 1.0]).position[:, 2], 0.0, rtol=0, atol=1e-12)
@@ -185,7 +182,7 @@ stiffness = {STIFFNESS}
     assert contact.gap is not None
     assert_allclose(contact.gap, gap, rtol=0, atol=1e-12)
     assert_allclose(contact.force, [0.0, 0.0, weight], rtol=0, atol=1e-9)
-    entry = result(lying)["contacts"][0]
+    entry = lying.to_dict()["contacts"][0]
     assert (entry["kind"], entry["width"], entry["from"], entry["to"]) == ("smooth", WIDTH, 0.0, 1.0)
 
 
@@ -253,7 +250,7 @@ def test_a_rod_that_is_pushed_through_is_no_equilibrium(pressed: Solution) -> No
 @pytest.mark.slow
 def test_no_tolerance_is_met_by_a_rod_that_is_pushed_through() -> None:
     text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "tolerance = 1e-3")
-    found = solve_scene(parse_scene(text + "stiffness = 1.0\n"))
+    found = solve(parse_scene(text + "stiffness = 1.0\n"))
     assert found.outcome is Outcome.UNRESOLVED
     assert "widths deep" in found.message
 
@@ -399,7 +396,7 @@ position = {position}
 def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
     """One equilibrium, by every way that leads there."""
     model = pressed.model
-    followed = follow_path(model, "push.force", [0.0, 0.0, -0.6], values={"push.force": [0.0, 0.0, -0.1]})
+    followed = follow(model, "push.force", [0.0, 0.0, -0.6], values={"push.force": [0.0, 0.0, -0.1]})
     assert followed.outcome is PathOutcome.CONVERGED
     assert_allclose(followed.tip().position[-1], pressed.tip().position[0], rtol=0, atol=1e-9)
 
@@ -567,7 +564,7 @@ width = 1e-3
 def test_no_step_of_a_path_passes_through_a_thin_wire() -> None:
     """Steps of their own length would end behind it; the solve from a solution and the path end in front of it."""
     model = build(parse_scene(ROD + PUSH + WIRE))
-    path = follow_path(model, "push.force", [0.0, 0.0, -2.5])
+    path = follow(model, "push.force", [0.0, 0.0, -2.5])
     assert path.converged
     held = path.solution(-1)
     assert held.pose([0.906]).position[0, 2] > -0.1
@@ -587,11 +584,11 @@ def test_no_step_from_a_solution_passes_through_a_thin_wire() -> None:
 
 def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
     soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
-    path = follow_path(soft, "push.force", [0.0, 0.0, -0.6])
+    path = follow(soft, "push.force", [0.0, 0.0, -0.6])
     assert path.outcome is PathOutcome.UNRESOLVED
     assert "widths deep" in path.message
     # As one that is not tells how deep it is.
-    fine = follow_path(pressed.model, "push.force", [0.0, 0.0, -0.6])
-    contact = path_result(fine)["contact"]
+    fine = follow(pressed.model, "push.force", [0.0, 0.0, -0.6])
+    contact = fine.to_dict()["contact"]
     assert contact["widths"] == {"table": WIDTH}
     assert -1.0 < max(contact["depth"]) < 1.0

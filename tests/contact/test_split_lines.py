@@ -8,14 +8,13 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, parse_scene, solve
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_newton import sought
 from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
-from cosserat_casadi.results.solution_file import result
 from tests.contact.test_contact import TABLE, check_forces_sum, free_span
 
 BENDING, WEIGHT, HEIGHT, LENGTH = 0.03, 0.981, 0.08, 1.2
@@ -72,11 +71,11 @@ def test_the_table_takes_a_load_where_it_stands(pressed: Solution) -> None:
 
 
 def test_files_list_the_forces_inside(pressed: Solution) -> None:
-    (contact,) = result(pressed)["contacts"]
+    (contact,) = pressed.to_dict()["contacts"]
     (section,) = pressed.contacts[0].inside
     assert contact["inside_forces"] == [{"at": 0.7, "force": section.force}]
     assert len(contact["point_forces"]) == 2
-    (plain,) = result(solved(""))["contacts"]
+    (plain,) = solved("").to_dict()["contacts"]
     assert "inside_forces" not in plain
 
 
@@ -230,7 +229,7 @@ def energy(shape: Solution, loads: Solution) -> float:
 
 @pytest.mark.slow
 def test_a_scene_meets_its_tolerance() -> None:
-    solution = solve_scene(parse_scene(TABLE.replace("1e-7", "1e-6") + point_load(0.7, -0.5)))
+    solution = solve(parse_scene(TABLE.replace("1e-7", "1e-6") + point_load(0.7, -0.5)))
     check_contact(solution, 1e-6)
     assert solution.error_estimate is not None
     assert solution.error_estimate < 1e-6

@@ -9,19 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    Model,
-    Outcome,
-    Scene,
-    SceneError,
-    Solution,
-    build,
-    inverse,
-    inverse_result,
-    inverse_scene,
-    read_scene,
-    solve,
-)
+from cosserat_casadi import Model, Outcome, Scene, SceneError, Solution, build, inverse, read_scene, solve
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.scene.writing import scene_tables
 from tests.conftest import ROOT
@@ -133,7 +121,7 @@ def test_constant_curvature_closed_form() -> None:
     x, z = (1 - np.cos(curvature * length)) / curvature, np.sin(curvature * length) / curvature
     target = {"kind": "position", "rod": "rod", "position": [x, 0.0, z]}
     bounds = [{"input": "cable.tension", "upper": 1e3}]
-    found = inverse_scene(scene(strain="planar", actuators=[cable], targets=[target], bounds=bounds))
+    found = inverse(scene(strain="planar", actuators=[cable], targets=[target], bounds=bounds))
     assert found.met
     assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-8)
     assert isinstance(found.values["cable.tension"], float)
@@ -173,7 +161,7 @@ OUT_OF_REACH = {"kind": "position", "rod": "rod", "position": [0.0, 0.0, 1.8]}
 
 def test_out_of_reach_gives_the_closest_and_says_so() -> None:
     """A rod of 0.8 m that keeps its length, and a point 1.8 m away: 1 m is left."""
-    found = inverse_scene(scene(push(force=[0.5, 0, 0]), inputs=["push.force"], targets=[OUT_OF_REACH]))
+    found = inverse(scene(push(force=[0.5, 0, 0]), inputs=["push.force"], targets=[OUT_OF_REACH]))
     assert found.solution.converged
     assert not found.met
     assert_allclose(found.gaps[0].position, 1.0, rtol=0, atol=1e-6)
@@ -209,11 +197,11 @@ def test_weights_decide_between_targets() -> None:
 
 def test_the_equilibrium_is_that_of_a_solve() -> None:
     """Inputs found, given to a plain solve, lead to the same tip; the file says what is left."""
-    found = inverse_scene(read_scene(ROOT / "examples" / "finger_to_point.toml"))
+    found = inverse(read_scene(ROOT / "examples" / "finger_to_point.toml"))
     assert found.met
     again = solve(found.solution.model, found.values)
     assert_allclose(again.tip().position, found.solution.tip().position, rtol=0, atol=1e-12)
-    file = inverse_result(found)
+    file = found.to_dict()
     assert (file["targets_met"], file["converged"], file["stable"]) == (True, True, True)
     assert file["targets"][0]["position_gap"] <= 1e-7 * 0.1
     assert file["error_estimate"] <= 1e-7
@@ -224,7 +212,7 @@ def test_the_equilibrium_is_that_of_a_solve() -> None:
 def test_a_gap_is_not_smaller_than_the_error_of_its_model() -> None:
     """Modes and nodes that the user fixed meet the target on their own rod, which is far from the scene's."""
     base = read_scene(ROOT / "examples" / "finger_to_point.toml")
-    coarse = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-6}))
+    coarse = inverse(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-6}))
     (gap,) = coarse.gaps
     assert gap.position <= 1e-6 * 0.1
     assert gap.position_error is not None
@@ -234,20 +222,20 @@ def test_a_gap_is_not_smaller_than_the_error_of_its_model() -> None:
     assert not coarse.met
     assert "The targets are met." not in coarse.solution.message
     assert "estimated error of the model" in coarse.solution.message
-    file = inverse_result(coarse)
+    file = coarse.to_dict()
     assert file["targets"][0]["position_error_estimate"] == gap.position_error
     # The estimate is honest: at the same inputs the resolved rod misses the target by no more than it.
     resolved = solve(build(changed(base, accuracy={"modes": 12, "nodes": 24})), coarse.values)
     miss = np.linalg.norm(resolved.tip().position[0] - base.targets[0].position)
     assert 1e-6 * 0.1 < miss <= gap.position_error
-    wide = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 0.1}))
+    wide = inverse(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 0.1}))
     assert wide.met
 
 
 def test_modes_that_do_not_resolve_the_rod_are_no_result() -> None:
     """As in a solve: beyond a tenth of the length the equilibrium is not one of the rod, however small the gap."""
     base = read_scene(ROOT / "examples" / "finger_to_point.toml")
-    found = inverse_scene(changed(base, accuracy={"modes": 1, "nodes": 4}))
+    found = inverse(changed(base, accuracy={"modes": 1, "nodes": 4}))
     assert found.gaps[0].position <= 1e-10
     assert found.solution.outcome is Outcome.UNRESOLVED
     assert "The estimated error is 0.22 of the length." in found.solution.message

@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
-from cosserat_casadi import Scene, SceneError, build, inverse_scene, solve
+from cosserat_casadi import Scene, SceneError, build, inverse, solve
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.control import inverse_accuracy
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
@@ -61,17 +61,17 @@ def test_forces_are_recovered_for_every_row(tmp_path: Path, accuracy: dict[str, 
     rows = [row[:3] for row in tips(given)]
     table = read_targets(write(tmp_path / "table.csv", rows, "x,y,z"), given)
     found = inverse_rows(given, table.rows)
-    for force, inverse in zip(FORCES, found, strict=True):
-        assert inverse.met
-        assert_allclose(inverse.values["push.force"][:, 0], force, rtol=0, atol=2e-5)
-        assert (inverse.solution.error_estimate or 1.0) <= accuracy["tolerance"]
+    for force, row in zip(FORCES, found, strict=True):
+        assert row.met
+        assert_allclose(row.values["push.force"][:, 0], force, rtol=0, atol=2e-5)
+        assert (row.solution.error_estimate or 1.0) <= accuracy["tolerance"]
 
 
 def test_a_row_is_found_as_alone(tmp_path: Path) -> None:
     given = wanted()
     rows = [row[:3] for row in tips(given)]
     together = inverse_rows(given, read_targets(write(tmp_path / "table.csv", rows, "x,y,z"), given).rows)
-    alone = inverse_scene(scene_from_dict({**scene_tables(given), "targets": [{**POSITION, "position": rows[2]}]}))
+    alone = inverse(scene_from_dict({**scene_tables(given), "targets": [{**POSITION, "position": rows[2]}]}))
     assert_allclose(together[2].values["push.force"], alone.values["push.force"], rtol=1e-7, atol=1e-9)
     assert_allclose(alone.values["push.force"][:, 0], FORCES[2], rtol=0, atol=2e-5)
 
@@ -84,11 +84,11 @@ def test_poses_with_orientations(tmp_path: Path) -> None:
     tip = solve(model, truth).tip()
     rows = [[*tip.position[0].tolist(), *(sign * tip.quaternion[0]).tolist()] for sign in (1, -1)]
     table = read_targets(write(tmp_path / "table.csv", rows, "x,y,z,qw,qx,qy,qz"), given)
-    for inverse in inverse_rows(given, table.rows):
-        assert inverse.met
-        assert inverse.gaps[0].angle is not None
+    for row in inverse_rows(given, table.rows):
+        assert row.met
+        assert row.gaps[0].angle is not None
         for name, value in truth.items():
-            assert_allclose(inverse.values[name][:, 0], value, rtol=0, atol=5e-5)
+            assert_allclose(row.values[name][:, 0], value, rtol=0, atol=5e-5)
 
 
 def test_models_and_optimisers_are_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,7 +106,7 @@ def test_models_and_optimisers_are_built_once(tmp_path: Path, monkeypatch: pytes
     for count in (1, 4):
         built.clear()
         table = read_targets(write(tmp_path / "table.csv", rows[:count], "x,y,z"), given)
-        assert all(inverse.met for inverse in inverse_rows(given, table.rows))
+        assert all(row.met for row in inverse_rows(given, table.rows))
         counts.append(len(built))
     assert counts[1] == counts[0]
 
@@ -140,7 +140,7 @@ def test_a_row_out_of_reach_leaves_the_others_alone(tmp_path: Path) -> None:
     rows = [row[:3] for row in tips(given)]
     rows.insert(1, [0.0, 0.0, -0.2])
     found = inverse_rows(given, read_targets(write(tmp_path / "table.csv", rows, "x,y,z"), given).rows)
-    assert [inverse.met for inverse in found] == [True, False, True, True, True]
+    assert [row.met for row in found] == [True, False, True, True, True]
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_distance_of_rows_counts_orientations() -> None:
 
 def test_rounds_of_all_discretisations_are_told() -> None:
     """On a finer one Newton's method has next to nothing left to do: the optimiser worked before."""
-    found = inverse_scene(wanted({**POSITION, "position": [0.2, 0.05, 0.95]}, accuracy={"tolerance": 1e-10}))
+    found = inverse(wanted({**POSITION, "position": [0.2, 0.05, 0.95]}, accuracy={"tolerance": 1e-10}))
     assert found.met
     assert max(found.solution.model.discretisation["rod"].modes) > 6
     assert found.rounds > 0

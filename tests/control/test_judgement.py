@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, read_scene, solve, solve_scene
+from cosserat_casadi import Model, SceneError, build, read_scene, solve
 from cosserat_casadi.control import judged
 from tests.conftest import ROOT
 from tests.scenes import push, scene
@@ -16,7 +16,7 @@ from tests.scenes import push, scene
 def planar() -> Model:
     """A rod whose modes were chosen for a push within a plane."""
     pushed = scene(push(force=[0.3, 0.0, -0.2]), accuracy={"tolerance": 1e-4})
-    return build(pushed, solve_scene(pushed).model.discretisation)
+    return build(pushed, solve(pushed).model.discretisation)
 
 
 def test_an_optimum_is_the_equilibrium_at_its_unknowns(planar: Model) -> None:

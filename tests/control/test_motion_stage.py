@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, compiled_motion_stage, scene_from_dict
+from cosserat_casadi import SceneError, build, scene_from_dict
+from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
 from cosserat_casadi.control import Collocation, gauss, motion_stage, radau
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import end_of, stages_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import compiled_stage
+from cosserat_casadi.codegen.stage import compiled_stage
 from examples.tendon_robot_mpc import BALANCED, LARGEST, LEAST, RATE, SOLVERS, STEP, Run, robots, simulate, summary
 from tests.codegen.test_load import cached, needs_compiler
 from tests.conftest import ROOT

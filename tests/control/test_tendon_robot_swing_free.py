@@ -14,8 +14,8 @@ from numpy.testing import assert_allclose
 from swing_free import plans, task, with_motion
 from swing_free.robot import Run, simulate
 
-from cosserat_casadi import CompiledMotionStage, solve
-from cosserat_casadi.codegen.motion_stage import poses_functions
+from cosserat_casadi import solve
+from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, poses_functions
 from cosserat_casadi.control import MotionStage
 from examples import tendon_robot_swing_free as example
 from tests.codegen.test_load import cached, needs_compiler

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Solution, compiled_stage, solve
+from cosserat_casadi import Model, Solution, solve
+from cosserat_casadi.codegen.stage import compiled_stage
 from examples.tendon_robot_mpc import robots
 from tests.codegen.test_load import cached, needs_compiler
 

@@ -9,7 +9,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import build, parse_scene, solve, solve_scene
+from cosserat_casadi import build, parse_scene, solve
 from cosserat_casadi.environments import REACH, ReachEnvironment
 from cosserat_casadi.environments.reach import _chosen
 from cosserat_casadi.errors import SceneError
@@ -83,7 +83,7 @@ def test_modes_are_chosen_for_where_the_actions_go():
     text = SCENE.replace("modes = 1\nnodes = 4\n", "tolerance = 1e-5\n").replace("tension = 0.1", "tension = 0.0")
     scene = parse_scene(text + BOUNDS)
     pulled = {"abductor.tension": 0.5, "flexor.tension": 1.0}
-    own = solve_scene(scene).model.discretisation
+    own = solve(scene).model.discretisation
     assert solve(build(scene, own), pulled).error_estimate > 1e-5
     discretisation, error = _chosen(scene)
     assert error <= 1e-5

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, discretise, read_scene, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, read_scene, solve
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
@@ -57,7 +57,7 @@ def assert_estimated(solution: Solution) -> None:
 @pytest.fixture(scope="module")
 def tendon_robot() -> Model:
     read = read_scene(AWAY / "tendon_robot.toml")
-    return build(read, solve_scene(read).model.discretisation)
+    return build(read, solve(read).model.discretisation)
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_answers_at_the_inputs_of_the_choice_are_within_the_tolerance(tendon_rob
 
 def test_a_grip_beside_the_plane_of_the_choice() -> None:
     read = read_scene(ROOT / "examples" / "tendon_finger.toml")
-    model = build(read, solve_scene(read).model.discretisation)
+    model = build(read, solve(read).model.discretisation)
     aside = solve(model, {"grip.force": [0.0, 0.025, -0.05]})
     assert_estimated(aside)
     assert aside.error_estimate is not None
@@ -204,6 +204,6 @@ def test_no_estimate_where_none_is_wanted_or_nothing_was_solved() -> None:
 def test_answers_in_exact_contact_know_their_error() -> None:
     read = read_scene(ROOT / "examples" / "rod_over_bar.toml")
     coarse = solve(build(read, discretise(read, 3, 10)))
-    reference = solve_scene(read)
+    reference = solve(read)
     assert coarse.error_estimate is not None
     assert coarse.error_estimate > LEAST * pose_distance(coarse, reference)

@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from cosserat_casadi import Scene, Solution, read_scene, scene_from_dict, solve_scene
-from cosserat_casadi.results.solution_file import result
+from cosserat_casadi import Scene, Solution, read_scene, scene_from_dict, solve
 from tests.conftest import case_files
 from tests.families import mostly_slow
 
@@ -29,7 +28,7 @@ def scene(*rods: dict[str, Any], tolerance: float = 1e-9, **changes: Any) -> Sce
 
 
 def solved(wanted: Scene) -> Solution:
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged, solution.message
     return solution
 
@@ -235,7 +234,7 @@ def test_assembly_that_cannot_close_says_what_is_left() -> None:
         for n, x, kind in (("a", -0.1, "spherical"), ("b", 0.1, "fixed"))
     ]
     few = {"modes": 3, "nodes": 8}
-    solution = solve_scene(scene(*rods, accuracy=few, bodies=[{"name": "plate"}], joints=joints))
+    solution = solve(scene(*rods, accuracy=few, bodies=[{"name": "plate"}], joints=joints))
     assert not solution.converged
     assert "The assembly is not closed: the tip of " in solution.message
     # 1.5 m between the feet, 0.3 m of each rod and 0.2 m of the body: 0.7 m are lacking, shared by two joints.
@@ -262,7 +261,7 @@ CASES = [path for path in case_files("robots") if "platform" in path.stem]
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
 def test_reference_platform(path: Any) -> None:
     """The six-rod robot, whose rods do not fit each other unloaded, from a cold start with default settings."""
-    case, own = json.loads(path.with_suffix(".json").read_text()), result(solved(read_scene(path)))
+    case, own = json.loads(path.with_suffix(".json").read_text()), solved(read_scene(path)).to_dict()
     tolerance, wanted = case["position_tolerance_relative_to_length"], case["expected"]
     for name, body in wanted["bodies"].items():
         assert_allclose(own["bodies"][name]["position"], body["position"], rtol=0, atol=tolerance * case["length"])

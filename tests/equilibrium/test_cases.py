@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, read_scene, solve_scene
+from cosserat_casadi import Solution, read_scene, solve
 from tests.conftest import case_files
 from tests.families import mostly_slow
 from tests.pose_errors import angle_between, distance_between
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(not RODS, reason="the reference cases are not be
 
 @cache
 def solved(path: Path) -> Solution:
-    return solve_scene(read_scene(path))
+    return solve(read_scene(path))
 
 
 def reference(path: Path) -> dict[str, Any]:
@@ -71,7 +71,7 @@ def test_error_estimate_vs_true_error(path: Path) -> None:
 @pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5, 1e-7], quick=[1e-5]))
 @pytest.mark.parametrize("path", mostly_slow(RODS[::3], quick=RODS[::6]), ids=lambda path: path.stem)
 def test_error_vs_tolerance_asked_for(path: Path, tolerance: float) -> None:
-    solution = solve_scene(read_scene(path, (f"accuracy.tolerance={tolerance}",)))
+    solution = solve(read_scene(path, (f"accuracy.tolerance={tolerance}",)))
     case, tip = reference(path), solution.tip()
     error = distance_between(tip.position[0], case["expected"]["tip"]["position"]) / case["length"]
     assert solution.converged, solution.message

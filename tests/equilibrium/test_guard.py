@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import root
 
-from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve, solve_scene
+from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from tests.reference.closed_forms import roll_up
@@ -80,7 +80,7 @@ def test_literal_system_that_loses_the_unit_quaternion_is_unresolved() -> None:
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
 @pytest.mark.parametrize("turns", [2, 5])
 def test_roll_up_vs_circles(strain: str, turns: int) -> None:
-    solution = solve_scene(rolled(turns, strain))
+    solution = solve(rolled(turns, strain))
     assert solution.converged
     assert_allclose(solution.tip().position[0], roll_up(turns)[0], rtol=0, atol=1e-6)
     assert float(solution.model.resolution_index(solution.x, solution.inputs)) <= 1.0
@@ -96,7 +96,7 @@ def shot(wanted: Scene, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("share", [0.3, 0.5, 1.0])
 def test_helical_form_vs_shooting(share: float) -> None:
     wanted = helical(share)
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged
     base = solution.base_wrench()
     assert_allclose(solution.tip().position[0], shot(wanted, base.force, base.moment), rtol=0, atol=1e-5)
@@ -106,7 +106,7 @@ def test_helical_form_vs_shooting(share: float) -> None:
 @pytest.mark.parametrize("force", [5e-4, 4e-3])
 def test_spring_of_ten_turns_vs_shooting(force: float) -> None:
     wanted = spring(force)
-    solution = solve_scene(wanted)
+    solution = solve(wanted)
     assert solution.converged
     base = solution.base_wrench()
     length = wanted.rods[0].length

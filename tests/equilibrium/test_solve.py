@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import cosserat_casadi
-from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
@@ -244,7 +244,7 @@ def test_clamped_tip_meets_its_pose_and_balances(strain: str) -> None:
     quaternion = np.array([0.9, 0.2, 0.3, -0.1])
     quaternion /= np.linalg.norm(quaternion)
     support = {"rod": "rod", "kind": "clamped", "position": [0.2, 0.15, 0.6], "quaternion": quaternion.tolist()}
-    solution = solve_scene(scene(WEIGHT, strain=strain, supports=[support]))
+    solution = solve(scene(WEIGHT, strain=strain, supports=[support]))
     assert solution.converged, solution.message
     tip = solution.tip()
     assert_allclose(tip.position, [support["position"]], rtol=0, atol=1e-11)
@@ -257,7 +257,7 @@ def test_clamped_tip_meets_its_pose_and_balances(strain: str) -> None:
 
 def test_pinned_tip_bears_no_moment() -> None:
     support = {"rod": "rod", "kind": "pinned", "position": [0.2, 0.15, 0.6]}
-    solution = solve_scene(scene(WEIGHT, supports=[support]))
+    solution = solve(scene(WEIGHT, supports=[support]))
     assert solution.converged, solution.message
     assert_allclose(solution.tip().position, [support["position"]], rtol=0, atol=1e-11)
     assert_allclose(solution.internal_wrench([1.0])[0, :3], 0.0, rtol=0, atol=1e-10)
@@ -309,7 +309,7 @@ def _discretised(modes: int, nodes: int) -> tuple[object, object]:
 
 def test_tolerance_that_cannot_be_met_is_unresolved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4))
-    solution = solve_scene(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
+    solution = solve(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
     assert not solution.converged
     assert solution.outcome is Outcome.UNRESOLVED
 
@@ -317,7 +317,7 @@ def test_tolerance_that_cannot_be_met_is_unresolved(monkeypatch: pytest.MonkeyPa
 def test_what_does_not_meet_a_tolerance_says_how_far_the_level_below_is(monkeypatch: pytest.MonkeyPatch) -> None:
     load = push(force=[8.0, 2.0, 0.0])
     monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4, 6))
-    solution = solve_scene(scene(load, accuracy={"tolerance": 1e-10}))
+    solution = solve(scene(load, accuracy={"tolerance": 1e-10}))
     assert solution.outcome is Outcome.UNRESOLVED
     four, six, many = (solve(build(scene(load), discretise(scene(load), m, 44, "magnus8"))) for m in (4, 6, 20))
     assert solution.error_estimate is not None
@@ -329,14 +329,14 @@ def test_what_does_not_meet_a_tolerance_says_how_far_the_level_below_is(monkeypa
 
 def test_nothing_is_known_of_the_error_on_a_single_level(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4))
-    solution = solve_scene(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
+    solution = solve(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
     assert solution.outcome is Outcome.UNRESOLVED
     assert solution.error_estimate is None
 
 
 def test_fixed_discretisation_is_used_and_its_error_estimated() -> None:
     wanted = {"modes": [3, 4, 2], "nodes": 11}
-    solution = solve_scene(scene(push(), accuracy=wanted))
+    solution = solve(scene(push(), accuracy=wanted))
     assert solution.model.discretisation["rod"].modes == (3, 4, 2)
     assert solution.model.discretisation["rod"].nodes == 11
     truth = solve(build(*_fine_push()))

@@ -10,18 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cosserat_casadi import (
-    Outcome,
-    Scene,
-    SceneError,
-    Solution,
-    build,
-    discretise,
-    follow_path,
-    scene_from_dict,
-    solve,
-    solve_scene,
-)
+from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow, scene_from_dict, solve
 from cosserat_casadi.equilibrium.relax import energy_at
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
@@ -81,7 +70,7 @@ def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_
     strain: str, ratio: float
 ) -> None:
     wanted = column(strain, push(force=[0, 0, -ratio * CRITICAL]))
-    straight, bent = solve_scene(wanted), solve_scene(wanted, stable=True)
+    straight, bent = solve(wanted), solve(wanted, stable=True)
     assert (straight.converged, straight.stable) == (True, False)
     assert "It is unstable" in straight.message
     assert straight.smallest_eigenvalue is not None
@@ -96,13 +85,13 @@ def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_
 @pytest.mark.parametrize(("weight", "stable"), [(7.8, True), (7.9, False)])
 def test_standing_column_about_its_critical_weight(weight: float, stable: bool) -> None:
     """7.8373 EI/L³, Greenhill 1881. One mode would meet the straight tip and be too stiff to buckle."""
-    solution = solve_scene(standing("kirchhoff", weight))
+    solution = solve(standing("kirchhoff", weight))
     assert solution.converged
     assert solution.stable is stable
 
 
 def test_standing_column_beyond_its_weight_settles() -> None:
-    solution = solve_scene(standing("planar", 9.0), stable=True)
+    solution = solve(standing("planar", 9.0), stable=True)
     assert (solution.converged, solution.stable) == (True, True)
     assert abs(solution.tip().position[0, 0]) > 0.3
     assert_integrates(solution, 1e-5)
@@ -110,7 +99,7 @@ def test_standing_column_beyond_its_weight_settles() -> None:
 
 @pytest.mark.parametrize("kind", [pytest.param("clamped", marks=pytest.mark.slow), "pinned"])
 def test_straight_round_rod_pushed_together_from_a_cold_start(kind: str) -> None:
-    solution = solve_scene(held(kind))
+    solution = solve(held(kind))
     assert (solution.converged, solution.stable) == (True, True), solution.message
     assert "neutral" in solution.message
     assert_integrates(solution, 1e-5)
@@ -119,7 +108,7 @@ def test_straight_round_rod_pushed_together_from_a_cold_start(kind: str) -> None
 def test_load_without_a_potential_is_refused_if_stable_is_wanted() -> None:
     follower = scene(push(frame="body"), WEIGHT)
     with pytest.raises(SceneError, match="no potential"):
-        solve_scene(follower, stable=True)
+        solve(follower, stable=True)
     with pytest.raises(SceneError, match="no potential"):
         solve(build(follower), stable=True)
 
@@ -146,7 +135,7 @@ def test_dead_moment_in_the_plane_settles_without_a_written_energy() -> None:
 def test_critical_equilibrium_is_neither_called_stable_nor_neutral() -> None:
     wanted = column("planar", push(force=[0, 0, -2 * CRITICAL]))
     model = build(wanted, discretise(wanted, 8, 16, "magnus6"))
-    (event, *_) = follow_path(model, "push.force", [0, 0, -2 * CRITICAL]).events
+    (event, *_) = follow(model, "push.force", [0, 0, -2 * CRITICAL]).events
     critical = solve(model, {"push.force": [0, 0, -2 * CRITICAL * event.factor]})
     assert critical.converged
     assert critical.stable is False

@@ -16,11 +16,10 @@ from cosserat_casadi import (
     Scene,
     build,
     discretise,
-    follow_scene_path,
+    follow,
     scene_from_dict,
-    simulate_scene,
+    simulate,
     solve,
-    solve_scene,
 )
 
 STIFFNESS: dict[str, dict[str, float]] = {
@@ -62,7 +61,7 @@ def on_grid(scene: Scene, modes: int, nodes: int) -> Scene:
 @pytest.mark.parametrize("strain", STIFFNESS)
 def test_path_that_vanishes_is_told(strain: str) -> None:
     """No tension of more than EI/ARM² has an equilibrium: the way ends where the curvature is 1/ARM."""
-    solution = solve_scene(pulled(strain, 150.0))
+    solution = solve(pulled(strain, 150.0))
     assert solution.outcome is Outcome.PATH_VANISHED
     assert "'cable'" in solution.message
     assert_allclose(solution.load_factor, 100.0 / 150.0, rtol=2e-3, atol=0)
@@ -70,7 +69,7 @@ def test_path_that_vanishes_is_told(strain: str) -> None:
 
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
 def test_path_with_length_left_is_no_matter(strain: str) -> None:
-    solution = solve_scene(pulled(strain, 99.0))
+    solution = solve(pulled(strain, 99.0))
     assert solution.converged, solution.message
     assert_allclose(solution.actuator("cable")["length"], 1.0 - 99.0 * ARM**2, rtol=0, atol=1e-9)
 
@@ -115,7 +114,7 @@ def test_residual_is_the_gradient_beyond_a_vanished_path() -> None:
 
 
 def test_path_of_equilibria_that_passes_a_vanished_path() -> None:
-    path = follow_scene_path(pulled("planar", 1e-9, moment=12.0), "turn.moment", [0.0, 12.0, 0.0])
+    path = follow(pulled("planar", 1e-9, moment=12.0), "turn.moment", [0.0, 12.0, 0.0])
     assert path.outcome is PathOutcome.PATH_VANISHED, path.message
     assert "'cable'" in path.message
 
@@ -126,7 +125,7 @@ def test_motion_that_passes_a_vanished_path() -> None:
     table["rods"][0] |= {"linear_density": 0.1, "damping": {"bending_y": 0.05}}
     table["accuracy"] = {"modes": 2, "nodes": 8, "tolerance": 1e-2}
     table["simulation"] = {"duration": 1.0, "start": "unloaded"}
-    motion = simulate_scene(scene_from_dict(table))
+    motion = simulate(scene_from_dict(table))
     assert motion.outcome is MotionOutcome.PATH_VANISHED, motion.message
     assert "'cable'" in motion.message
 

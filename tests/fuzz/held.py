@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi import Outcome, Solution, scene_from_dict, solve_scene
+from cosserat_casadi import Outcome, Solution, scene_from_dict, solve
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from tests.reference.held_scenes import held_scene
 
@@ -25,7 +25,7 @@ Accuracy = dict[str, Any]
 
 def solved(seed: int, accuracy: Accuracy) -> Solution:
     """The solution of a drawn scene."""
-    return solve_scene(scene_from_dict({**held_scene(seed), "accuracy": accuracy}))
+    return solve(scene_from_dict({**held_scene(seed), "accuracy": accuracy}))
 
 
 def says_unresolved(solution: Solution) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cosserat_casadi import scene_from_dict, solve_scene
+from cosserat_casadi import scene_from_dict, solve
 from tests.families import mostly_slow
 from tests.reference.routed_scenes import Table, miss, rich_scene, routed_scene
 
@@ -19,7 +19,7 @@ RICH = (0, 1, 10, 19)
 def check(tables: Table) -> bool:
     """Solve one scene; whether it converged. What did must be right."""
     scene = scene_from_dict(tables)
-    solution = solve_scene(scene)
+    solution = solve(scene)
     if not solution.converged:
         assert solution.message
         return False

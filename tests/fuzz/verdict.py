@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi import SceneError, Solution, result, scene_from_dict, solve_scene
+from cosserat_casadi import SceneError, Solution, scene_from_dict, solve
 from tests.pose_errors import distance_between
 from tests.reference.rods import rod_of
 from tests.reference.weak_form import Claim, Violation, violation
@@ -51,8 +51,8 @@ def verdict(tables: dict[str, Any]) -> Verdict:
     """Solve a scene and judge the answer. What the package raises, but for a refusal, is a fault."""
     start = time.perf_counter()
     try:
-        solution = solve_scene(scene_from_dict(tables))
-        written = result(solution)
+        solution = solve(scene_from_dict(tables))
+        written = solution.to_dict()
     except SceneError:
         return Verdict("refused", time.perf_counter() - start)
     except Exception as error:

@@ -9,7 +9,7 @@ import pytest
 import scipy.optimize
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Identification, Model, SceneError, build, identify, identify_scene, read_scene, solve
+from cosserat_casadi import Identification, Model, SceneError, build, identify, read_scene, solve
 from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.identification.fit_unknowns import unknown_layout
 from cosserat_casadi.identification.measured_cases import read_cases
@@ -325,7 +325,7 @@ def test_the_discretisation_serves_what_was_found() -> None:
     stiff = [f"rods.wire.material.{key}={value}" for key, value in (("youngs_modulus", 2e13), ("shear_modulus", 1e13))]
     free = [f"unknowns.{i}.upper=1e14" for i in (0, 1)]
     scene = read_scene(ROOT / "examples" / "wire_from_shapes.toml", (*stiff, *free))
-    found = identify_scene(scene)
+    found = identify(scene)
     assert found.converged, found.message
     truth = np.array([TRUTH[name] for name in NAMES])
     assert np.abs((found.shared - truth) / found.sigma).max() < 3.0

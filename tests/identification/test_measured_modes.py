@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, identify, identify_scene, modes_of, solve
+from cosserat_casadi import Model, SceneError, build, identify, modes_of, solve
 from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.identification.fit_unknowns import unknown_layout
 from cosserat_casadi.identification.measured_cases import read_cases
@@ -155,7 +155,7 @@ def cantilever(**changes: Any) -> dict[str, Any]:
 def test_a_modulus_is_found_from_frequencies() -> None:
     """Modes are chosen for the frequencies: the straight rod itself asks for one."""
     scene = scene_from_dict(cantilever(accuracy={"tolerance": 1e-4}))
-    found = identify_scene(scene, made_up(2.6e9, DENSITY, np.random.default_rng(1)))
+    found = identify(scene, made_up(2.6e9, DENSITY, np.random.default_rng(1)))
     assert found.converged, found.message
     # Rotary inertia lowers frequencies by (h / L)² of their size.
     assert abs(found.shared[0] - 2.6e9) < 4 * found.sigma[0] + 2e-4 * 2.6e9

@@ -9,9 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 from rich.console import Console
 
-from cosserat_casadi import Identification, build, identify, identify_scene, solve
+from cosserat_casadi import Identification, build, identify, solve
 from cosserat_casadi.cli.reports.identification import print_identification
-from cosserat_casadi.results.identification_file import identification_result
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import WIRE, MadeUp
 
@@ -50,7 +49,7 @@ def test_an_error_above_the_tolerance_is_told(coarse: Identification) -> None:
     (warning,) = [text for text in coarse.warnings if text.startswith("The model itself may be off by")]
     assert f"in {coarse.error_case}, where the tolerance is 0.0001" in warning
     assert "cosserat tune" in warning
-    told = identification_result(coarse)
+    told = coarse.to_dict()
     assert told["within_tolerance"] is False
     assert told["error_estimate"] == coarse.error_estimate
     assert "above the tolerance of 0.0001 (shapes.csv, line" in printed(coarse)
@@ -74,5 +73,5 @@ def test_a_tolerance_that_nobody_wrote_asks_nothing_of_fixed_modes(shapes: MadeU
 def test_modes_that_were_chosen_are_judged_by_the_scene_s_tolerance(shapes: MadeUp) -> None:
     """Also by one that the scene leaves at its default."""
     tables = {name: table for name, table in WIRE.items() if name != "accuracy"}
-    found = identify_scene(scene_from_dict(tables), shapes.data)
+    found = identify(scene_from_dict(tables), shapes.data)
     assert found.within_tolerance is not None

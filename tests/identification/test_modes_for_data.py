@@ -6,10 +6,9 @@ from typing import Any
 
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build
+from cosserat_casadi import build, modes_of
 from cosserat_casadi.identification.fit_discretisation import FitDiscretisation, with_discretisation
 from cosserat_casadi.identification.measured_cases import read_cases
-from cosserat_casadi.motion.vibration_modes import modes_of_scene
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import WIRE, MadeUp
 from tests.scenes import push, rod, scene
@@ -48,6 +47,6 @@ def test_stages_of_the_choice_are_told(shapes: MadeUp) -> None:
 def test_stages_of_modes_are_told() -> None:
     stages: list[str] = []
     beam = scene(push(force=[0, 0, 0]), rods=[rod("planar")], accuracy={"modes": 3, "nodes": 6})
-    modes_of_scene(beam, count=1, report=stages.append)
+    modes_of(beam, count=1, report=stages.append)
     assert "equations of motion of 3 unknowns" in stages
     assert "eigenvalues of 3 unknowns" in stages

@@ -8,16 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    Scene,
-    SceneError,
-    build,
-    identification_result,
-    identify,
-    parse_scene,
-    scene_from_dict,
-    solve,
-)
+from cosserat_casadi import Scene, SceneError, build, identify, parse_scene, scene_from_dict, solve
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import push, rod
@@ -93,7 +84,7 @@ def test_one_modulus_for_two_rods() -> None:
     fitted = found.fitted_scene(scene)
     moduli = [own.material.youngs_modulus for own in fitted.rods if own.material is not None]
     assert moduli == [found.shared[0], found.shared[0]]
-    told = identification_result(found)["unknowns"][MODULI[0]]
+    told = found.to_dict()["unknowns"][MODULI[0]]
     assert told["tied"] == [MODULI[1]]
     assert told["value"] == found.shared[0]
 
@@ -218,5 +209,5 @@ def test_distances_are_told_by_marker(markers: Identification) -> None:
         assert 0.5 * np.sqrt(3) * SIGMA < marker.rms < 2 * np.sqrt(3) * SIGMA
         assert marker.rms <= marker.largest
         assert np.linalg.norm(marker.mean) < 2 * SIGMA
-    entry = identification_result(markers)["residual"]["by_measurement"]["shifted"]["markers"]
+    entry = markers.to_dict()["residual"]["by_measurement"]["shifted"]["markers"]
     assert entry[0]["rms"] == told[1].rms

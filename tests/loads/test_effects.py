@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, follow_path, load, read_scene, solve, solve_scene
+from cosserat_casadi import build, follow, load, read_scene, solve
 from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.model.operation_cost import prices_of_effects
 from tests.conftest import CASES
@@ -70,7 +70,7 @@ def test_reference_cases(name: str) -> None:
     if not EFFECTS.is_dir():
         pytest.skip("the reference cases are not at hand")
     expected = json.loads((EFFECTS / f"{name}.json").read_text())["expected"]
-    found = solve_scene(read_scene(EFFECTS / f"{name}.toml"))
+    found = solve(read_scene(EFFECTS / f"{name}.toml"))
     assert found.converged
     assert_allclose(found.tip().position[0], expected["tip"]["position"], rtol=0, atol=1e-7 * LENGTHS[name])
     if "rotation" in expected["tip"]:
@@ -122,11 +122,11 @@ def test_path_strengthens_the_source(folder: Path, monkeypatch: pytest.MonkeyPat
 def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
     """In to 2 N and let out at 2 N: the four paths of a cycle meet, and the way back is another one."""
     model = build(read_scene(folder / "finger.toml"))
-    pulled = follow_path(model, "cable.tension", 2.0, values={"cable.pull": 1.0})
-    let_out = follow_path(model, "cable.tension", 2.0, values={"cable.pull": -1.0})
+    pulled = follow(model, "cable.tension", 2.0, values={"cable.pull": 1.0})
+    let_out = follow(model, "cable.tension", 2.0, values={"cable.pull": -1.0})
     # The direction goes from 1 to −1 by way of no friction.
-    to_middle = follow_path(model, "cable.pull", 1.0, values={"cable.tension": 2.0})
-    from_middle = follow_path(model, "cable.pull", -1.0, values={"cable.tension": 2.0})
+    to_middle = follow(model, "cable.pull", 1.0, values={"cable.tension": 2.0})
+    from_middle = follow(model, "cable.pull", -1.0, values={"cable.tension": 2.0})
     ends = [pulled, let_out, to_middle, from_middle]
     assert all(path.converged for path in ends), [path.message for path in ends]
     assert_allclose(to_middle.tip().position[-1], pulled.tip().position[-1], rtol=0, atol=1e-9)
@@ -137,7 +137,7 @@ def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    moved = solve_scene(read_scene(folder / "finger.toml"), {"magnet.dipole.position": [0.11, 0.03, 0.24]})
+    moved = solve(read_scene(folder / "finger.toml"), {"magnet.dipole.position": [0.11, 0.03, 0.24]})
     # What is looked for alone is free.
     listed = SCENE[SCENE.index("inputs") : SCENE.index("accuracy")]
     alone = SCENE.replace(listed, 'inputs = ["magnet.dipole.position"]\n')

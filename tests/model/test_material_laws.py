@@ -14,7 +14,7 @@ from scipy.integrate import dblquad, quad, solve_ivp
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from cosserat_casadi import Outcome, Scene, Solution, build, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Outcome, Scene, Solution, build, scene_from_dict, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.materials import Law, LawOfRod
 from cosserat_casadi.rod.properties import EnergyBeyondHooke
@@ -226,7 +226,7 @@ def test_cantilever_vs_shooting(law: str) -> None:
     tip = cantilever(slope_of, force, largest)
     scene = loaded(rod(material, RECTANGLE, "planar"), force=[force, 0, 0])
     scene = scene.model_copy(update={"accuracy": type(scene.accuracy)(tolerance=1e-7)})
-    solution = solve_scene(scene)
+    solution = solve(scene)
     assert solution.converged, solution.message
     error = np.hypot(*(solution.tip().position[0, [0, 2]] - tip)) / LENGTH
     assert error < 3e-7
@@ -344,7 +344,7 @@ def test_tapered_rod_vs_pieces() -> None:
 
 def test_strain_beyond_a_table_is_told() -> None:
     scene = loaded(rod({"law": "table", "table": {"bending_y": TABLE}}, CIRCLE, "planar"), force=[0.2, 0, 0])
-    solution = solve_scene(scene)
+    solution = solve(scene)
     assert solution.outcome is Outcome.BEYOND_MATERIAL
     assert "material of 'rod'" in solution.message
 

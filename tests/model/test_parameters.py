@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    Model,
-    Scene,
-    SceneError,
-    build,
-    follow_path,
-    modes_of,
-    scene_from_dict,
-    solve,
-)
+from cosserat_casadi import Model, Scene, SceneError, build, follow, modes_of, scene_from_dict, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.load_records import LoadRecord
@@ -807,7 +798,7 @@ def test_algorithms_take_the_values_of_the_scene_or_those_that_are_bound() -> No
     assert_allclose(solve(soft).x, softer.x, rtol=0, atol=0)
     assert_allclose(solve(model).x, solve(baked).x, rtol=0, atol=0)
     assert modes_of(softer).modes[0].frequency < modes_of(solve(model)).modes[0].frequency
-    path = follow_path(soft, "push.force", [0.0, 0.0, -0.4])
+    path = follow(soft, "push.force", [0.0, 0.0, -0.4])
     assert path.model is soft
     assert path.factor[-1] == 1.0
     assert softer.stable == solve(soft).stable

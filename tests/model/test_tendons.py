@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict, solve
 from cosserat_casadi.plots.scenery import actuator_routing
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
@@ -93,7 +93,7 @@ def test_tendons_vs_distributed_loads(cables: str) -> None:
 def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
     text = rod() + LOADED + MANY
     position, rotation = TendonRod(tomllib.loads(text)).solve()
-    solution = solve_scene(parse_scene(text))
+    solution = solve(parse_scene(text))
     assert_allclose(solution.tip().position[0], position, rtol=0, atol=0.2e-9)
     assert_allclose(solution.tip().rotation[0], rotation, rtol=0, atol=2e-9)
 
@@ -105,7 +105,7 @@ TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("
 def test_reference_cases_of_tendon_robots(path: Path) -> None:
     case = json.loads(path.with_suffix(".json").read_text())
     scene = read_scene(path)
-    solution = solve_scene(scene)
+    solution = solve(scene)
     wanted = case["expected"]
     tolerance = case.get("position_tolerance_relative_to_length", scene.accuracy.tolerance)
     length = scene.rods[0].length

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.linalg import null_space
 
-from cosserat_casadi import build, parse_scene, simulate, write_motion
+from cosserat_casadi import build, parse_scene, simulate
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -241,7 +241,7 @@ def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -
     assert_allclose(struck.impulse, impulse, rtol=1e-5, atol=0)
     assert_allclose(struck.energy, 0.5 * impulse * speed, rtol=1e-5, atol=0)
     assert abs(motion.energy.imbalance).max() < 1e-3
-    write_motion(motion, tmp_path / "motion.json")
+    motion.write(tmp_path / "motion.json")
     entry = json.loads((tmp_path / "motion.json").read_text())["contact"]
     assert entry["rod"][-1] == body
     assert entry["of_body"][-1] is True

@@ -12,17 +12,7 @@ from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import (
-    Scene,
-    build,
-    discretise,
-    parse_scene,
-    read_scene,
-    simulate,
-    simulate_scene,
-    solve,
-    write_motion,
-)
+from cosserat_casadi import Scene, build, discretise, parse_scene, read_scene, simulate, solve
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -240,7 +230,7 @@ def test_a_start_that_does_not_touch_is_an_equilibrium() -> None:
 def test_what_exact_contact_in_motion_does_not_go_with_is_refused() -> None:
     text = rod(BALL).replace('start = "unloaded"', 'start = "unloaded", integrator = "gauss", step = 1e-3')
     with pytest.raises(SceneError, match="does not converge for exact contact"):
-        simulate_scene(parse_scene(text))
+        simulate(parse_scene(text))
 
 
 def test_starts_inside_and_bars_too_thin_are_refused_by_what_they_are() -> None:
@@ -277,13 +267,13 @@ def test_a_base_that_is_moved_into_a_ball_is_told_with_time_and_place() -> None:
 
 
 def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None:
-    write_motion(on_ball, tmp_path / "motion.json")
+    on_ball.write(tmp_path / "motion.json")
     entry = json.loads((tmp_path / "motion.json").read_text())["contact"]
     assert entry["kind"] == "exact"
     assert entry["row"][-1] == 40
     assert_allclose(entry["force"][-1], on_ball.contacts[-1][0].force, rtol=1e-15, atol=0)
     assert entry["events"]["kind"][0] == "impact"
-    write_motion(on_ball, tmp_path / "motion.npz")
+    on_ball.write(tmp_path / "motion.npz")
     with np.load(tmp_path / "motion.npz") as arrays:
         assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
 
@@ -327,9 +317,9 @@ def without_starts_below(least: int, monkeypatch: pytest.MonkeyPatch) -> list[in
 
 @pytest.mark.slow
 def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = simulate_scene(lying())
+    whole = simulate(lying())
     tried = without_starts_below(9, monkeypatch)
-    motion = simulate_scene(lying())
+    motion = simulate(lying())
     assert tried[:2] == [6, 9]
     assert motion.converged, motion.message
     assert not motion.events
@@ -340,7 +330,7 @@ def test_a_level_without_a_start_in_contact_is_passed_over(monkeypatch: pytest.M
 @pytest.mark.slow
 def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = without_starts_below(100, monkeypatch)
-    motion = simulate_scene(lying())
+    motion = simulate(lying())
     assert tried == [6, 9, 12, 16]
     assert motion.outcome is MotionOutcome.NO_START
     assert "on at most 16 modes of a strain" in motion.message
@@ -354,7 +344,7 @@ def test_what_fewer_modes_have_moved_is_kept_where_more_have_no_start(monkeypatc
         return found(contacts, *given) if modes <= 6 else None
 
     monkeypatch.setattr(starts, "resting", resting)
-    motion = simulate_scene(lying())
+    motion = simulate(lying())
     assert motion.outcome is MotionOutcome.UNRESOLVED
     assert not motion.converged
     assert len(motion.times) == 3

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import scene_from_dict, simulate_scene
+from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from tests.motion.transients import Table, gravity, table
 
@@ -94,7 +94,7 @@ def galerkin(count: int, points: int) -> Galerkin:
 
 def test_a_rod_that_is_drawn_out_vs_independent_galerkin_method() -> None:
     """Weight acts at once and the rod is damped: its tip falls, swings and is pushed out."""
-    motion = simulate_scene(scene_from_dict(growing(1e-4)))
+    motion = simulate(scene_from_dict(growing(1e-4)))
     assert motion.converged, motion.message
     exact = galerkin(10, 40)
     start = np.zeros(20)

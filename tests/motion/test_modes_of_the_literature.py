@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Modes, modes_of_scene, scene_from_dict
+from cosserat_casadi import Modes, modes_of, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
 from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity
@@ -47,14 +47,14 @@ def on_two_pins(length: float, tolerance: float = 1e-8, **changes: Any) -> Table
     return scene(*hinged(length, **changes), supports=[pin], tolerance=tolerance)
 
 
-def modes_of(tables: Table, count: int) -> Modes:
-    modes = modes_of_scene(scene_from_dict(tables), count=count)
+def modes_of_tables(tables: Table, count: int) -> Modes:
+    modes = modes_of(scene_from_dict(tables), count=count)
     assert modes.converged, modes.message
     return modes
 
 
 def frequencies(tables: Table, count: int) -> FloatArray:
-    return modes_of(tables, count).angular_frequencies
+    return modes_of_tables(tables, count).angular_frequencies
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ def test_stout_beam_along_its_axis_and_about_it() -> None:
 def test_tallest_column(beyond: bool) -> None:
     """It falls at ρA g L³ / EI = 7.8373474388: Greenhill's."""
     load = 7.8373474388 * (1 + 1e-6 * (1 if beyond else -1))
-    modes = modes_of(scene(beam("planar", {"bending_y": 1.0}), loads=[gravity(load)]), 1)
+    modes = modes_of_tables(scene(beam("planar", {"bending_y": 1.0}), loads=[gravity(load)]), 1)
     assert ("Statically unstable" in modes.message) == beyond
     assert modes.angular_frequencies[0] < 1e-2
 
@@ -126,7 +126,7 @@ def test_sagged_with_shear_extension_and_rotary_inertia() -> None:
         "section": {"shape": "circle", "radius": 0.02},
         "base": {"tangent": [1, 0, 0]},
     }
-    modes = modes_of(scene(soft, loads=[gravity(9.81)], tolerance=1e-7), 6)
+    modes = modes_of_tables(scene(soft, loads=[gravity(9.81)], tolerance=1e-7), 6)
     assert_allclose(modes.angular_frequencies[[1, 2, 5]], SAGGED, rtol=1e-8, atol=0)
     tip = modes.solution.tip().position[0]
     assert_allclose(tip, [0.29575154340984866, 0.0, -0.3756570939541465], rtol=0, atol=1e-9)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import modes_of_scene, read_scene
+from cosserat_casadi import modes_of, read_scene
 from tests.conftest import case_files
 
 CASES = [path for path in case_files("dynamics") if path.stem.startswith("modes_")]
@@ -32,7 +32,7 @@ def test_modes_vs_independent_program(path: Path) -> None:
     """Angular frequencies, and where they are given damping ratios and the tip of the equilibrium."""
     case = json.loads(path.with_suffix(".json").read_text())
     expected = case["expected"]["modes"]
-    found = modes_of_scene(read_scene(path), count=len(expected))
+    found = modes_of(read_scene(path), count=len(expected))
     assert found.converged, found.message
     uncertainty = 0.0
     if case["uncertainty"] > EXACT:

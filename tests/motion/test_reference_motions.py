@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cosserat_casadi import Motion, read_scene, simulate_scene
+from cosserat_casadi import Motion, read_scene, simulate
 from tests.conftest import case_files
 
 CASES = [path for path in case_files("dynamics") if not path.stem.startswith("modes_")]
@@ -34,7 +34,7 @@ def reference(path: Path) -> dict[str, Any]:
 def simulated(path: Path, tolerance: float) -> Motion:
     """The motion at the times of the reference."""
     times = json.dumps(reference(path)["expected"]["times"])
-    return simulate_scene(read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}")))
+    return simulate(read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}")))
 
 
 def check_path(path: Path, tolerance: float) -> None:

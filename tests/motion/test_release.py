@@ -8,16 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    EquilibriumPath,
-    Scene,
-    Solution,
-    build,
-    follow_path,
-    read_scene,
-    simulate_scene,
-    solve_scene,
-)
+from cosserat_casadi import EquilibriumPath, Scene, Solution, build, follow, read_scene, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.trajectory import Motion
 from tests.conftest import ROOT
@@ -54,8 +45,8 @@ def test_a_load_is_let_go_vs_modes_of_a_beam() -> None:
     push = {"name": "push", "kind": "tip_wrench", "rod": "beam", "force": [0.0, 0.0, 0.0]}
     simulation = {"duration": 0.8, "frames": 41, "tolerance": 1e-4}
     let_go = scene(push, rods=[beam()], inputs=["push.force"], simulation=simulation)
-    held = solve_scene(let_go, {"push.force": [force, 0.0, 0.0]})
-    motion = simulate_scene(let_go, start=held)
+    held = solve(let_go, {"push.force": [force, 0.0, 0.0]})
+    motion = simulate(let_go, start=held)
     assert motion.converged, motion.message
     deflection = motion.tip().position[:, 0]
     assert_allclose(deflection[0], force * LENGTH**3 / (3.0 * STIFFNESS), rtol=1e-3, atol=0)
@@ -71,7 +62,7 @@ def test_a_cut_tendon_leaves_its_energy_to_the_damping() -> None:
     # Steps are no more exact than paths have to be: a thousandth of the energy takes a smaller tolerance than they do.
     simulation = {"duration": 4.0, "frames": 201, "tolerance": 3e-4}
     damped = beam(damping={"retardation_time": 0.05})
-    motion = simulate_scene(scene(rods=[damped], actuators=[tendon], motions=[cut], simulation=simulation))
+    motion = simulate(scene(rods=[damped], actuators=[tendon], motions=[cut], simulation=simulation))
     assert motion.converged, motion.message
     # The tendon bends the rod into a circle: a moment T d all along it.
     elastic = (tension * offset) ** 2 * LENGTH / (2.0 * STIFFNESS)
@@ -100,7 +91,7 @@ def arch(*settings: str) -> Scene:
 
 @cache
 def arch_path() -> EquilibriumPath:
-    return follow_path(build(arch()), "crown.force", [0.0, 0.0, PUSHED])
+    return follow(build(arch()), "crown.force", [0.0, 0.0, PUSHED])
 
 
 def below_the_limit(path: EquilibriumPath) -> Solution:
@@ -123,7 +114,7 @@ def test_an_arch_snaps_through_to_the_far_equilibrium_of_its_path() -> None:
     assert start.stable
     force = float(start.inputs[2])
     push = f'{{ input = "crown.force", times = [0.0, 5.0], values = [[0, 0, {force}], [0, 0, {PUSHED}]] }}'
-    motion = simulate_scene(arch(f"motions=[{push}]", "simulation={ duration = 400.0, tolerance = 1e-3 }"), start=start)
+    motion = simulate(arch(f"motions=[{push}]", "simulation={ duration = 400.0, tolerance = 1e-3 }"), start=start)
     assert motion.converged, motion.message
     assert path.stable[-1]
     length = motion.model.scene.rods[0].length
@@ -139,7 +130,7 @@ def test_an_arch_below_its_limit_load_stays_on_its_side(interpolation: str) -> N
     force = float(start.inputs[2])
     values = f"[[0, 0, {force}], [0, 0, -895]]"
     push = f'{{ input = "crown.force", times = [0.0, 5.0], values = {values}, interpolation = "{interpolation}" }}'
-    motion = simulate_scene(arch(f"motions=[{push}]", "simulation={ duration = 100.0, tolerance = 1e-3 }"), start=start)
+    motion = simulate(arch(f"motions=[{push}]", "simulation={ duration = 100.0, tolerance = 1e-3 }"), start=start)
     assert motion.converged, motion.message
     length = motion.model.scene.rods[0].length
     assert np.ptp(crown(motion), axis=0).max() < 0.05 * length

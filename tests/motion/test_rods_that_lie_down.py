@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from typer.testing import CliRunner
 
-from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve, write_motion
+from cosserat_casadi import Motion, Solution, build, parse_scene, read_scene, simulate, solve
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
@@ -234,7 +234,7 @@ def test_a_base_that_is_driven_into_the_table_is_told() -> None:
 
 
 def test_files_tell_which_sections_lie(resting: Motion, tmp_path: Path) -> None:
-    write_motion(resting, tmp_path / "motion.npz")
+    resting.write(tmp_path / "motion.npz")
     with np.load(tmp_path / "motion.npz") as arrays:
         assert arrays["contact.lies"].all()
         assert len(arrays["contact.lies"]) == len(arrays["contact.at"])

@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    Motion,
-    MotionOutcome,
-    SceneError,
-    motion_result,
-    scene_from_dict,
-    simulate,
-    simulate_scene,
-    solve_scene,
-)
+from cosserat_casadi import Motion, MotionOutcome, SceneError, scene_from_dict, simulate, solve
 from cosserat_casadi.motion.trajectory import MotionProgress
 from tests.motion import transients
 from tests.motion.stepping import moving_model
@@ -105,7 +96,7 @@ def test_a_model_moves_as_its_scene_does() -> None:
     """On fixed modes both front doors give one motion, to the tolerance of the steps."""
     scene = falling()
     of_model = simulated(scene)
-    of_scene = simulate_scene(scene_from_dict(scene))
+    of_scene = simulate(scene_from_dict(scene))
     assert of_scene.model.discretisation == of_model.model.discretisation
     assert_allclose(of_scene.tip().position, of_model.tip().position, rtol=0, atol=1e-3)
     # What is missing for want of modes is in the estimate of the scene alone.
@@ -115,7 +106,7 @@ def test_a_model_moves_as_its_scene_does() -> None:
 def test_given_equilibrium_is_where_the_motion_starts() -> None:
     """A bent rod is let go: the force is gone in motion, where it goes from its value to zero at once."""
     scene = table({}, at_tip(force=[0, 0, 0.5]), accuracy=FEW, simulation=asked())
-    bent = solve_scene(scene_from_dict(scene))
+    bent = solve(scene_from_dict(scene))
     motion = simulate(moving_model(scene), start=bent)
     assert_allclose(motion.tip().position, np.tile(bent.tip().position, (101, 1)), rtol=0, atol=1e-9)
     assert motion.energy.kinetic.max() < 1e-15
@@ -127,7 +118,7 @@ def test_given_equilibrium_is_where_the_motion_starts() -> None:
 def refused(scene: Callable[[], dict[str, Any]] | dict[str, Any]) -> str:
     given = scene() if callable(scene) else scene
     with pytest.raises(SceneError) as caught:
-        simulate_scene(scene_from_dict(given))
+        simulate(scene_from_dict(given))
     return str(caught.value)
 
 
@@ -198,11 +189,11 @@ def test_motion_that_ends_before_its_first_row_has_none() -> None:
     assert not motion.converged
     assert motion.x.shape == (0, motion.model.size)
     assert motion.tip().position.shape == (0, 3)
-    assert motion_result(motion)["converged"] is False
+    assert motion.to_dict()["converged"] is False
 
 
 def test_few_modes_do_not_resolve_a_rod() -> None:
-    motion = simulate_scene(scene_from_dict(falling(accuracy={"modes": 1, "nodes": 3})))
+    motion = simulate(scene_from_dict(falling(accuracy={"modes": 1, "nodes": 3})))
     assert motion.outcome is MotionOutcome.UNRESOLVED
     assert motion.error_estimate > 0.1
     assert f"{motion.error_estimate:.2g}" in motion.message
@@ -244,7 +235,7 @@ def test_interrupted_search_keeps_the_best_whole_motion() -> None:
         if len(stages) == 3:
             raise KeyboardInterrupt
 
-    motion = simulate_scene(scene_from_dict(scene), progress=tell)
+    motion = simulate(scene_from_dict(scene), progress=tell)
     assert motion.outcome is MotionOutcome.INTERRUPTED
     assert len(motion.times) == 101
     assert "whole" in motion.message

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Motion, MotionOutcome, scene_from_dict, simulate, simulate_scene
+from cosserat_casadi import Model, Motion, MotionOutcome, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from tests.families import mostly_slow
@@ -22,7 +22,7 @@ from tests.motion.stepping import moving_model, orders, stepped
 def simulated(scene: dict[str, Any], tolerance: float) -> Motion:
     """The motion of a scene on modes that are chosen for it."""
     scene["simulation"]["tolerance"] = tolerance
-    motion = simulate_scene(scene_from_dict(scene))
+    motion = simulate(scene_from_dict(scene))
     assert motion.converged, motion.message
     return motion
 

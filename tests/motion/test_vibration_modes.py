@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, discretise, scene_from_dict, solve
+from cosserat_casadi import SceneError, build, discretise, modes_of, scene_from_dict, solve
 from cosserat_casadi.motion.eigenproblem import eigenpairs
-from cosserat_casadi.motion.vibration_modes import ModesOutcome, modes_of, modes_of_scene, small_motions
+from cosserat_casadi.motion.vibration_modes import ModesOutcome, small_motions
 from tests.families import mostly_slow
 
 CANTILEVER = [3.5160152685002, 22.034491564667, 61.697214413549, 120.90191605231, 199.8595301168]
@@ -43,7 +43,7 @@ def weight(*acceleration):
 
 
 def frequencies(described, count):
-    modes = modes_of_scene(described, count=count)
+    modes = modes_of(described, count=count)
     assert modes.outcome is ModesOutcome.RESOLVED
     return modes.angular_frequencies
 
@@ -149,16 +149,16 @@ def test_dead_thrust(load):
 
 
 def test_near_the_buckling_load():
-    modes = modes_of_scene(scene(rod(), thrust(0.99 * np.pi**2 / 4)), count=1)
+    modes = modes_of(scene(rod(), thrust(0.99 * np.pi**2 / 4)), count=1)
     assert_allclose(modes.angular_frequencies, COLUMN[0.99][:1], rtol=1e-9, atol=0)
     assert "small motions stay small" in modes.message
 
 
 def test_at_and_beyond_the_buckling_load():
-    critical = modes_of_scene(scene(rod(), thrust(np.pi**2 / 4)), count=2)
+    critical = modes_of(scene(rod(), thrust(np.pi**2 / 4)), count=2)
     assert critical.modes[0].eigenvalue == 0.0
     assert "one motion meets no resistance" in critical.message.lower()
-    beyond = modes_of_scene(scene(rod(), thrust(1.1 * np.pi**2 / 4)), count=3)
+    beyond = modes_of(scene(rod(), thrust(1.1 * np.pi**2 / 4)), count=3)
     growing, decaying = beyond.modes[:2]
     assert growing.eigenvalue.imag == 0.0
     assert growing.eigenvalue.real > 1.0
@@ -170,7 +170,7 @@ def test_at_and_beyond_the_buckling_load():
 @pytest.mark.parametrize("load", mostly_slow(BECK, quick=[15.0]))
 def test_follower_thrust(load):
     described = scene(rod(), thrust(load, "body"))
-    modes = modes_of_scene(described, count=2)
+    modes = modes_of(described, count=2)
     assert_allclose(modes.angular_frequencies, BECK[load], rtol=1e-9, atol=0)
     assert_allclose(modes.eigenvalues.real, 0.0, rtol=0, atol=0)
     assert "unstable" not in modes.message
@@ -178,8 +178,8 @@ def test_follower_thrust(load):
 
 def test_flutter():
     """Two frequencies meet at P = 20.0509536189738, ω = 11.0155576409229."""
-    below = modes_of_scene(scene(rod(), thrust(20.05095, "body")), count=2)
-    beyond = modes_of_scene(scene(rod(), thrust(20.05096, "body")), count=2)
+    below = modes_of(scene(rod(), thrust(20.05095, "body")), count=2)
+    beyond = modes_of(scene(rod(), thrust(20.05096, "body")), count=2)
     assert "unstable" not in below.message
     assert "Dynamically unstable (flutter): one motion grows" in beyond.message
     assert_allclose(beyond.angular_frequencies, 11.0155576409229, rtol=1e-6, atol=0)
@@ -195,7 +195,7 @@ def test_damping_lowers_the_flutter_load(time):
     growth = []
     for load in (critical - 1e-5, critical + 1e-5):
         described = scene(rod(damping={"retardation_time": time}), thrust(load, "body"), accuracy={"modes": 10})
-        modes = modes_of_scene(described, count=2)
+        modes = modes_of(described, count=2)
         growth.append(modes.eigenvalues.real.max())
     assert growth[0] < 0.0 < growth[1]
     # The growth crosses zero on the straight line between both.
@@ -213,7 +213,7 @@ def test_standing_and_hanging(load):
 def test_bent_by_its_own_weight(load):
     tip, expected = SAGGED[load]
     described = scene(rod(base={"tangent": [1.0, 0.0, 0.0]}), weight(0.0, 0.0, -load))
-    modes = modes_of_scene(described, count=3)
+    modes = modes_of(described, count=3)
     position = modes.solution.tip().position[0]
     assert_allclose(position[[0, 2]], tip, rtol=0, atol=1e-9)
     assert_allclose(modes.angular_frequencies, expected, rtol=8e-9, atol=0)
@@ -223,7 +223,7 @@ def test_free_rod_has_rigid_motions_and_the_frequencies_of_a_clamped_one():
     inertia = [1e-6, 1e-6, 2e-6]
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
     described = scene(rod("kirchhoff", stiffness, base={"free": True}, rotary_inertia=inertia))
-    modes = modes_of_scene(described, count=10)
+    modes = modes_of(described, count=10)
     assert_allclose(modes.eigenvalues[:6], 0.0, rtol=0, atol=0)
     assert_allclose(modes.angular_frequencies[6:], np.repeat(FREE_FREE[:2], 2), rtol=1e-4, atol=0)
     assert "6 motions meet no resistance" in modes.message
@@ -232,14 +232,14 @@ def test_free_rod_has_rigid_motions_and_the_frequencies_of_a_clamped_one():
 def test_line_that_turns_about_itself_without_inertia_is_no_motion():
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
     described = scene(rod("kirchhoff", stiffness, base={"free": True}))
-    modes = modes_of_scene(described, count=9)
+    modes = modes_of(described, count=9)
     assert_allclose(modes.eigenvalues[:5], 0.0, rtol=0, atol=0)
     assert_allclose(modes.angular_frequencies[5:], np.repeat(FREE_FREE[:2], 2), rtol=1e-9, atol=0)
 
 
 def test_free_damped_rod():
     described = scene(rod(base={"free": True}, damping={"retardation_time": 1e-3}, rotary_inertia=[1e-6, 1e-6, 2e-6]))
-    modes = modes_of_scene(described, count=8)
+    modes = modes_of(described, count=8)
     assert_allclose(modes.eigenvalues[:6], 0.0, rtol=0, atol=0)
     assert_allclose(modes.angular_frequencies[6:], FREE_FREE[:2], rtol=1e-4, atol=0)
     assert_allclose([mode.damping_ratio for mode in modes.modes[6:]], 5e-4 * np.array(FREE_FREE[:2]), rtol=1e-4, atol=0)
@@ -248,12 +248,12 @@ def test_free_damped_rod():
 def test_errors_are_estimated_honestly():
     """With the modes that a user fixes the estimates are about the errors, and never far below."""
     for count, fixed in ((3, 5), (4, 6), (5, 8)):
-        modes = modes_of_scene(scene(rod(), accuracy={"modes": fixed}), count=count)
+        modes = modes_of(scene(rod(), accuracy={"modes": fixed}), count=count)
         errors = np.abs(modes.angular_frequencies / CANTILEVER[:count] - 1.0)
         estimates = np.array([mode.error_estimate for mode in modes.modes])
         assert np.all(errors <= 1.5 * estimates + 1e-12)
         assert np.all(estimates <= 2.0 * errors + 2e-13)
-    coarse = modes_of_scene(scene(rod(), accuracy={"modes": 4, "tolerance": 1e-6}), count=4)
+    coarse = modes_of(scene(rod(), accuracy={"modes": 4, "tolerance": 1e-6}), count=4)
     assert coarse.outcome is ModesOutcome.UNRESOLVED
     assert not coarse.converged
 
@@ -264,7 +264,7 @@ def test_frequencies_converge_with_the_modes():
     for fixed in (3, 4, 5, 6, 7):
         described = scene(rod())
         solution = solve(build(described, discretise(described, fixed)))
-        errors.append(modes_of(solution, 2).angular_frequencies[1] / CANTILEVER[1] - 1.0)
+        errors.append(modes_of(solution, count=2).angular_frequencies[1] / CANTILEVER[1] - 1.0)
     errors = np.array(errors)
     # Rayleigh: too few strains are too stiff.
     assert np.all(errors > 0.0)
@@ -273,7 +273,7 @@ def test_frequencies_converge_with_the_modes():
 
 def test_what_has_no_mass_is_refused():
     with pytest.raises(SceneError, match="mass"):
-        modes_of_scene(scene(weightless()))
+        modes_of(scene(weightless()))
 
 
 def roped(length, **changes):
@@ -313,7 +313,7 @@ def test_what_has_no_mass_and_no_stability_is_told():
     stable = rod(base={"position": [1.0, 0.0, 0.0]})
     push = {**thrust(3.0), "rod": "column"}
     tables = {"schema": 1, "rods": [stable, column], "loads": [push], "accuracy": {"tolerance": 1e-6}}
-    modes = modes_of_scene(scene_from_dict(tables), count=2)
+    modes = modes_of(scene_from_dict(tables), count=2)
     assert_allclose(modes.angular_frequencies, CANTILEVER[:2], rtol=1e-6, atol=0)
     assert "what has no mass leaves the equilibrium at once" in modes.message
 
@@ -321,19 +321,19 @@ def test_what_has_no_mass_and_no_stability_is_told():
 @pytest.mark.slow
 def test_no_equilibrium_no_modes():
     described = scene(rod(base={"free": True}), weight(0.0, 0.0, -1.0))
-    modes = modes_of_scene(described)
+    modes = modes_of(described)
     assert modes.outcome is ModesOutcome.NO_EQUILIBRIUM
     assert modes.modes == ()
 
 
 def test_at_least_one_mode_is_asked_for():
     with pytest.raises(ValueError, match="at least one"):
-        modes_of_scene(scene(rod()), count=0)
+        modes_of(scene(rod()), count=0)
 
 
 def test_shapes_are_those_of_a_cantilever():
     """φ = cosh βX − cos βX − σ (sinh βX − sin βX), and φ′ is the rotation."""
-    modes = modes_of_scene(scene(rod()), count=1)
+    modes = modes_of(scene(rod()), count=1)
     beta = np.sqrt(CANTILEVER[0])
     sigma = (np.cosh(beta) + np.cos(beta)) / (np.sinh(beta) + np.sin(beta))
     X = np.linspace(0.0, 1.0, 7)
@@ -348,7 +348,7 @@ def test_shapes_are_those_of_a_cantilever():
 
 def test_shapes_are_derivatives_of_the_poses():
     described = scene(helix(1), weight(0.0, -0.002, -0.001))
-    modes = modes_of_scene(described, count=3)
+    modes = modes_of(described, count=3)
     solution = modes.solution
     X = np.array([0.3, 1.0])
     shape = modes.shape(X)
@@ -370,7 +370,7 @@ def test_shapes_are_derivatives_of_the_poses():
 
 def test_alike_modes_are_told_apart_by_their_plane():
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
-    modes = modes_of_scene(scene(rod("kirchhoff", stiffness)), count=2)
+    modes = modes_of(scene(rod("kirchhoff", stiffness)), count=2)
     tips = modes.shape(np.array([1.0])).position[:, 0]
     assert_allclose(np.abs(tips[0, 1:]), 0.0, rtol=0, atol=1e-9)
     assert_allclose(np.abs(tips[1, [0, 2]]), 0.0, rtol=0, atol=1e-9)
@@ -461,7 +461,7 @@ def test_damped_wire():
         "section": {"shape": "circle", "radius": 0.001},
         "damping": {"retardation_time": 1e-4},
     }
-    modes = modes_of_scene(scene(wire), count=6)
+    modes = modes_of(scene(wire), count=6)
     expected = np.repeat([35.49440563947164, 222.43655469866277, 622.8148182324308], 2)
     assert_allclose(modes.angular_frequencies, expected, rtol=1e-9, atol=0)
     assert_allclose([mode.damping_ratio for mode in modes.modes], 1e-4 * expected / 2, rtol=1e-9, atol=0)
@@ -491,7 +491,7 @@ def test_free_ring():
             "accuracy": {"tolerance": 1e-7},
         }
     )
-    modes = modes_of_scene(described, count=14)
+    modes = modes_of(described, count=14)
     waves = np.array([2.0, 3.0])
     in_plane = np.sqrt(waves**2 * (waves**2 - 1) ** 2 / (waves**2 + 1))
     out_of_plane = np.sqrt(waves**2 * (waves**2 - 1) ** 2 / (waves**2 + 1.3))

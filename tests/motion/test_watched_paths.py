@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Motion, scene_from_dict, simulate_scene
+from cosserat_casadi import Motion, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.tip_paths import Paths, _watched_arms, path_distance
@@ -52,7 +52,7 @@ def twist_of_the_tip(times: FloatArray) -> FloatArray:
 @pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5], quick=[1e-3]))
 def test_a_rod_that_only_twists_is_as_exact_as_it_says(tolerance: float) -> None:
     """Its tip stays where it is: what it is turned by counts on an arm of LEVER lengths."""
-    motion = simulate_scene(scene_from_dict(twisted(tolerance)))
+    motion = simulate(scene_from_dict(twisted(tolerance)))
     assert motion.converged, motion.message
     quaternion = motion.tip().quaternion
     assert_allclose(motion.tip().position, np.tile([0.0, 0.0, 1.0], (41, 1)), rtol=0, atol=1e-12)
@@ -75,7 +75,7 @@ def hung(tolerance: float) -> Motion:
     joint = {"body": "bob", "rod": "rod", "kind": "spherical"}
     simulation = {"duration": 1.0, "frames": 21, "tolerance": tolerance, "start": "unloaded"}
     scene = table(rod, gravity(9.81), bodies=[body], joints=[joint], simulation=simulation)
-    motion = simulate_scene(scene_from_dict(scene))
+    motion = simulate(scene_from_dict(scene))
     assert motion.converged, motion.message
     return motion
 

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
-from cosserat_casadi import build, discretise, follow_path, follow_scene_path, parse_scene, path_result, solve
+from cosserat_casadi import build, discretise, follow, parse_scene, solve
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.path_plot import plot_path
 from tests.commands import cosserat
@@ -71,7 +71,7 @@ radius = 0.05
 
 def followed(text: str, name: str, value: list[float], modes: int) -> ContactPath:
     scene = parse_scene(text)
-    path = follow_path(build(scene, discretise(scene, modes)), name, value)
+    path = follow(build(scene, discretise(scene, modes)), name, value)
     assert isinstance(path, ContactPath)
     return path
 
@@ -237,14 +237,14 @@ def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
 def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
     low = TABLE.replace("-0.08]", "-5.0]")
     bare = parse_scene(low[: low.index("[[obstacles]]")])
-    free = follow_path(build(bare, discretise(bare, 5)), "lift.force", [0, 0, 0.3])
+    free = follow(build(bare, discretise(bare, 5)), "lift.force", [0, 0, 0.3])
     path = followed(low, "lift.force", [0, 0, 0.3], 5)
     assert path.events == ()
     assert_allclose(path.tip().position[-1], free.tip().position[-1], rtol=0, atol=1e-12)
 
 
 def test_files_and_figure_name_the_events(lowered: ContactPath) -> None:
-    data = json.loads(json.dumps(path_result(lowered)))
+    data = json.loads(json.dumps(lowered.to_dict()))
     touch, lies_down = data["events"]
     assert touch["contact"] == {"obstacle": "table", "rod": "rod", "from": 1.0, "to": 1.0, "kind": "point"}
     assert lies_down["kind"] == "point_to_line"
@@ -259,7 +259,7 @@ def test_files_and_figure_name_the_events(lowered: ContactPath) -> None:
 @pytest.mark.slow
 def test_scene_path_meets_its_tolerance() -> None:
     scene = parse_scene(TABLE.replace("1e-7", "1e-6"))
-    path = follow_scene_path(scene, "weight.acceleration", [0, 0, -9.81])
+    path = follow(scene, "weight.acceleration", [0, 0, -9.81])
     assert path.converged
     assert path.error_estimate is not None
     assert path.error_estimate < 1e-6

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cosserat_casadi import Model, SceneError, build, discretise, follow_path, follow_scene_path, solve
+from cosserat_casadi import Model, SceneError, build, discretise, follow, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
 from tests.families import mostly_slow
@@ -42,7 +42,7 @@ def elastica(ratio: float) -> tuple[float, float]:
 
 def test_euler_column_buckles_at_eulers_load_and_is_unstable_beyond() -> None:
     length = 0.7
-    path = follow_path(column(length=length), "push.force", [0, 0, -12 * CRITICAL / length**2])
+    path = follow(column(length=length), "push.force", [0, 0, -12 * CRITICAL / length**2])
     assert path.converged
     assert [event.kind for event in path.events] == ["bifurcation", "bifurcation"]
     assert_allclose([12 * event.factor for event in path.events], [1.0, 9.0], rtol=1e-9, atol=0)
@@ -54,7 +54,7 @@ def test_euler_column_buckles_at_eulers_load_and_is_unstable_beyond() -> None:
 @pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
 @pytest.mark.parametrize("ratio", [1.5, 9.1])
 def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None:
-    path = follow_path(column(strain), "push.force", [0, 0, -ratio * CRITICAL], branch=True)
+    path = follow(column(strain), "push.force", [0, 0, -ratio * CRITICAL], branch=True)
     assert path.converged
     assert_allclose(ratio * path.events[0].factor, 1.0, rtol=1e-9, atol=0)
     assert path.branch is not None
@@ -72,7 +72,7 @@ def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None
 def test_both_halves_of_both_branches_of_the_column() -> None:
     """The second branch is the elastica of a third of the length, three times: it leaves at 9 P_c and is unstable."""
     model = column()
-    halves = {k: follow_path(model, "push.force", [0, 0, -9.1 * CRITICAL], branch=k) for k in (1, -1, 2, -2)}
+    halves = {k: follow(model, "push.force", [0, 0, -9.1 * CRITICAL], branch=k) for k in (1, -1, 2, -2)}
     ends = {k: path.tip().position[-1] for k, path in halves.items()}
     for k in (1, 2):
         assert halves[k].converged
@@ -89,7 +89,7 @@ def test_both_halves_of_both_branches_of_the_column() -> None:
 
 
 def test_round_column_loses_two_stiffnesses_at_once() -> None:
-    path = follow_path(column("kirchhoff"), "push.force", [0, 0, -2 * CRITICAL])
+    path = follow(column("kirchhoff"), "push.force", [0, 0, -2 * CRITICAL])
     assert path.converged
     (event,) = path.events
     assert (event.kind, event.multiplicity) == ("bifurcation", 2)
@@ -99,7 +99,7 @@ def test_round_column_loses_two_stiffnesses_at_once() -> None:
 
 
 def test_column_with_unequal_stiffnesses_buckles_about_the_soft_axis_first() -> None:
-    path = follow_path(column("kirchhoff", bending_x=1.3), "push.force", [0, 0, -1.5 * CRITICAL])
+    path = follow(column("kirchhoff", bending_x=1.3), "push.force", [0, 0, -1.5 * CRITICAL])
     assert [event.multiplicity for event in path.events] == [1, 1]
     assert_allclose([1.5 * event.factor for event in path.events], [1.0, 1.3], rtol=1e-9, atol=0)
 
@@ -107,7 +107,7 @@ def test_column_with_unequal_stiffnesses_buckles_about_the_soft_axis_first() -> 
 def test_standing_column_buckles_under_its_weight() -> None:
     """A. G. Greenhill 1881: ρA g L³/EI = 9/4 j², j = 1.866350858… the first zero of the Bessel function J₋₁⸝₃."""
     length = 2.0
-    path = follow_path(column(length=length), "weight.acceleration", [0, 0, -10 / length**3])
+    path = follow(column(length=length), "weight.acceleration", [0, 0, -10 / length**3])
     assert path.converged
     assert_allclose(10 * path.events[0].factor, 9 / 4 * 1.8663508588**2, rtol=1e-8, atol=0)
 
@@ -137,7 +137,7 @@ def test_deep_arch_vs_published_limit_load() -> None:
 
     The path leads down through zero and back up; it ends at factor 1 on the far side.
     """
-    path = follow_path(arch(14), "crown.force", [0, 0, -1000.0])
+    path = follow(arch(14), "crown.force", [0, 0, -1000.0])
     assert path.converged
     assert [event.kind for event in path.events] == ["limit", "limit"]
     assert_allclose(1000 * path.events[0].factor, 897.309, rtol=1e-6, atol=0)
@@ -159,7 +159,7 @@ def test_deep_arch_vs_published_limit_load() -> None:
 def test_path_without_events_ends_where_solve_does() -> None:
     model = build(scene(push(), strain="reissner"))
     force = [0.9, 0.5, -0.4]
-    path, direct = follow_path(model, "push.force", force), solve(model)
+    path, direct = follow(model, "push.force", force), solve(model)
     assert path.converged
     assert path.events == ()
     assert_allclose(path.x[-1], direct.x, rtol=0, atol=1e-10)
@@ -176,7 +176,7 @@ def test_multipliers_of_a_held_rod_vs_solve() -> None:
     """The curve counts multipliers in units of the load; what is recorded does not."""
     held = [{"rod": "rod", "kind": "pinned", "position": [0.3, 0.1, 0.6]}]
     model = build(scene({**HOOK, "force": [20.0, -9.0, 5.0]}, supports=held))
-    path, direct = follow_path(model, "hook.force", [20.0, -9.0, 5.0]), solve(model)
+    path, direct = follow(model, "hook.force", [20.0, -9.0, 5.0]), solve(model)
     assert path.converged
     assert path.events == ()
     assert path.stable is not None
@@ -189,7 +189,7 @@ def test_tips_of_a_rod_whose_length_and_base_are_inputs_vs_solve(length: float) 
     """Their values belong to the poses of the path, though no path follows them."""
     free = {"inputs": ["push.force", "rod.length", "rod.base.position"]}
     model = build(scene(push(force=[0.2, 0, 0]), rods=[rod("planar", base={"position": [0.1, 0, 0.2]})], **free))
-    path = follow_path(model, "push.force", [0.2, 0, 0], {"rod.length": length})
+    path = follow(model, "push.force", [0.2, 0, 0], {"rod.length": length})
     direct = solve(model, {"rod.length": length})
     assert path.converged
     assert_allclose(path.tip().position[0], [0.1, 0, 0.2 + length], rtol=0, atol=1e-12)
@@ -201,7 +201,7 @@ def test_other_loads_stay_at_their_values() -> None:
     """The start is the rod under its weight alone."""
     weight = {"name": "weight", "kind": "gravity", "acceleration": [0.3, -0.2, -2.0]}
     model = build(scene(push(force=[0, 0, 0]), weight))
-    path = follow_path(model, "push.force", [0.4, 0, 0], {"weight.acceleration": [0.5, 0, -1.0]})
+    path = follow(model, "push.force", [0.4, 0, 0], {"weight.acceleration": [0.5, 0, -1.0]})
     alone = solve(model, {"weight.acceleration": [0.5, 0, -1.0]})
     assert_allclose(path.x[0], alone.x, rtol=0, atol=1e-10)
 
@@ -209,7 +209,7 @@ def test_other_loads_stay_at_their_values() -> None:
 def test_follower_force_has_no_stability_and_no_event() -> None:
     """Beck's column: no equilibrium but the straight one, no potential, no static bifurcation."""
     model = build(scene(push(force=[0, 0, 0], frame="body"), strain="planar"))
-    path = follow_path(model, "push.force", [0, 0, -60.0])
+    path = follow(model, "push.force", [0, 0, -60.0])
     assert path.converged
     assert path.stable is None
     assert path.events == ()
@@ -220,7 +220,7 @@ def test_dead_and_follower_force_together_vs_closed_form() -> None:
     follower = {"name": "beck", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.3], "frame": "body"}
     upright = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
     both = scene(push(force=[0, 0, 0]), follower, rods=[upright])
-    path = follow_path(build(both, discretise(both, 12, 28, "magnus8")), "push.force", [0, 0, -4.0])
+    path = follow(build(both, discretise(both, 12, 28, "magnus8")), "push.force", [0, 0, -4.0])
     assert path.converged
     assert path.stable is None
     (event,) = path.events
@@ -230,7 +230,7 @@ def test_dead_and_follower_force_together_vs_closed_form() -> None:
 
 def test_modes_are_chosen_until_events_and_end_stay() -> None:
     free = scene(push(force=[0, 0, 0]), rods=[rod("planar", length=1.0, stiffness={"bending_y": 1.0})])
-    path = follow_scene_path(free, "push.force", [0, 0, -3 * CRITICAL], branch=True)
+    path = follow(free, "push.force", [0, 0, -3 * CRITICAL], branch=True)
     assert path.converged
     assert path.error_estimate is not None
     x, _, z = path.tip().position[-1]
@@ -240,14 +240,14 @@ def test_modes_are_chosen_until_events_and_end_stay() -> None:
 
 def test_fixed_modes_are_used_as_they_are() -> None:
     fixed = scene(push(), strain="planar", accuracy={"modes": 4, "nodes": 12})
-    path = follow_scene_path(fixed, "push.force", [0.5, 0, 0])
+    path = follow(fixed, "push.force", [0.5, 0, 0])
     assert path.converged
     assert path.error_estimate is None
     assert path.model.discretisation["rod"].modes == (4,)
 
 
 def test_load_that_is_never_reached_is_said() -> None:
-    path = follow_path(arch(8), "crown.force", [0, 0, -1000.0], settings=ArcSettings(steps=30))
+    path = follow(arch(8), "crown.force", [0, 0, -1000.0], settings=ArcSettings(steps=30))
     assert path.outcome is PathOutcome.MAX_STEPS
     assert not path.converged
     assert "Largest factor reached" in path.message
@@ -255,7 +255,7 @@ def test_load_that_is_never_reached_is_said() -> None:
 
 
 def test_no_bifurcation_to_leave_at_is_said() -> None:
-    path = follow_path(column(), "push.force", [0, 0, -0.5 * CRITICAL], branch=True)
+    path = follow(column(), "push.force", [0, 0, -0.5 * CRITICAL], branch=True)
     assert path.outcome is PathOutcome.NO_BIFURCATION
     assert path.branch is None
 
@@ -264,7 +264,7 @@ def test_no_start_is_said() -> None:
     """Upright at a whole length sideways: the support cannot be met."""
     aside = {"rod": "rod", "kind": "clamped", "position": [0.8, 0.0, 0.0], "quaternion": [1, 0, 0, 0]}
     far = scene(push(), strain="planar", supports=[aside])
-    path = follow_path(build(far), "push.force", [1, 0, 0])
+    path = follow(build(far), "push.force", [1, 0, 0])
     assert path.outcome is PathOutcome.NO_START
     assert path.factor.shape == (0,)
     assert path.x.shape == (0, build(far).size)
@@ -280,11 +280,11 @@ def test_no_start_is_said() -> None:
 )
 def test_bad_inputs_are_refused(name: str, value: object, words: str) -> None:
     with pytest.raises(SceneError, match=words):
-        follow_path(build(scene(push())), name, value)  # type: ignore[arg-type]
+        follow(build(scene(push())), name, value)  # type: ignore[arg-type]
 
 
 def test_progress_grows_to_one() -> None:
     shares: list[float] = []
-    follow_path(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=shares.append)
+    follow(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=shares.append)
     assert shares[-1] == 1.0
     assert shares == sorted(shares)

@@ -9,7 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 from PIL import Image
 
-from cosserat_casadi.motion.vibration_modes import Modes, modes_of_scene
+from cosserat_casadi import modes_of
+from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes, save_mode_animation, save_modes_plot
 from tests.scenes import rod, scene
@@ -21,7 +22,7 @@ ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.05}
 def modes() -> Modes:
     """Bending in two planes, then torsion."""
     soft = rod("kirchhoff", stiffness=ROUND, rotary_inertia=[0.0, 0.0, 0.02], damping={"bending_x": 1e-3})
-    return modes_of_scene(scene(rods=[soft]), count=3)
+    return modes_of(scene(rods=[soft]), count=3)
 
 
 def test_one_panel_a_mode_in_the_plane_that_holds_it(modes: Modes) -> None:
@@ -36,7 +37,7 @@ def test_one_panel_a_mode_in_the_plane_that_holds_it(modes: Modes) -> None:
 
 def test_modes_in_a_plane_that_stands_askew_are_drawn_in_it() -> None:
     turned = {"quaternion": [np.cos(0.3), 0, 0, np.sin(0.3)]}
-    figure = plot_modes(modes_of_scene(scene(rods=[rod("planar", base=turned)]), count=2))
+    figure = plot_modes(modes_of(scene(rods=[rod("planar", base=turned)]), count=2))
     assert [axes.name for axes in figure.axes] == ["rectilinear", "rectilinear"]
     assert figure.axes[0].get_xlabel() == "along (0.825, 0.565, 0), m"
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import EquilibriumPath, SceneError, build, follow_path, path_result
+from cosserat_casadi import EquilibriumPath, SceneError, build, follow
 from cosserat_casadi.plots.path_plot import plot_path, save_path_plot
 from cosserat_casadi.results.path_file import path_table
 from tests.scenes import push, rod, scene
@@ -20,12 +20,12 @@ def straight() -> EquilibriumPath:
     """A column of length 2 that buckles at a third of the load; a second load bends it a little to no avail."""
     upright = rod("planar", length=2.0, stiffness={"bending_y": 1.0})
     model = build(scene(push(force=[0, 0, 0]), rods=[upright]))
-    return follow_path(model, "push.force", [0, 0, -3 * np.pi**2 / 16])
+    return follow(model, "push.force", [0, 0, -3 * np.pi**2 / 16])
 
 
 @pytest.fixture(scope="module")
 def buckled(straight: EquilibriumPath) -> EquilibriumPath:
-    return follow_path(straight.model, "push.force", straight.value, branch=True)
+    return follow(straight.model, "push.force", straight.value, branch=True)
 
 
 def lines(figure: Any) -> list[Any]:
@@ -52,7 +52,7 @@ def test_displacement_is_relative_to_the_length(buckled: EquilibriumPath) -> Non
 
 
 def test_a_path_that_ended_early_says_so_in_red(straight: EquilibriumPath) -> None:
-    none = follow_path(straight.model, "push.force", [0, 0, -0.1], branch=True)
+    none = follow(straight.model, "push.force", [0, 0, -0.1], branch=True)
     title = plot_path(none).axes[0].title
     assert title.get_text() == none.message
     assert title.get_color() == "#cc3311"
@@ -74,8 +74,8 @@ def test_unknown_suffix_is_refused(buckled: EquilibriumPath, tmp_path: Path) -> 
 
 def test_a_path_without_a_start_can_be_drawn_and_written(tmp_path: Path) -> None:
     aside = {"rod": "rod", "kind": "clamped", "position": [0.8, 0.0, 0.0], "quaternion": [1, 0, 0, 0]}
-    none = follow_path(build(scene(push(), strain="planar", supports=[aside])), "push.force", [1, 0, 0])
+    none = follow(build(scene(push(), strain="planar", supports=[aside])), "push.force", [1, 0, 0])
     save_path_plot(none, tmp_path / "none.png")
-    assert path_result(none)["path"] == []
-    assert path_result(none)["outcome"] == "no_start"
+    assert none.to_dict()["path"] == []
+    assert none.to_dict()["outcome"] == "no_start"
     assert len(path_table(none).splitlines()) == 1

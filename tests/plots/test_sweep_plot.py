@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.plots.sweep_plot import plot_sweep, save_sweep_plot
-from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
 
 POSE = ("rod.x", "rod.y", "rod.z", "rod.qw", "rod.qx", "rod.qy", "rod.qz")
 

@@ -13,7 +13,7 @@ from cosserat_casadi.plots.colours import CATEGORIES, CATEGORY_MARKERS, category
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.plots.scenery import ACTUATOR_STYLES
 from cosserat_casadi.plots.sweep_plot import plot_sweep
-from cosserat_casadi.sweep.outcome_table import LABELS
+from cosserat_casadi.sweeps.outcome_table import LABELS
 from tests.plots.test_sweep_plot import swept
 from tests.scenes import HOOK, WEIGHT, WIND, push, scene
 

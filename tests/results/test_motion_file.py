@@ -16,14 +16,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.motion.trajectory import Energies, Motion, MotionOutcome
-from cosserat_casadi.results.motion_file import (
-    FORMATS,
-    check_motion_path,
-    motion_columns,
-    motion_result,
-    write_motion,
-)
-from cosserat_casadi.sweep.outcome_file import ParquetUnavailableError
+from cosserat_casadi.results.motion_file import FORMATS, check_motion_path, motion_columns
+from cosserat_casadi.sweeps.outcome_file import ParquetUnavailableError
 from tests.motions import START, motion_of, swinging_rod, two_rods_on_a_platform, without_start
 from tests.scenes import WIND, push, scene
 
@@ -37,7 +31,7 @@ def platform() -> Motion:
 
 def written(motion: Motion, folder: Path, suffix: str) -> Path:
     path = folder / f"motion{suffix}"
-    write_motion(motion, path)
+    motion.write(path)
     return path
 
 
@@ -63,7 +57,7 @@ def test_json_has_the_keys_of_the_contract(platform: Motion, tmp_path: Path) -> 
 
 
 def test_json_arrays_vs_motion(platform: Motion) -> None:
-    data = motion_result(platform)
+    data = platform.to_dict()
     right = data["rods"]["right"]
     assert np.shape(right["position"]) == (5, 41, 3)
     assert np.shape(right["tip"]["quaternion"]) == (5, 4)
@@ -76,7 +70,7 @@ def test_json_arrays_vs_motion(platform: Motion) -> None:
 
 def test_legendre_coefficients_of_an_input_are_rows(tmp_path: Path) -> None:
     windy = motion_of(scene(push(), WIND), {"wind.force": [[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]]}, frames=3)
-    wind = np.array(motion_result(windy)["inputs"]["wind.force"])
+    wind = np.array(windy.to_dict()["inputs"]["wind.force"])
     assert wind.shape == (3, 2, 3)
     assert_allclose(wind[-1], [[0.1, 0.3, 0.5], [0.2, 0.4, 0.6]], rtol=1e-14, atol=0)
     assert_array_equal(motion_columns(windy)["wind.force.x.1"], wind[:, 1, 0])
@@ -85,7 +79,7 @@ def test_legendre_coefficients_of_an_input_are_rows(tmp_path: Path) -> None:
 
 
 def test_scenes_of_rods_alone_have_no_other_tables() -> None:
-    data = motion_result(swinging_rod(frames=2))
+    data = swinging_rod(frames=2).to_dict()
     assert "bodies" not in data
     assert "actuators" not in data
 
@@ -98,7 +92,7 @@ def test_csv_vs_arrays(platform: Motion, tmp_path: Path) -> None:
     table = dict(zip(header, np.array(rows, dtype=float).T, strict=True))
     # Numbers read back to the last digit.
     assert_array_equal(table["t"], platform.times)
-    assert_array_equal(table["crown.force.y"], np.array(motion_result(platform)["inputs"]["crown.force"])[:, 1])
+    assert_array_equal(table["crown.force.y"], np.array(platform.to_dict()["inputs"]["crown.force"])[:, 1])
     assert_array_equal(table["left.tip.z"], platform.tip("left").position[:, 2])
     assert_array_equal(table["left.tip.qw"], platform.tip("left").quaternion[:, 0])
     middle = platform.section("right", [0.5]).position
@@ -121,7 +115,7 @@ def test_parquet_vs_csv_columns(platform: Motion, tmp_path: Path) -> None:
 
 
 def test_npz_vs_json(platform: Motion, tmp_path: Path) -> None:
-    data = motion_result(platform)
+    data = platform.to_dict()
     with np.load(written(platform, tmp_path, ".npz")) as arrays:
         assert_array_equal(arrays["times"], data["times"])
         assert_array_equal(arrays["rods.left.position"], data["rods"]["left"]["position"])
@@ -164,15 +158,15 @@ def test_files_are_the_same_every_time_and_alone(tmp_path: Path, suffix: str) ->
     motion = swinging_rod(frames=3)
     first = tmp_path / f"a{suffix}"
     second = tmp_path / f"b{suffix.upper()}"
-    write_motion(motion, first)
-    write_motion(motion, second)
+    motion.write(first)
+    motion.write(second)
     assert first.read_bytes() == second.read_bytes()
     assert sorted(tmp_path.iterdir()) == [first, second]
 
 
 def test_unknown_suffix_is_refused_with_the_known_ones(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"--output: .*use one of \.json, \.csv, \.parquet, \.npz"):
-        write_motion(swinging_rod(frames=2), tmp_path / "motion.mat")
+    with pytest.raises(SceneError, match=r"path: .*use one of \.json, \.csv, \.parquet, \.npz"):
+        swinging_rod(frames=2).write(tmp_path / "motion.mat")
     assert list(tmp_path.iterdir()) == []
 
 

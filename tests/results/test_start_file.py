@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, Solution, build, follow_path, solve, solve_scene, write_result
+from cosserat_casadi import Scene, SceneError, Solution, build, follow, solve
 from cosserat_casadi.results.start_file import read_start
 from tests.motions import two_rods_on_a_platform
 from tests.scenes import HOOK, WIND, push, rod, scene, three_cables
@@ -18,7 +18,7 @@ from tests.scenes import HOOK, WIND, push, rod, scene, three_cables
 
 def read_back(solution: Solution, given: Scene, folder: Path) -> Solution:
     path = folder / "result.json"
-    write_result(solution, path)
+    solution.write(path)
     return read_start(path, given)
 
 
@@ -34,7 +34,7 @@ def test_unknowns_and_inputs_come_back(tmp_path: Path, values: dict[str, Any]) -
 
 def test_a_chosen_discretisation_comes_back(tmp_path: Path) -> None:
     given = scene(push(force=[3.0, 1.0, -1.0]))
-    solution = solve_scene(given)
+    solution = solve(given)
     start = read_back(solution, given, tmp_path)
     assert start.model.discretisation == solution.model.discretisation
     assert_allclose(start.x, solution.x, rtol=0, atol=1e-10)
@@ -52,7 +52,7 @@ def test_the_branch_of_the_file_is_kept(tmp_path: Path) -> None:
     """A column beyond its buckling load: solved from the straight rod it stays straight."""
     upright = rod("planar", length=2.0, stiffness={"bending_y": 1.0})
     given = scene(push(force=[0.0, 0.0, -1.2]), rods=[upright])
-    bent = follow_path(build(given), "push.force", [0.0, 0.0, -1.2], branch=True).solution(-1)
+    bent = follow(build(given), "push.force", [0.0, 0.0, -1.2], branch=True).solution(-1)
     start = read_back(bent, given, tmp_path)
     assert abs(bent.tip().position[0, 0]) > 0.5
     assert_allclose(start.tip().position, bent.tip().position, rtol=0, atol=1e-9)
@@ -66,7 +66,7 @@ def test_a_length_that_is_an_input_comes_back(tmp_path: Path) -> None:
 
 
 def spoilt(solution: Solution, path: Path, **changes: Any) -> Path:
-    write_result(solution, path)
+    solution.write(path)
     data = json.loads(path.read_text(encoding="utf-8")) | changes
     path.write_text(json.dumps(data), encoding="utf-8")
     return path
@@ -107,7 +107,7 @@ def test_files_that_are_no_results_are_refused(tmp_path: Path, text: str | None,
 def test_a_number_that_is_missing_is_refused(tmp_path: Path) -> None:
     given = scene(push())
     solution = solve(build(given))
-    write_result(solution, tmp_path / "result.json")
+    solution.write(tmp_path / "result.json")
     data = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
     positions = np.array(data["rods"]["rod"]["position"])
     positions[3, 1] = np.nan
@@ -141,7 +141,7 @@ SPOILT = {
 def test_files_with_a_spoilt_entry_are_refused(tmp_path: Path, name: str) -> None:
     given = scene(push())
     path = tmp_path / "result.json"
-    write_result(solve(build(given)), path)
+    solve(build(given)).write(path)
     data = json.loads(path.read_text(encoding="utf-8"))
     *keys, last, value = SPOILT[name]
     entry = data

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cosserat_casadi import SceneError, parse_scene, solve_scene
+from cosserat_casadi import SceneError, parse_scene, solve
 from cosserat_casadi.scene.writing import scene_text
 
 ROD = """schema = 1
@@ -69,8 +69,8 @@ def test_targets_and_bounds_are_read_and_written() -> None:
 
 
 def test_targets_do_not_act() -> None:
-    with_targets = solve_scene(parse_scene(ROD + GOOD.removeprefix(PLATE).replace('body = "plate"', 'rod = "a"')))
-    assert (with_targets.x == solve_scene(parse_scene(ROD)).x).all()
+    with_targets = solve(parse_scene(ROD + GOOD.removeprefix(PLATE).replace('body = "plate"', 'rod = "a"')))
+    assert (with_targets.x == solve(parse_scene(ROD)).x).all()
 
 
 POSITION = "position = [0, 0, 0.2]"

@@ -10,7 +10,7 @@ from tests.scenes import push, rod, scene
 @pytest.fixture
 def few_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two rows are solved again at the end of a sweep, not six."""
-    monkeypatch.setattr("cosserat_casadi.sweep.choice.CHECKED", 2)
+    monkeypatch.setattr("cosserat_casadi.sweeps.choice.CHECKED", 2)
 
 
 PLANAR = scene(

@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, solve
-from cosserat_casadi.sweep.choice import pose_difference
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.row_model import solved_poses
+from cosserat_casadi.sweeps.choice import pose_difference
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.row_model import solved_poses
 from tests.sweep.conftest import PLANAR
 
 FINE = {"row": 0, "error_estimate": 2e-5, "difference": 1e-12, "stable": True}

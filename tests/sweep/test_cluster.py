@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from cosserat_casadi import SceneError, sweep_scene
-from cosserat_casadi.sweep.cluster import ClusterError, _connected
-from cosserat_casadi.sweep.store import Store
+from cosserat_casadi import SceneError, sweep
+from cosserat_casadi.sweeps.cluster import ClusterError, _connected
+from cosserat_casadi.sweeps.store import Store
 from tests.sweep.conftest import PLANAR
 
 distributed = pytest.importorskip("distributed")
@@ -63,12 +63,12 @@ def test_a_worker_is_killed_and_every_row_comes_once(
 
     kept = Store.add
     monkeypatch.setattr(Store, "add", add)
-    sweep_scene(PLANAR, table, tmp_path / "cluster.csv", scheduler=cluster.scheduler_address)
+    sweep(PLANAR, table, tmp_path / "cluster.csv", scheduler=cluster.scheduler_address)
     assert killed
     assert sorted(added) == list(range(8))
     monkeypatch.undo()
-    monkeypatch.setattr("cosserat_casadi.sweep.choice.CHECKED", 2)
-    sweep_scene(PLANAR, table, tmp_path / "here.csv")
+    monkeypatch.setattr("cosserat_casadi.sweeps.choice.CHECKED", 2)
+    sweep(PLANAR, table, tmp_path / "here.csv")
     assert (tmp_path / "cluster.csv").read_bytes() == (tmp_path / "here.csv").read_bytes()
 
 
@@ -82,23 +82,23 @@ def test_a_sweep_begun_here_ends_on_the_cluster(cluster: Any, tmp_path: Path, mo
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Store, "add", add)
-        sweep_scene(PLANAR, table, tmp_path / "a.csv")
+        sweep(PLANAR, table, tmp_path / "a.csv")
     assert (tmp_path / "a.csv.part").exists()
-    found = sweep_scene(PLANAR, table, tmp_path / "a.csv", scheduler=cluster.scheduler_address)
-    assert_array_equal(found.values, sweep_scene(PLANAR, table).values)
+    found = sweep(PLANAR, table, tmp_path / "a.csv", scheduler=cluster.scheduler_address)
+    assert_array_equal(found.values, sweep(PLANAR, table).values)
 
 
 def test_schedulers_that_do_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.cluster.PATIENCE", 1)
+    monkeypatch.setattr("cosserat_casadi.sweeps.cluster.PATIENCE", 1)
     for address in ("tcp://127.0.0.1:9", "nowhere"):
         with pytest.raises(SceneError, match="no scheduler answers"):
-            sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=address)
+            sweep(PLANAR, {"push.force.x": [0.1]}, scheduler=address)
 
 
 def test_other_versions_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.cluster.version", lambda name: "0.0.1")
+    monkeypatch.setattr("cosserat_casadi.sweeps.cluster.version", lambda name: "0.0.1")
     with pytest.raises(ClusterError, match=r"differ from 0\.0\.1 here"):
-        sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=cluster.scheduler_address)
+        sweep(PLANAR, {"push.force.x": [0.1]}, scheduler=cluster.scheduler_address)
 
 
 def test_a_thread_of_dask_that_begins_late() -> None:
@@ -147,9 +147,9 @@ def test_lost_clients_are_collected_before_another_is_made() -> None:
 
 
 def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.cluster.PATIENCE", 2)
+    monkeypatch.setattr("cosserat_casadi.sweeps.cluster.PATIENCE", 2)
     with (
         distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
         pytest.raises(ClusterError, match="no workers"),
     ):
-        sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=empty.scheduler_address)
+        sweep(PLANAR, {"push.force.x": [0.1]}, scheduler=empty.scheduler_address)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from cosserat_casadi import SceneError, Solution, solve, solve_scene, sweep_scene
+from cosserat_casadi import SceneError, Solution, solve, sweep
 from cosserat_casadi.cli.main import INTERRUPTED, REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import rod, scene
@@ -88,14 +88,14 @@ def test_the_extra_that_lacks_is_named_whole(
 
 def test_no_core_is_refused() -> None:
     with pytest.raises(SceneError, match="--cores: must be at least 1, got 0"):
-        sweep_scene(PLANAR, {"push.force.x": [0.1]}, cores=0)
+        sweep(PLANAR, {"push.force.x": [0.1]}, cores=0)
 
 
 def test_a_body_named_as_a_rod_is_refused() -> None:
     joint = {"body": "rod", "rod": "rod", "kind": "fixed"}
     given = scene(rods=[rod()], bodies=[{"name": "rod", "mass": 0.1}], joints=[joint])
     with pytest.raises(SceneError, match=r"bodies\[0\]\.name: 'rod' is the name of a rod too"):
-        sweep_scene(given, {"rod.length": [0.5]})
+        sweep(given, {"rod.length": [0.5]})
 
 
 @pytest.mark.parametrize("command", ["sweep", "solve"])
@@ -118,8 +118,8 @@ def test_an_interrupt_that_is_lost_stops_the_command(
     lost: list[bool] = []
     # What this process has received is no signal to the commands of other tests.
     monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
-    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve", losing(solve))
-    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", losing(solve_scene))
+    monkeypatch.setattr("cosserat_casadi.sweeps.choice.solve", losing(solve))
+    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve", losing(solve))
     words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])
     before = signal.getsignal(signal.SIGINT)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, solve, sweep_scene
+from cosserat_casadi import SceneError, solve, sweep
 from cosserat_casadi.model.build import build
-from cosserat_casadi.sweep.arguments import extreme_rows
-from cosserat_casadi.sweep.scratch import MEMORY
-from cosserat_casadi.sweep.table import table_of
-from cosserat_casadi.sweep.variants import variants_of
+from cosserat_casadi.sweeps.arguments import extreme_rows
+from cosserat_casadi.sweeps.scratch import MEMORY
+from cosserat_casadi.sweeps.table import table_of
+from cosserat_casadi.sweeps.variants import variants_of
 from tests.scenes import push, rod, scene
 
 pytestmark = pytest.mark.usefixtures("few_checked")
@@ -58,7 +58,7 @@ def arcs(table: dict[str, np.ndarray]) -> np.ndarray:
 
 def test_all_rows_share_one_library_vs_arcs() -> None:
     table = tolerances(1100)
-    found = sweep_scene(BENT, table)
+    found = sweep(BENT, table)
     assert found.record["arguments"] == list(table)
     assert found.converged.all()
     assert_allclose(found.positions()[:, [0, 2]], arcs(table), rtol=0, atol=1e-9)
@@ -70,7 +70,7 @@ def test_all_rows_share_one_library_vs_arcs() -> None:
 def test_few_rows_are_solved_on_models_of_their_own() -> None:
     """The same names serve there: those of ``--set``, and those of parameters."""
     table = tolerances(3)
-    found = sweep_scene(BENT, table)
+    found = sweep(BENT, table)
     assert found.record["arguments"] == []
     assert_allclose(found.positions()[:, [0, 2]], arcs(table), rtol=0, atol=1e-9)
 

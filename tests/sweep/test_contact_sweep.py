@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, choose, parse_scene, solve, sweep_scene
+from cosserat_casadi import build, choose, parse_scene, solve, sweep
 from cosserat_casadi.codegen.rows import row_library, row_results
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.sweep.arguments import COMPILED_FROM
-from cosserat_casadi.sweep.outcome_file import read_sweep
-from cosserat_casadi.sweep.outcome_table import LABELS
-from cosserat_casadi.sweep.row_model import RowModel, result_row
-from cosserat_casadi.sweep.table import table_of
-from cosserat_casadi.sweep.variants import variants_of
-from cosserat_casadi.sweep.work import chunks
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.outcome_file import read_sweep
+from cosserat_casadi.sweeps.outcome_table import LABELS
+from cosserat_casadi.sweeps.row_model import RowModel, result_row
+from cosserat_casadi.sweeps.table import table_of
+from cosserat_casadi.sweeps.variants import variants_of
+from cosserat_casadi.sweeps.work import chunks
 from tests.paths.test_contact_path import BAR
 
 SCENE = BAR.replace('inputs = ["rod.base.position"]\n', "").replace("tolerance = 1e-6", "modes = 4")
@@ -29,21 +29,21 @@ PUSHES = np.array([-0.02, -0.5, -2.0, -1.0])
 def test_rows_hold_their_contacts(tmp_path: Path) -> None:
     scene = parse_scene(SCENE)
     file = tmp_path / "pushes.csv"
-    sweep = sweep_scene(scene, {"push.force.z": PUSHES}, file, cores=1, stability=True)
-    assert sweep.counts == {"converged": 4}
-    assert_allclose(sweep["rod.bar.contacts"], [0, 1, 1, 1], rtol=0, atol=0)
-    assert np.isnan(sweep["rod.bar.from"][0])
-    assert_allclose(sweep["rod.bar.force.z"][0], 0.0, rtol=0, atol=0)
+    swept = sweep(scene, {"push.force.z": PUSHES}, file, cores=1, stability=True)
+    assert swept.counts == {"converged": 4}
+    assert_allclose(swept["rod.bar.contacts"], [0, 1, 1, 1], rtol=0, atol=0)
+    assert np.isnan(swept["rod.bar.from"][0])
+    assert_allclose(swept["rod.bar.force.z"][0], 0.0, rtol=0, atol=0)
     model = build(scene)
     for row in (1, 3):
         alone = solve(model, {"push.force": [0, 0, PUSHES[row]]})
         (contact,) = alone.contacts
-        found = [sweep[f"rod.bar.{word}"][row] for word in ("from", "to", "force.x", "force.y", "force.z")]
+        found = [swept[f"rod.bar.{word}"][row] for word in ("from", "to", "force.x", "force.y", "force.z")]
         assert_allclose(found, [contact.start, contact.end, *contact.force], rtol=0, atol=1e-9)
-        assert_allclose(sweep.positions()[row], alone.tip().position[0], rtol=0, atol=1e-10)
-        assert_allclose(sweep["smallest_eigenvalue"][row], alone.smallest_eigenvalue, rtol=1e-7, atol=0)
+        assert_allclose(swept.positions()[row], alone.tip().position[0], rtol=0, atol=1e-10)
+        assert_allclose(swept["smallest_eigenvalue"][row], alone.smallest_eigenvalue, rtol=1e-7, atol=0)
     # The file says the same, with empty cells where nothing touches.
-    assert_allclose(read_sweep(file).values, sweep.values, rtol=0, atol=0, equal_nan=True)
+    assert_allclose(read_sweep(file).values, swept.values, rtol=0, atol=0, equal_nan=True)
 
 
 def test_rows_with_obstacles_are_not_compiled() -> None:
@@ -78,7 +78,7 @@ def test_a_row_starts_from_the_row_before(monkeypatch: pytest.MonkeyPatch) -> No
         starts.append(start)
         return solve(model, inputs, start=start, estimate_error=estimate_error)
 
-    monkeypatch.setattr("cosserat_casadi.sweep.row_model.solve", noted)
+    monkeypatch.setattr("cosserat_casadi.sweeps.row_model.solve", noted)
     RowModel(SCENE).solve(np.array([[0.0, 0.0, -0.5], [0.0, 0.0, -0.6]]))
     assert starts[0] is None
     assert starts[1].contacts[0].obstacle == "bar"
@@ -90,7 +90,7 @@ def test_a_row_whose_contacts_are_not_found_says_so(monkeypatch: pytest.MonkeyPa
     def lost(model, inputs, start=None, estimate_error=True):  # type: ignore[no-untyped-def]
         return replace(solve(model, inputs), outcome=unsettled, message=unsettled.value)
 
-    monkeypatch.setattr("cosserat_casadi.sweep.row_model.solve", lost)
+    monkeypatch.setattr("cosserat_casadi.sweeps.row_model.solve", lost)
     ((ended, *rest),) = RowModel(SCENE).solve(np.array([[0.0, 0.0, -0.01]])).tolist()
     assert LABELS[int(ended)] == "contact_unsettled"
     # Nothing of what was not found is told.

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from cosserat_casadi import SceneError, read_sweep, sweep_scene
+from cosserat_casadi import SceneError, read_sweep, sweep
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.files import atomic_folder
-from cosserat_casadi.sweep.outcome_file import write_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.sweeps.outcome_file import write_sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.run import plan_sweep
+from cosserat_casadi.sweeps.table import table_of
 from tests.sweep.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
@@ -27,8 +27,8 @@ TABLE = {"push.force.x": [0.1, 0.2]}
 def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of five rows, in groups of two."""
     pytest.importorskip("pyarrow")
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.ROW_GROUP", 2)
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.PART_ROWS", 5)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file.ROW_GROUP", 2)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file.PART_ROWS", 5)
 
 
 def rows(count: int) -> Sweep:
@@ -59,13 +59,13 @@ def test_the_parts_hold_what_the_single_file_holds(tmp_path: Path) -> None:
 
 def test_a_dataset_is_finished_once_and_left_alone(tmp_path: Path) -> None:
     output = tmp_path / "rows.dataset"
-    found = sweep_scene(PLANAR, TABLE, output)
+    found = sweep(PLANAR, TABLE, output)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["rows.dataset", "rows.dataset.json"]
     (part,) = output.iterdir()
     written = part.stat().st_mtime_ns
     plan = plan_sweep(PLANAR, table_of(TABLE), output)
     assert plan.finished
-    assert_array_equal(sweep_scene(PLANAR, TABLE, output).values, found.values)
+    assert_array_equal(sweep(PLANAR, TABLE, output).values, found.values)
     assert part.stat().st_mtime_ns == written
     with pytest.raises(SceneError, match=r"rows\.dataset exists, and is not of this sweep"):
         plan_sweep(PLANAR, table_of({"push.force.x": [0.3]}), output)
@@ -84,7 +84,7 @@ def test_a_dataset_that_cannot_be_written_leaves_nothing(tmp_path: Path, monkeyp
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file._write_parquet", full)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file._write_parquet", full)
     with pytest.raises(WriteError, match="No space left"):
         write_sweep(rows(12), tmp_path / "rows.dataset")
     assert list(tmp_path.iterdir()) == []
@@ -106,7 +106,7 @@ def test_a_folder_goes_to_where_a_link_leads_and_over_nothing(tmp_path: Path) ->
 
 def test_numbers_are_read_as_arrays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers of Python would take several times as much memory as the results."""
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.ROW_GROUP", 65_536)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file.ROW_GROUP", 65_536)
     found = rows(20_000)
     file = tmp_path / "rows.parquet"
     write_sweep(found, file)

@@ -19,14 +19,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.files import WriteError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep import run
-from cosserat_casadi.sweep.outcome_file import write_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import Plan, plan_sweep, run_shard, run_sweep
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.shards import Shard
-from cosserat_casadi.sweep.store import Store, StoreChangedError
-from cosserat_casadi.sweep.table import read_table, table_of
+from cosserat_casadi.sweeps import run
+from cosserat_casadi.sweeps.outcome_file import write_sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.run import Plan, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.shards import Shard
+from cosserat_casadi.sweeps.store import Store, StoreChangedError
+from cosserat_casadi.sweeps.table import read_table, table_of
 from tests.conftest import ROOT
 from tests.sweep.conftest import PLANAR
 
@@ -120,7 +120,7 @@ def test_four_times_the_rows_take_no_more_memory(
 ) -> None:
     """But for a few bytes of each row in the places of chunks: what it has on disc are some two hundred."""
     for module in ("scratch", "table", "outcome_file"):
-        monkeypatch.setattr(f"cosserat_casadi.sweep.{module}.BLOCK", 512)
+        monkeypatch.setattr(f"cosserat_casadi.sweeps.{module}.BLOCK", 512)
     # What writing takes is looked at apart.
     monkeypatch.setattr(run, "write_sweep", lambda *_: None)
     peaks = []
@@ -140,7 +140,7 @@ def test_a_table_on_disc_is_that_in_memory(
     written: Any, suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     over = written(700, tmp_path / f"over{suffix}")
-    monkeypatch.setattr("cosserat_casadi.sweep.scratch.BLOCK", 64)
+    monkeypatch.setattr("cosserat_casadi.sweeps.scratch.BLOCK", 64)
     in_memory = read_table(over)
     on_disc = read_table(over, scratch=Scratch.beside(tmp_path / "rows.csv"))
     assert_array_equal(on_disc.values, in_memory.values)
@@ -205,7 +205,7 @@ def answered() -> Sweep:
 def test_a_file_takes_a_block_of_rows_at_once(
     answered: Sweep, tmp_path: Path, peak: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.BLOCK", 64)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file.BLOCK", 64)
     write_sweep(answered, tmp_path / "rows.csv")
     # Nothing has a number for each row.
     assert peak() < 0.3 * answered.values.nbytes

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi import read_scene
-from cosserat_casadi.sweep.outcome_table import LABELS
-from cosserat_casadi.sweep.table import Table, read_table
-from cosserat_casadi.sweep.variants import variants_of
+from cosserat_casadi.sweeps.outcome_table import LABELS
+from cosserat_casadi.sweeps.table import Table, read_table
+from cosserat_casadi.sweeps.variants import variants_of
 from tests.commands import cosserat
 from tests.conftest import ROOT
 from tests.pages import run_python

@@ -12,13 +12,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from rich.console import Console
 
-from cosserat_casadi import build, parse_scene, read_scene, read_sweep, sobol_table, solve, sweep_scene
+from cosserat_casadi import build, parse_scene, read_scene, read_sweep, sobol_table, solve, sweep
 from cosserat_casadi.cli.reports.sweep import print_sweep
-from cosserat_casadi.sweep.outcome_file import record_file
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.sobol import varied_results
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.sweeps.outcome_file import record_file
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.run import plan_sweep
+from cosserat_casadi.sweeps.sobol import varied_results
+from cosserat_casadi.sweeps.table import table_of
 from tests.families import mostly_slow
 from tests.paths.test_contact_path import BAR
 from tests.scenes import push, rod, scene
@@ -40,10 +40,10 @@ def printed(sweep: Sweep) -> str:
 
 @pytest.mark.parametrize("compiled_from", mostly_slow([1, 1000], quick=[1]))
 def test_errors_of_rows_are_those_of_solve(compiled_from: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.arguments.COMPILED_FROM", compiled_from)
+    monkeypatch.setattr("cosserat_casadi.sweeps.arguments.COMPILED_FROM", compiled_from)
     file = tmp_path / "rows.csv"
     stiffness = [1.4, 1.4, 1.4, 1.5]
-    found = sweep_scene(COARSE, {"push.force.x": PUSHES, "rod.stiffness.bending_y": stiffness}, file)
+    found = sweep(COARSE, {"push.force.x": PUSHES, "rod.stiffness.bending_y": stiffness}, file)
     assert found.converged.all()
     assert found.columns[-2:] == ("error_estimate", "within_tolerance")
     expected = [solve(build(COARSE), {"push.force": [push_x, 0.0, -0.4]}) for push_x in PUSHES[:3]]
@@ -64,7 +64,7 @@ def test_errors_of_rows_are_those_of_solve(compiled_from: int, monkeypatch: pyte
 
 def test_what_has_no_equilibrium_is_within_no_tolerance(tmp_path: Path) -> None:
     file = tmp_path / "rows.parquet"
-    found = sweep_scene(COARSE, {"push.moment.y": [0.3, 400.0], "push.force.x": 0.0, "push.force.z": 0.0}, file)
+    found = sweep(COARSE, {"push.moment.y": [0.3, 400.0], "push.force.x": 0.0, "push.force.z": 0.0}, file)
     assert found.converged.tolist() == [True, False]
     assert_array_equal(np.isnan(found["error_estimate"]), [False, True])
     assert_array_equal(found["within_tolerance"], [1.0, 0.0])
@@ -75,7 +75,7 @@ def test_what_has_no_equilibrium_is_within_no_tolerance(tmp_path: Path) -> None:
 
 def test_a_tolerance_that_nobody_wrote_is_not_missed() -> None:
     fixed = scene(push(), rods=[rod("planar")], accuracy={"modes": 2, "nodes": 8})
-    found = sweep_scene(fixed, {"push.force.x": PUSHES})
+    found = sweep(fixed, {"push.force.x": PUSHES})
     assert (found["error_estimate"] > 1e-6).any()
     assert np.isnan(found["within_tolerance"]).all()
     assert found.holds
@@ -86,8 +86,8 @@ def test_rows_without_estimates_are_those_of_older_tables(tmp_path: Path) -> Non
     """The same rows without the two columns, and another sweep than that with them."""
     file = tmp_path / "rows.csv"
     table = {"push.force.x": PUSHES}
-    found = sweep_scene(COARSE, table, file, estimate_errors=False)
-    estimated = sweep_scene(COARSE, table)
+    found = sweep(COARSE, table, file, estimate_errors=False)
+    estimated = sweep(COARSE, table)
     assert estimated.columns == (*found.columns, "error_estimate", "within_tolerance")
     assert_array_equal(estimated.values[:, :-2], found.values)
     record = json.loads(record_file(file).read_text())
@@ -103,13 +103,13 @@ def test_rows_without_estimates_are_those_of_older_tables(tmp_path: Path) -> Non
 
 
 def test_the_summary_counts_rows_that_miss_the_tolerance() -> None:
-    found = sweep_scene(COARSE, {"push.force.x": PUSHES})
+    found = sweep(COARSE, {"push.force.x": PUSHES})
     assert found.missed.tolist() == [False, False, True, True]
     said = printed(found)
     largest = f"at most {found['error_estimate'].max():.1e} (row {1 + np.argmax(found['error_estimate'])})"
     assert f"Estimated error of 4 converged rows {largest}: 2 rows above" in said
     assert "above the tolerance of 0.0001. The scene fixes its modes" in said
-    small = sweep_scene(COARSE, {"push.force.x": PUSHES[:1]})
+    small = sweep(COARSE, {"push.force.x": PUSHES[:1]})
     assert "(row 1), within 0.0001." in printed(small)
     assert small.holds
 
@@ -134,7 +134,7 @@ TOUCHING = BAR.replace('inputs = ["rod.base.position"]\n', "").replace(
 @pytest.mark.slow
 def test_rows_in_contact_have_the_errors_of_their_solves() -> None:
     touching = parse_scene(TOUCHING)
-    found = sweep_scene(touching, {"push.force.z": [-0.5, -1.0]}, cores=1)
+    found = sweep(touching, {"push.force.z": [-0.5, -1.0]}, cores=1)
     expected = solve(build(touching), {"push.force": [0.0, 0.0, -0.5]})
     assert expected.contacts
     assert_allclose(found["error_estimate"][0], expected.error_estimate, rtol=1e-6, atol=0)
@@ -143,7 +143,7 @@ def test_rows_in_contact_have_the_errors_of_their_solves() -> None:
 
 def test_rows_of_tubes_have_the_errors_of_their_solves() -> None:
     tubes = read_scene(Path(__file__).parents[2] / "examples" / "concentric_tubes.toml")
-    found = sweep_scene(tubes, {"inner.rotation": [0.0, 1.3]}, cores=1)
+    found = sweep(tubes, {"inner.rotation": [0.0, 1.3]}, cores=1)
     assert found.converged.all()
     assert (found["error_estimate"] <= tubes.accuracy.tolerance).all()
     assert_array_equal(found["within_tolerance"], [1.0, 1.0])
@@ -151,6 +151,6 @@ def test_rows_of_tubes_have_the_errors_of_their_solves() -> None:
 
 def test_errors_have_no_sensitivity_indices() -> None:
     table = sobol_table({"push.force.x": {"uniform": [-0.5, 0.5]}}, samples=3, seed=1)
-    swept = sweep_scene(COARSE, table)
+    swept = sweep(COARSE, table)
     assert "error_estimate" in swept.found
     assert not {"error_estimate", "within_tolerance"} & set(varied_results(swept))

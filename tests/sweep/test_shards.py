@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from cosserat_casadi import SceneError, read_sweep, sweep_scene
+from cosserat_casadi import SceneError, read_sweep, sweep
 from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.choice import Choice
-from cosserat_casadi.sweep.run import Plan, merge_shards, plan_sweep, run_shard
-from cosserat_casadi.sweep.shards import Shard
-from cosserat_casadi.sweep.store import StoreChangedError
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.sweeps.choice import Choice
+from cosserat_casadi.sweeps.run import Plan, merge_shards, plan_sweep, run_shard
+from cosserat_casadi.sweeps.shards import Shard
+from cosserat_casadi.sweeps.store import StoreChangedError
+from cosserat_casadi.sweeps.table import table_of
 from tests.sweep.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
@@ -29,7 +29,7 @@ COLUMNS = {"push.force.x": FORCES}
 
 @pytest.fixture(autouse=True)
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.work.COMPILED_ROWS", 8)
+    monkeypatch.setattr("cosserat_casadi.sweeps.work.COMPILED_ROWS", 8)
 
 
 def plan_of(output: Path) -> Plan:
@@ -39,7 +39,7 @@ def plan_of(output: Path) -> Plan:
 
 def test_shards_make_the_sweep(tmp_path: Path) -> None:
     whole = tmp_path / "whole.csv"
-    sweep_scene(PLANAR, COLUMNS, whole, cores=1)
+    sweep(PLANAR, COLUMNS, whole, cores=1)
     output = tmp_path / "rows.csv"
     plan = plan_of(output)
     # In any order, and one of them again: it has nothing left to do.

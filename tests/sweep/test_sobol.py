@@ -15,11 +15,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from rich.console import Console
 from scipy import stats
 
-from cosserat_casadi import SceneError, sobol_indices, sobol_table, sweep_scene
+from cosserat_casadi import SceneError, sobol_indices, sobol_table, sweep
 from cosserat_casadi.cli.reports.sobol import print_sobol
 from cosserat_casadi.plots.sobol_plot import plot_sobol
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.sobol import estimates
+from cosserat_casadi.sweeps.sobol import estimates
 from tests.scenes import push, rod, scene
 
 A, B = 7.0, 0.1
@@ -87,7 +87,7 @@ def test_intervals_hold_as_often_as_they_say() -> None:
         first, second = rng.normal(size=(2, 256, 3))
         mixed = [first @ slopes + (second - first)[:, k] * slopes[k] for k in range(3)]
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("cosserat_casadi.sweep.sobol.RESAMPLES", 200)
+            patch.setattr("cosserat_casadi.sweeps.sobol.RESAMPLES", 200)
             found = estimates(first @ slopes, second @ slopes, np.array(mixed))
         held.append((found.total_interval[:, 0] <= exact) & (exact <= found.total_interval[:, 1]))
     assert 0.90 <= np.mean(held) <= 0.98
@@ -126,7 +126,7 @@ def test_linear_rod_vs_beam_theory(tmp_path: Path) -> None:
     assert found["results"]["rod.y"]["first"]["push.force.x"] == {"value": None, "interval_95": [None, None]}
     assert (found["samples"], found["left_out"]) == (400, 0)
 
-    again = sweep_scene(
+    again = sweep(
         SMALL,
         sobol_table(
             {

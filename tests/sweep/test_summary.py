@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from cosserat_casadi.cli.reports.sweep import print_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
 
 CHOSEN = {"discretisation": {"modes": [3, 4], "nodes": 9, "rotation": "magnus4"}, "rows": [0, 1, 2], "converged": 3}
 FINE = {"row": 1, "error_estimate": 2e-5, "difference": 1e-12, "stable": True}

@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import CosseratError, SceneError, read_sweep, solve_scene, sweep_scene
+from cosserat_casadi import CosseratError, SceneError, read_sweep, solve, sweep
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep import work
-from cosserat_casadi.sweep.outcome_file import record_file
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.store import Store
-from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.sweeps import work
+from cosserat_casadi.sweeps.outcome_file import record_file
+from cosserat_casadi.sweeps.run import plan_sweep
+from cosserat_casadi.sweeps.store import Store
+from cosserat_casadi.sweeps.table import table_of
 from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.sweep.conftest import PLANAR
@@ -48,7 +48,7 @@ def bent(count: int, **columns: object) -> dict[str, object]:
 def test_moments_and_lengths_vs_arcs() -> None:
     lengths = np.random.default_rng(2).uniform(0.4, 1.2, 1100)
     table = bent(1100, **{"rod.length": lengths})
-    found = sweep_scene(PLANAR, table)
+    found = sweep(PLANAR, table)
     assert found.converged.all()
     assert found.columns[:5] == ("push.moment.y", "push.force.x", "push.force.z", "rod.length", "iterations")
     expected = arcs(found["push.moment.y"], lengths, np.full(1100, 1.4))
@@ -62,9 +62,9 @@ def test_moments_and_lengths_vs_arcs() -> None:
 
 @pytest.mark.parametrize("compiled_from", mostly_slow([1, 1000], quick=[1]))
 def test_stiffnesses_vs_arcs_compiled_and_in_python(compiled_from: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.sweep.run.chunks", lambda found: work.chunks(found, compiled_from))
+    monkeypatch.setattr("cosserat_casadi.sweeps.run.chunks", lambda found: work.chunks(found, compiled_from))
     stiffness = np.tile([1.0, 2.5], 10)
-    found = sweep_scene(PLANAR, bent(20, **{"rod.stiffness.bending_y": stiffness}), cores=2)
+    found = sweep(PLANAR, bent(20, **{"rod.stiffness.bending_y": stiffness}), cores=2)
     assert found.converged.all()
     expected = arcs(found["push.moment.y"], np.full(20, 0.8), stiffness)
     assert_allclose(found.positions()[:, [0, 2]], expected, rtol=0, atol=1e-9)
@@ -91,12 +91,12 @@ def test_everything_of_an_assembly_vs_python() -> None:
         accuracy={"modes": 2, "nodes": 6, "tolerance": 1e-2},
     )
     table = {"load.force.x": [-0.3, 0.1, 0.4], "pull.tension": [0.0, 0.5, 1.0]}
-    found = sweep_scene(given, table)
+    found = sweep(given, table)
     assert found.converged.all()
     assert "pull.tension" not in found.found
     for row in range(3):
         force = [table["load.force.x"][row], 0.0, -0.3]
-        expected = solve_scene(given, {"load.force": force, "pull.tension": table["pull.tension"][row]})
+        expected = solve(given, {"load.force": force, "pull.tension": table["pull.tension"][row]})
         for name in ("left", "right"):
             assert_allclose(found.positions(name)[row], expected.tip(name).position[0], rtol=0, atol=1e-9)
         assert_allclose(found.positions("hand")[row], expected.body("hand").position[0], rtol=0, atol=1e-9)
@@ -109,16 +109,16 @@ def test_everything_of_an_assembly_vs_python() -> None:
 
 def test_what_a_row_gives_depends_on_no_other() -> None:
     table = {"push.force.x": np.random.default_rng(3).uniform(-3.0, 3.0, 1200)}
-    found = sweep_scene(PLANAR, table)
+    found = sweep(PLANAR, table)
     order = np.random.default_rng(4).permutation(1200)
-    other = sweep_scene(PLANAR, {"push.force.x": table["push.force.x"][order]}, cores=1)
+    other = sweep(PLANAR, {"push.force.x": table["push.force.x"][order]}, cores=1)
     assert_array_equal(other.values, found.values[order])
 
 
 def test_rows_without_an_equilibrium_show_none(tmp_path: Path) -> None:
     """Moments far beyond what three modes resolve: their rows say how they ended, and show nothing like a pose."""
     file = tmp_path / "rows.csv"
-    found = sweep_scene(PLANAR, {"push.moment.y": [0.3, 100.0, 0.2, 400.0]}, file)
+    found = sweep(PLANAR, {"push.moment.y": [0.3, 100.0, 0.2, 400.0]}, file)
     failed = ~found.converged
     assert failed.tolist() == [False, True, False, True]
     assert found.outcome == ["converged", "unresolved", "converged", "load_stalled"]
@@ -138,7 +138,7 @@ def test_the_discretisation_is_chosen_for_all_rows() -> None:
     """Pushes up to where the rod turns by far; the rows drawn for this test took no part in the choice."""
     free = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod("planar")], accuracy={"tolerance": 1e-4})
     table = {"push.force.x": np.linspace(-3.0, 3.0, 50)}
-    found = sweep_scene(free, table, samples=3)
+    found = sweep(free, table, samples=3)
     assert found.converged.all()
     assert found.holds
     chosen = found.record["chosen"]
@@ -146,14 +146,14 @@ def test_the_discretisation_is_chosen_for_all_rows() -> None:
     assert {0, 49} <= set(chosen["rows"])
     exact = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod("planar")], accuracy={"tolerance": 1e-8})
     for row in (3, 17):
-        expected = solve_scene(exact, {"push.force": [table["push.force.x"][row], 0.0, 0.0]}).tip().position[0]
+        expected = solve(exact, {"push.force": [table["push.force.x"][row], 0.0, 0.0]}).tip().position[0]
         # The tolerance is relative to the length, 0.8 m.
         assert_allclose(found.positions()[row], expected, rtol=0, atol=1e-4 * 0.8)
 
 
 def test_a_check_that_finds_the_tolerance_missed_says_so() -> None:
     coarse = scene(push(), WEIGHT, accuracy={"modes": 2, "nodes": 6, "tolerance": 1e-9})
-    found = sweep_scene(coarse, {"push.force.x": [1.0, 1.5]})
+    found = sweep(coarse, {"push.force.x": [1.0, 1.5]})
     assert found.converged.all()
     assert not found.holds
 
@@ -168,7 +168,7 @@ TO_THE_END = "from cosserat_casadi.cli.main import main; main()"
 UNTIL_ROWS_ARE_KEPT = """
 import time
 from cosserat_casadi.cli.main import main
-from cosserat_casadi.sweep.store import Store
+from cosserat_casadi.sweeps.store import Store
 
 add = Store.add
 
@@ -212,7 +212,7 @@ def test_a_killed_sweep_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
         command(tmp_path, "a.csv", TO_THE_END), cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert again.returncode == 0, again.stderr
-    sweep_scene(PLANAR, MANY, tmp_path / "b.csv")
+    sweep(PLANAR, MANY, tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
     names = ["a.csv", "a.csv.json", "b.csv", "b.csv.json", "rows.csv", "scene.toml"]
     assert sorted(file.name for file in tmp_path.iterdir()) == names
@@ -237,14 +237,14 @@ def test_what_is_kept_is_not_solved_again(tmp_path: Path, monkeypatch: pytest.Mo
     add = Store.add
     monkeypatch.setattr(Store, "add", stop)
     with pytest.raises(KeyboardInterrupt):
-        sweep_scene(PLANAR, table, output, cores=1)
+        sweep(PLANAR, table, output, cores=1)
     again: list[int] = []
     monkeypatch.setattr(
         Store, "add", lambda store, number, results: (again.append(number), add(store, number, results))
     )
-    found = sweep_scene(PLANAR, table, output)
+    found = sweep(PLANAR, table, output)
     assert again == [2]
-    assert_array_equal(found.values, sweep_scene(PLANAR, table).values)
+    assert_array_equal(found.values, sweep(PLANAR, table).values)
 
 
 def test_a_damaged_end_of_the_store_is_cut_off(tmp_path: Path) -> None:
@@ -314,11 +314,11 @@ def test_a_pipe_in_the_place_of_the_store_is_refused(tmp_path: Path) -> None:
 
 def test_a_finished_sweep_is_read_and_left_alone(tmp_path: Path) -> None:
     output, table = tmp_path / "a.csv", {"push.force.x": [0.1, 0.2]}
-    first = sweep_scene(PLANAR, table, output)
+    first = sweep(PLANAR, table, output)
     written = output.stat().st_mtime_ns
     with Store(tmp_path / "a.csv.part") as left:
         left.start({"sweep": first.record["sweep"]})
-    second = sweep_scene(PLANAR, table, output)
+    second = sweep(PLANAR, table, output)
     assert not left.path.exists()
     assert output.stat().st_mtime_ns == written
     assert_array_equal(second.values, first.values)
@@ -337,7 +337,7 @@ def refused(output: Path, table: dict[str, list[float]] | None = None) -> str:
 def test_files_that_are_not_ours_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("mine")
     assert "a.csv exists, and is not of this sweep" in refused(tmp_path / "a.csv")
-    sweep_scene(PLANAR, {"push.force.x": [0.3]}, tmp_path / "b.csv")
+    sweep(PLANAR, {"push.force.x": [0.3]}, tmp_path / "b.csv")
     assert "b.csv exists, and is not of this sweep" in refused(tmp_path / "b.csv")
     (tmp_path / "c.csv.part").write_text("mine")
     assert "c.csv.part is of another sweep" in refused(tmp_path / "c.csv")
@@ -357,13 +357,13 @@ def test_parquet_holds_the_same(tmp_path: Path) -> None:
     import pyarrow.parquet
 
     table = {"push.moment.y": [0.3, 100.0, 0.2]}
-    found = sweep_scene(PLANAR, table, tmp_path / "a.parquet")
+    found = sweep(PLANAR, table, tmp_path / "a.parquet")
     columns = pyarrow.parquet.read_table(tmp_path / "a.parquet").to_pydict()
     assert columns["outcome"] == found.outcome
     assert columns["rod.x"][1] is None
     assert columns["iterations"] == found["iterations"].astype(int).tolist()
     assert_array_equal(read_sweep(tmp_path / "a.parquet").values, found.values)
-    sweep_scene(PLANAR, table, tmp_path / "b.parquet")
+    sweep(PLANAR, table, tmp_path / "b.parquet")
     assert (tmp_path / "a.parquet").read_bytes() == (tmp_path / "b.parquet").read_bytes()
 
 
@@ -371,17 +371,17 @@ def test_what_lacks_an_extra_says_which(tmp_path: Path, monkeypatch: pytest.Monk
     for module in ("pyarrow", "distributed"):
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(CosseratError, match=r"cosserat-casadi\[sweep\]"):
-        sweep_scene(PLANAR, {"push.force.x": [0.1]}, tmp_path / "a.parquet")
+        sweep(PLANAR, {"push.force.x": [0.1]}, tmp_path / "a.parquet")
     with pytest.raises(CosseratError, match=r"cosserat-casadi\[sweep\]"):
-        sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler="tcp://127.0.0.1:1")
+        sweep(PLANAR, {"push.force.x": [0.1]}, scheduler="tcp://127.0.0.1:1")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_no_process_outlives_a_killed_sweep(tmp_path: Path) -> None:
     """Rows in Python run in processes beside the sweep; they end with it."""
     code = (
-        "from tests.sweep.conftest import PLANAR; from cosserat_casadi import sweep_scene; import numpy as np; "
-        "sweep_scene(PLANAR, {'rod.stiffness.bending_y': np.linspace(1, 2, 400)}, 'a.csv', cores=1)"
+        "from tests.sweep.conftest import PLANAR; from cosserat_casadi import sweep; import numpy as np; "
+        "sweep(PLANAR, {'rod.stiffness.bending_y': np.linspace(1, 2, 400)}, 'a.csv', cores=1)"
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
     patience = time.monotonic() + 300

@@ -10,13 +10,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError, read_sweep
-from cosserat_casadi.sweep.grid_file import grid
-from cosserat_casadi.sweep.outcome_file import write_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.sampling import representative_rows
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.table import crossed, range_table, read_table, table_of
-from cosserat_casadi.sweep.variants import Variants, variants_of
+from cosserat_casadi.sweeps.grid_file import grid
+from cosserat_casadi.sweeps.outcome_file import write_sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.sampling import representative_rows
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.table import crossed, range_table, read_table, table_of
+from cosserat_casadi.sweeps.variants import Variants, variants_of
 from tests.scenes import push, rod, scene
 from tests.sweep.conftest import PLANAR
 
@@ -263,7 +263,7 @@ def test_corners_are_among_the_rows_that_stand_for_all() -> None:
 def test_parquet_is_written_group_by_group(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A copy of all columns would take as much memory again as the results."""
     parquet = pytest.importorskip("pyarrow.parquet")
-    monkeypatch.setattr("cosserat_casadi.sweep.outcome_file.ROW_GROUP", 4)
+    monkeypatch.setattr("cosserat_casadi.sweeps.outcome_file.ROW_GROUP", 4)
     values = np.column_stack([np.arange(10.0), np.arange(10.0) + 1, np.linspace(0.0, 1.0, 10)])
     values[7, 2] = np.nan
     found = Sweep(("push.force.x",), ("iterations", "rod.x"), values, np.zeros(10, dtype=np.int64), {"sweep": "0"})

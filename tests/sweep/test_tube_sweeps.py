@@ -1,4 +1,4 @@
-"""Sweeps of concentric tubes: rows against `solve_scene`, how they end, stability, refusals."""
+"""Sweeps of concentric tubes: rows against `solve`, how they end, stability, refusals."""
 
 from __future__ import annotations
 
@@ -10,18 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    Outcome,
-    SceneError,
-    parse_scene,
-    read_scene,
-    read_sweep,
-    solve_scene,
-    sweep_scene,
-)
+from cosserat_casadi import Outcome, SceneError, parse_scene, read_scene, read_sweep, solve, sweep
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.outcome_table import LABELS
-from cosserat_casadi.sweep.tubes import TubeRows, tube_results
+from cosserat_casadi.sweeps.outcome_table import LABELS
+from cosserat_casadi.sweeps.tubes import TubeRows, tube_results
 from tests.commands import cosserat
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -40,11 +32,11 @@ moment = [0.0, 0.0, 0.001]
 def test_rows_are_what_solve_finds() -> None:
     turns = [0.0, 1.3, np.pi, -2.0]
     reaches = [0.2, 0.13, 0.2, 0.05]
-    swept = sweep_scene(SCENE, {"inner.rotation": turns, "inner.translation": reaches}, cores=1, stability=True)
+    swept = sweep(SCENE, {"inner.rotation": turns, "inner.translation": reaches}, cores=1, stability=True)
     assert swept.holds
     assert swept.posed == ["outer", "inner"]
     for row, (turn, reach) in enumerate(zip(turns, reaches, strict=True)):
-        solution = solve_scene(SCENE, {"inner.rotation": turn, "inner.translation": reach})
+        solution = solve(SCENE, {"inner.rotation": turn, "inner.translation": reach})
         for tube in swept.posed:
             assert_allclose(swept.positions(tube)[row], solution.tip(tube).position, rtol=0, atol=1e-15)
             quaternion = [swept[f"{tube}.{part}"][row] for part in ("qw", "qx", "qy", "qz")]
@@ -61,8 +53,8 @@ def test_rows_are_what_solve_finds() -> None:
 @pytest.mark.slow
 def test_loads_are_swept_and_moments_leave_stability_open() -> None:
     scene = parse_scene(scene_text(SCENE) + MOMENT)
-    swept = sweep_scene(scene, {"twist.moment.z": [0.0, 2e-3]}, cores=1, stability=True)
-    expected = solve_scene(scene, {"twist.moment": [0.0, 0.0, 2e-3]})
+    swept = sweep(scene, {"twist.moment.z": [0.0, 2e-3]}, cores=1, stability=True)
+    expected = solve(scene, {"twist.moment": [0.0, 0.0, 2e-3]})
     assert_allclose(swept.positions("inner")[1], expected.tip("inner").position, rtol=0, atol=1e-15)
     assert np.isnan(swept["stable"]).all()
     assert np.isnan(swept["falling_directions"]).all()
@@ -74,7 +66,7 @@ def test_loads_are_swept_and_moments_leave_stability_open() -> None:
 )
 def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> None:
     names = tube_results(SCENE, stability=True)
-    solution = replace(solve_scene(SCENE), outcome=outcome)
+    solution = replace(solve(SCENE), outcome=outcome)
     row = TubeRows(scene_text(SCENE), stability=True)._row(solution, len(names))
     assert LABELS[int(row[0])] == label
     assert np.isfinite(row[:3]).all()
@@ -83,11 +75,11 @@ def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> Non
 
 def test_refusals_name_all_rows_and_columns() -> None:
     with pytest.raises(SceneError) as refused:
-        sweep_scene(SCENE, {"inner.rotatoin": [0.0], "inner.curvature": [3.0]})
+        sweep(SCENE, {"inner.rotatoin": [0.0], "inner.curvature": [3.0]})
     assert "'inner.rotatoin' is no input of the tubes (did you mean 'inner.rotation'?)" in str(refused.value)
     assert "'inner.curvature' is no input of the tubes (rotations, translations and loads are" in str(refused.value)
     with pytest.raises(SceneError) as refused:
-        sweep_scene(SCENE, {"inner.translation": [0.1, 0.4, -0.1]})
+        sweep(SCENE, {"inner.translation": [0.1, 0.4, -0.1]})
     assert "row 2: inner.translation must be from 0 to the length of the tube" in str(refused.value)
     assert "row 3: inner.translation" in str(refused.value)
 

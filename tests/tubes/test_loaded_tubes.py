@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from cosserat_casadi import SceneError, TubeSolution, parse_scene, solve_scene
+from cosserat_casadi import SceneError, TubeSolution, parse_scene, solve
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
@@ -145,7 +145,7 @@ def shot(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
     ids=["push", "three tubes", "another order"],
 )
 def test_against_shooting(text: str, inputs: dict[str, float]) -> None:
-    found = solve_scene(parse_scene(text), inputs)
+    found = solve(parse_scene(text), inputs)
     assert found.converged
     assert found.error_estimate is not None
     assert found.error_estimate <= 1e-8
@@ -198,8 +198,8 @@ def wrench(**keys: object) -> str:
     ids=["force", "follower", "moment", "following wrench", "weight"],
 )
 def test_one_tube_is_a_rod(load: str, curvature: float) -> None:
-    found = solve_scene(parse_scene(ONE.replace("CURVATURE", f"{curvature}").replace("STRAIGHT", "0.0") + load))
-    rod = solve_scene(parse_scene(ROD.replace("CURVATURE", f"{curvature}") + load))
+    found = solve(parse_scene(ONE.replace("CURVATURE", f"{curvature}").replace("STRAIGHT", "0.0") + load))
+    rod = solve(parse_scene(ROD.replace("CURVATURE", f"{curvature}") + load))
     assert found.converged
     assert rod.converged
     tip = rod.tip("tube")
@@ -216,8 +216,8 @@ def poke(at: float, frame: str = "world") -> str:
 @pytest.mark.parametrize("frame", ["world", "body"])
 def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
     load = poke(0.625, frame)
-    found = solve_scene(parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0") + load))
-    rod = solve_scene(parse_scene(ROD.replace("CURVATURE", "9.0") + load))
+    found = solve(parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0") + load))
+    rod = solve(parse_scene(ROD.replace("CURVATURE", "9.0") + load))
     assert found.converged
     assert_allclose(found.tip().position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
     assert_allclose(found.tip().rotation, rod.tip("tube").rotation[0], rtol=0, atol=1e-7)
@@ -237,7 +237,7 @@ def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
 
 def test_a_force_beside_the_tip_of_two_tubes() -> None:
     scene = parse_scene(TWO + poke(0.9).replace('"tube"', '"inner"'))
-    found = solve_scene(scene)
+    found = solve(scene)
     assert found.converged
     # 0.03 m from the tip of the tube, which is 0.3 m long and stands out by 0.24 m.
     place = int(np.argmin(np.abs(found.shape.distance - 0.21)))
@@ -257,13 +257,13 @@ def test_a_force_beside_the_tip_of_two_tubes() -> None:
 
 def test_the_housing_bears_a_force_in_it() -> None:
     tubes = ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.3")
-    inside = solve_scene(parse_scene(tubes + poke(0.5)))
-    free = solve_scene(parse_scene(tubes + poke(0.5)), {"poke.force": [0.0, 0.0, 0.0]})
+    inside = solve(parse_scene(tubes + poke(0.5)))
+    free = solve(parse_scene(tubes + poke(0.5)), {"poke.force": [0.0, 0.0, 0.0]})
     assert_allclose(inside.tip().position, free.tip().position, rtol=0, atol=1e-12)
     assert load_arrows(inside) == []
     # At the abscissa 1 it is a force at the tip.
-    at_tip = solve_scene(parse_scene(tubes + poke(1.0)))
-    wanted = solve_scene(parse_scene(tubes + wrench(force=[0.5, -0.3, -1.2])))
+    at_tip = solve(parse_scene(tubes + poke(1.0)))
+    wanted = solve(parse_scene(tubes + wrench(force=[0.5, -0.3, -1.2])))
     assert_allclose(at_tip.tip().position, wanted.tip().position, rtol=0, atol=1e-14)
 
 
@@ -275,7 +275,7 @@ def test_a_moment_beside_the_tip_is_refused() -> None:
 
 def test_a_tube_in_its_housing_twists_there() -> None:
     text = ONE.replace("CURVATURE", "0.0").replace("STRAIGHT", "0.3")
-    found = solve_scene(parse_scene(text + wrench(moment=[0.0, 0.0, 0.02])))
+    found = solve(parse_scene(text + wrench(moment=[0.0, 0.0, 0.02])))
     # Straight, and twisted from the drive to the tip.
     assert_allclose(found.tip().position, [0.0, 0.0, 0.2], rtol=0, atol=1e-14)
     assert_allclose(found.angles[0], 0.02 / 0.04 * 0.5, rtol=1e-12, atol=0)
@@ -289,9 +289,9 @@ def test_aligned_tubes_are_a_rod_of_their_summed_stiffness() -> None:
         tubes.partition("[[tubes]]")[2].replace('"tube"', '"other"').replace("0.05,", "0.1,").replace("0.04", "0.08")
     )
     load = wrench(force=[0.5, -0.9, -1.2])
-    found = solve_scene(parse_scene(tubes + "[[tubes]]" + other + load))
+    found = solve(parse_scene(tubes + "[[tubes]]" + other + load))
     summed = ROD.replace("CURVATURE", "9.0").replace("0.05,", "0.15,").replace("0.04 }", "0.12 }")
-    rod = solve_scene(parse_scene(summed + load))
+    rod = solve(parse_scene(summed + load))
     assert_allclose(found.tip("tube").position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
     assert_allclose(found.angles[0], found.angles[1], rtol=0, atol=1e-10)
 
@@ -328,7 +328,7 @@ def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
 
 
 def test_derivatives_of_energy_and_tips() -> None:
-    found = solve_scene(parse_scene(weighed(TWO) + PUSH + WEIGHT))
+    found = solve(parse_scene(weighed(TWO) + PUSH + WEIGHT))
     robot = found.robot
     for index, name in enumerate(robot.columns):
         ahead = moved(found, index, DIFFERENCE)
@@ -385,7 +385,7 @@ def test_the_rate_of_a_path_is_that_of_differences() -> None:
 
 
 def test_moments_about_the_plate_balance() -> None:
-    found = solve_scene(parse_scene(TWO + PUSH + POKE))
+    found = solve(parse_scene(TWO + PUSH + POKE))
     at_tips, _ = forces_of(found)
     arms = [found.tip(name).position for name in found.robot.names]
     moment = np.cross(arms, at_tips).sum(axis=0)
@@ -393,8 +393,8 @@ def test_moments_about_the_plate_balance() -> None:
 
 
 def test_without_force_the_loaded_model_is_the_other_one() -> None:
-    found = solve_scene(parse_scene(TWO + PUSH), {"push.force": [0.0, 0.0, 0.0]})
-    plain = solve_scene(parse_scene(TWO))
+    found = solve(parse_scene(TWO + PUSH), {"push.force": [0.0, 0.0, 0.0]})
+    plain = solve(parse_scene(TWO))
     assert_allclose(found.angles, plain.x, rtol=0, atol=1e-8)
     assert_allclose(found.tip().position, plain.tip().position, rtol=0, atol=1e-9)
     assert_allclose(found.energy, plain.energy, rtol=1e-8, atol=0)
@@ -403,7 +403,7 @@ def test_without_force_the_loaded_model_is_the_other_one() -> None:
 
 
 def test_tubes_without_loads_pay_nothing_for_them() -> None:
-    model = solve_scene(parse_scene(TWO)).model
+    model = solve(parse_scene(TWO)).model
     counted = {name: getattr(model, name).n_instructions() for name in ("residual", "jacobian", "tips", "tip_jacobian")}
     assert counted == PLAIN
     # Of what acts at a tip those do not pay for weight.

@@ -11,15 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import (
-    SceneError,
-    TubeSolution,
-    all_equilibria,
-    follow_scene_path,
-    parse_scene,
-    result,
-    solve_scene,
-)
+from cosserat_casadi import SceneError, TubeSolution, all_equilibria, follow, parse_scene, solve
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.tube_solve import solution_near
@@ -200,7 +192,7 @@ def test_falling_directions_vs_elements(settings: list[str], falling: list[int])
 def test_pivots_are_symmetric() -> None:
     """The steps are symplectic: what the pivots are made of is a second variation."""
     scene = parse_scene(TWO, ["push.force=[0.3,0.4,-0.5]", "accuracy.tolerance=1e-3"])
-    found = solve_scene(scene)
+    found = solve(scene)
     variations = found.model.varied(found.x, found.inputs)
     configuration = variations.configuration
     for before, after, step in zip(configuration[:-1], configuration[1:], variations.of_steps, strict=True):
@@ -213,12 +205,12 @@ def test_pivots_are_symmetric() -> None:
 @pytest.mark.slow
 def test_a_load_is_followed() -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-3", "inner.rotation=2.0"])
-    path = follow_scene_path(scene, "push.force.z", -0.5)
+    path = follow(scene, "push.force.z", -0.5)
     assert path.converged
     assert path.unit == "N"
     assert path.stable is not None
     assert path.stable.all()
-    end = solve_scene(scene, {"push.force.z": -0.5})
+    end = solve(scene, {"push.force.z": -0.5})
     assert_allclose(path.tip()[-1], end.tip().position, rtol=0, atol=1e-3 * 0.2)
 
 
@@ -227,7 +219,7 @@ def test_a_force_moves_the_snap_and_its_mirror_image() -> None:
     snaps = []
     for force in ("[0,-0.4,0]", "[0,0.4,0]"):
         settings = ["weight.acceleration=[0,0,0]", "accuracy.tolerance=1e-4", f"push.force={force}"]
-        path = follow_scene_path(parse_scene(TWO, settings), "inner.rotation", 9.0)
+        path = follow(parse_scene(TWO, settings), "inner.rotation", 9.0)
         assert path.converged
         first, second = path.events
         snaps.append((first.value, second.value))
@@ -245,40 +237,40 @@ def test_a_force_moves_the_snap_and_its_mirror_image() -> None:
 @pytest.mark.slow
 def test_a_force_tips_a_robot_that_was_turned_to_where_it_would_snap() -> None:
     scene = parse_scene(TWO, ["weight.acceleration=[0,0,0]", "accuracy.tolerance=1e-4", "push.force=[0,0,0]"])
-    turned = follow_scene_path(scene, "inner.rotation", 5.4).solutions[-1]
+    turned = follow(scene, "inner.rotation", 5.4).solutions[-1]
     assert turned.stable
-    pushed = follow_scene_path(scene, "push.force.y", -0.6, first=turned)
+    pushed = follow(scene, "push.force.y", -0.6, first=turned)
     snap = pushed.events[0]
     assert_allclose(pushed.solutions[0].x[:2], turned.angles, rtol=0, atol=1e-3)
     assert snap.kind == "limit"
     assert snap.solution.stability.neutral
     # Under that force it snaps at that rotation.
     bent = parse_scene(TWO, ["weight.acceleration=[0,0,0]", "accuracy.tolerance=1e-4"])
-    under = follow_scene_path(bent, "inner.rotation", 9.0, {"push.force": [0.0, snap.value, 0.0]})
+    under = follow(bent, "inner.rotation", 9.0, {"push.force": [0.0, snap.value, 0.0]})
     assert_allclose(under.events[0].value, 5.4, rtol=0, atol=1e-3)
 
 
 def test_a_path_begins_at_an_equilibrium_of_its_own_robot() -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-3"])
-    other = solve_scene(parse_scene(TWO.partition("[[loads]]")[0], ["accuracy.tolerance=1e-3"]))
+    other = solve(parse_scene(TWO.partition("[[loads]]")[0], ["accuracy.tolerance=1e-3"]))
     with pytest.raises(SceneError, match="other names"):
-        follow_scene_path(scene, "push.force.y", 1.0, first=other)
+        follow(scene, "push.force.y", 1.0, first=other)
     with pytest.raises(SceneError, match="stands beside values"):
-        follow_scene_path(scene, "push.force.y", 1.0, {"push.force.x": 1.0}, first=solve_scene(scene))
+        follow(scene, "push.force.y", 1.0, {"push.force.x": 1.0}, first=solve(scene))
     of_rods = scene_of_rods(push(force=[0.0, 0.0, 0.0]))
     with pytest.raises(SceneError, match="is for concentric tubes"):
-        follow_scene_path(of_rods, "push.force", [1.0, 0.0, 0.0], first=other)
+        follow(of_rods, "push.force", [1.0, 0.0, 0.0], first=other)
 
 
 def test_loads_that_follow_have_no_energy() -> None:
     scene = parse_scene(FOLLOWING, ["accuracy.tolerance=1e-3"])
-    found = solve_scene(scene)
+    found = solve(scene)
     assert found.converged
     assert found.stable is None
     assert found.stability.falling is None
     assert not found.stability.neutral
-    assert follow_scene_path(scene, "push.force.x", 0.1).stable is None
-    assert result(found)["stable"] is None
+    assert follow(scene, "push.force.x", 0.1).stable is None
+    assert found.to_dict()["stable"] is None
 
 
 FOLLOWING = TWO.replace("force = [0.0, -0.2, 0.3]", 'force = [0.0, -0.2, 0.3]\nframe = "body"')
@@ -322,7 +314,7 @@ def test_refused_loads(text: str, where: list[str]) -> None:
 )
 def test_refused_values_of_loads(values: dict[str, object], problem: str) -> None:
     with pytest.raises(SceneError, match=problem):
-        solve_scene(parse_scene(TWO), values)
+        solve(parse_scene(TWO), values)
 
 
 def test_commands_take_loads(tmp_path: Path) -> None:

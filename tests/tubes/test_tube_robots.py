@@ -14,18 +14,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import (
-    Scene,
-    SceneError,
-    TubeSolution,
-    all_equilibria,
-    build,
-    follow_scene_path,
-    parse_scene,
-    path_result,
-    result,
-    solve_scene,
-)
+from cosserat_casadi import Scene, SceneError, TubeSolution, all_equilibria, build, follow, parse_scene, solve
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.tubes import tube_equilibria
 from cosserat_casadi.tubes.robot import robot_of
@@ -125,7 +114,7 @@ def test_ranges_of_inputs() -> None:
     ],
 )
 def test_three_tubes_whatever_the_order_of_their_ends(inputs: dict[str, float]) -> None:
-    found = solve_scene(parse_scene(THREE), inputs)
+    found = solve(parse_scene(THREE), inputs)
     assert found.converged
     assert found.error_estimate is not None
     assert found.error_estimate <= 1e-8
@@ -143,7 +132,7 @@ def test_three_tubes_whatever_the_order_of_their_ends(inputs: dict[str, float]) 
 
 
 def test_tips_of_shorter_tubes_lie_on_the_centre_line() -> None:
-    found = solve_scene(parse_scene(THREE))
+    found = solve(parse_scene(THREE))
     shape = found.shape
     assert_allclose(shape.distance[0], 0.0, rtol=0, atol=0)
     assert_allclose(shape.distance[-1], 0.3, rtol=0, atol=1e-15)
@@ -153,7 +142,7 @@ def test_tips_of_shorter_tubes_lie_on_the_centre_line() -> None:
 
 
 def test_aligned_tubes_are_arcs() -> None:
-    found = solve_scene(parse_scene(TWO), {"outer.rotation": 0.7, "inner.rotation": 0.7})
+    found = solve(parse_scene(TWO), {"outer.rotation": 0.7, "inner.rotation": 0.7})
     assert found.stable
     assert_allclose(found.x, 0.7, rtol=0, atol=1e-14)
     robot = found.robot
@@ -183,7 +172,7 @@ def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
 
 @pytest.mark.parametrize("inputs", [{}, {"innermost.translation": 0.1}])
 def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
-    found = solve_scene(parse_scene(THREE), inputs)
+    found = solve(parse_scene(THREE), inputs)
     for index in range(found.inputs.size):
         ahead = moved(found, index, DIFFERENCE)
         behind = moved(found, index, -DIFFERENCE)
@@ -201,7 +190,7 @@ def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
 )
 def test_tip_jacobian_where_two_tubes_end_at_one_place(loads: str) -> None:
     """There the derivative is that of one order of the ends: the tube that is named first reaches farther."""
-    found = solve_scene(parse_scene(TWO + loads), {"outer.translation": 0.19, "inner.translation": 0.19})
+    found = solve(parse_scene(TWO + loads), {"outer.translation": 0.19, "inner.translation": 0.19})
     for index, by in ((1, DIFFERENCE), (3, -DIFFERENCE)):
         shifted = moved(found, index, by)
         for tube, name in enumerate(found.robot.names):
@@ -210,7 +199,7 @@ def test_tip_jacobian_where_two_tubes_end_at_one_place(loads: str) -> None:
 
 
 def test_equilibrium_is_an_expression() -> None:
-    found = solve_scene(parse_scene(TWO))
+    found = solve(parse_scene(TWO))
     model = found.model
     start, inputs = ca.MX.sym("start", 2), ca.MX.sym("inputs", 4)
     x, _ = model.equilibrium(start, inputs)
@@ -227,7 +216,7 @@ def test_equilibrium_is_an_expression() -> None:
 
 
 def test_functions_in_c(tmp_path: Path) -> None:
-    found = solve_scene(parse_scene(TWO))
+    found = solve(parse_scene(TWO))
     generator = ca.CodeGenerator("tubes.c")
     generator.add(found.model.equilibrium)
     generator.add(found.model.tip_jacobian)
@@ -243,7 +232,7 @@ def test_functions_in_c(tmp_path: Path) -> None:
 
 
 def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
-    found = solve_scene(parse_scene(THREE))
+    found = solve(parse_scene(THREE))
     for tube in range(found.robot.size):
         ahead = moved(found, 2 * tube, DIFFERENCE)
         behind = moved(found, 2 * tube, -DIFFERENCE)
@@ -320,17 +309,17 @@ def test_no_start_leads_to_an_equilibrium_that_was_not_found(seed: int) -> None:
 
 def test_error_of_the_tips_is_relative_to_the_length_outside() -> None:
     scene = parse_scene(TWO.partition('[[tubes]]\nname = "inner"')[0], ["outer.curvature=0.0"])
-    exact = solve_scene(scene, {"outer.translation": 0.2})
-    found = solve_scene(scene, {"outer.translation": 0.18})
+    exact = solve(scene, {"outer.translation": 0.2})
+    found = solve(scene, {"outer.translation": 0.18})
     assert_allclose(tip_error(found, exact), 0.02 / 0.2, rtol=1e-12, atol=0)
-    turned = solve_scene(scene, {"outer.translation": 0.2, "outer.rotation": 0.35})
+    turned = solve(scene, {"outer.translation": 0.2, "outer.rotation": 0.35})
     assert_allclose(tip_error(turned, exact), 0.05, rtol=1e-12, atol=0)
 
 
 def test_a_common_turn_turns_the_robot() -> None:
     scene = parse_scene(TWO)
-    found = solve_scene(scene)
-    turned = solve_scene(scene, found.inputs + np.array([0.5, 0, 0.5, 0]))
+    found = solve(scene)
+    turned = solve(scene, found.inputs + np.array([0.5, 0, 0.5, 0]))
     c, s = np.cos(0.5), np.sin(0.5)
     about_z = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     assert_allclose(turned.tip().position, about_z @ found.tip().position, rtol=0, atol=1e-12)
@@ -339,11 +328,11 @@ def test_a_common_turn_turns_the_robot() -> None:
 
 def test_path_over_a_translation_passes_where_the_order_changes() -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-6"])
-    path = follow_scene_path(scene, "inner.translation", 0.05)
+    path = follow(scene, "inner.translation", 0.05)
     assert path.converged
     assert path.stable.all()
     assert not path.events
-    end = solve_scene(scene, {"inner.translation": 0.05})
+    end = solve(scene, {"inner.translation": 0.05})
     assert_allclose(path.tip("inner")[-1], end.tip("inner").position, rtol=0, atol=1e-8)
 
 
@@ -425,7 +414,7 @@ def test_refused_scenes(text: str, where: list[str]) -> None:
 )
 def test_refused_inputs(inputs: dict[str, float], problem: str) -> None:
     with pytest.raises(SceneError, match=problem):
-        solve_scene(parse_scene(TWO), inputs)
+        solve(parse_scene(TWO), inputs)
 
 
 def test_what_works_on_rods_refuses_tubes() -> None:
@@ -442,20 +431,20 @@ def test_files_hold_what_python_says(tmp_path: Path) -> None:
     read = parse_scene(scene.read_text())
     ended = cosserat("solve", "tubes.toml", "--json", cwd=tmp_path)
     assert ended.returncode == 0
-    assert json.loads(ended.stdout) == result(solve_scene(read))
+    assert json.loads(ended.stdout) == solve(read).to_dict()
     ended = cosserat("solve", "tubes.toml", "--all", "--output", "all.json", "--plot", "all.png", cwd=tmp_path)
     assert ended.returncode == 0
     assert "2 of them stable" in ended.stdout
     data = json.loads((tmp_path / "all.json").read_text())
-    assert data == result(all_equilibria(read))
+    assert data == all_equilibria(read).to_dict()
     assert data["complete"]
     assert (tmp_path / "all.png").stat().st_size > 10_000
     line = ("path", "tubes.toml", "--input", "inner.rotation", "--to", "6", "--csv", "p.csv", "--plot", "p.svg")
     ended = cosserat(*line, "--output", "p.json", cwd=tmp_path)
     assert ended.returncode == 0
     assert "limit" in ended.stdout
-    path = follow_scene_path(read, "inner.rotation", 6.0)
-    assert json.loads((tmp_path / "p.json").read_text()) == path_result(path)
+    path = follow(read, "inner.rotation", 6.0)
+    assert json.loads((tmp_path / "p.json").read_text()) == path.to_dict()
     rows = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, dtype=None, encoding=None)
     assert_allclose(rows["innerrotation"], path.values, rtol=0, atol=0)
     assert_allclose(rows["innertipz"], path.tip("inner")[:, 2], rtol=0, atol=0)

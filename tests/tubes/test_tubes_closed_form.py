@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
-from cosserat_casadi import all_equilibria, follow_scene_path, solve_scene
+from cosserat_casadi import all_equilibria, follow, solve
 from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_model import TubeModel
@@ -63,12 +63,12 @@ def test_stability_of_opposed_tubes(reach: float, falling: int, housing: tuple[f
 
 def test_opposed_tubes_lose_stability_at_a_quarter_of_the_pendulums_period() -> None:
     for reach, stable in ((np.pi / 2 - 1e-4, True), (np.pi / 2 + 1e-4, False)):
-        assert solve_scene(Pendulum(reach).scene(np.pi)).stable is stable
+        assert solve(Pendulum(reach).scene(np.pi)).stable is stable
     # Torsion in the housing takes it earlier: √c λ tan(√c L) = 1 with its compliance λ.
     critical = brentq(lambda reach: Pendulum(reach, (0.1, 0.25)).opposed_determinant(), 0.1, 1.5)
     assert critical < 1.3
     for reach, stable in ((critical - 1e-4, True), (critical + 1e-4, False)):
-        assert solve_scene(Pendulum(reach, (0.1, 0.25)).scene(np.pi)).stable is stable
+        assert solve(Pendulum(reach, (0.1, 0.25)).scene(np.pi)).stable is stable
 
 
 def closed_form_tips(tubes: Pendulum, rotation: float) -> list[float]:
@@ -116,7 +116,7 @@ def test_snap_where_the_closed_form_turns() -> None:
     )
     assert -turning.fun > np.pi
     start = tubes.scene(1.0, tolerance=1e-6)
-    path = follow_scene_path(start, "inner.rotation", 0.4 - turning.fun + 0.5)
+    path = follow(start, "inner.rotation", 0.4 - turning.fun + 0.5)
     assert path.converged
     assert path.error_estimate is not None
     assert path.error_estimate < 1e-6
@@ -139,7 +139,7 @@ def test_snap_where_the_closed_form_turns() -> None:
 def test_a_soft_robot_snaps_to_the_next_of_many() -> None:
     tubes = Pendulum(3.0, (0.3, 0.6))
     scene = tubes.scene(0.7, tolerance=1e-5)
-    path = follow_scene_path(scene, "inner.rotation", 18.0)
+    path = follow(scene, "inner.rotation", 18.0)
     assert path.converged
     snap = path.events[0]
     assert snap.snaps_to is not None

@@ -11,23 +11,22 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
-    CompiledTubes,
     ExportError,
     Outcome,
     Scene,
     SceneError,
     TubeSolution,
     export,
-    follow_scene_path,
+    follow,
     load,
     parse_scene,
     read_scene,
-    solve_scene,
+    solve,
 )
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES
-from cosserat_casadi.codegen.tubes.compiled import CompiledTubesSolution, TubeInfo
+from cosserat_casadi.codegen.tubes.compiled import CompiledTubes, CompiledTubesSolution, TubeInfo
 from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.tubes.tube_solution import tip_error
@@ -57,7 +56,7 @@ class Robot:
 
     def __init__(self, scene: Scene, folder: Path) -> None:
         self.scene = scene
-        self.solution = solve_scene(scene)
+        self.solution = solve(scene)
         self.folder = export(self.solution.model, folder, "robot", error_estimate=self.solution.error_estimate)
         compiled = load(folder)
         assert isinstance(compiled, CompiledTubes)
@@ -116,7 +115,7 @@ def test_equilibria_are_those_of_python(robot: Robot, seed: int) -> None:
     found = robot.compiled.solve(robot.inputs(seed))
     agrees(robot, found)
     # Without loads both come from straight tubes in the same way.
-    expected = solve_scene(robot.scene, found.inputs)
+    expected = solve(robot.scene, found.inputs)
     assert_allclose(found.tips["inner"][:3], expected.tip("inner").position, rtol=0, atol=1e-6)
 
 
@@ -182,7 +181,7 @@ def test_loaded_equilibria_are_those_of_python(loaded_robot: Robot, seed: int) -
 
 @pytest.mark.slow
 def test_a_loaded_robot_in_c_snaps_where_it_does_in_python(loaded_robot: Robot) -> None:
-    snap = follow_scene_path(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
+    snap = follow(loaded_robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(loaded_robot, 0.01)
     assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
@@ -219,7 +218,7 @@ def turned(robot: Robot, step: float) -> tuple[CompiledTubesSolution, CompiledTu
 
 @pytest.mark.parametrize("step", mostly_slow([0.003, 0.05, 0.4], quick=[0.05]))
 def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
-    snap = follow_scene_path(robot.scene, "inner.rotation", 9.0).events[0].value
+    snap = follow(robot.scene, "inner.rotation", 9.0).events[0].value
     last, lost = turned(robot, step)
     assert lost.outcome is Outcome.LOST_TRACK
     assert last.inputs[2] < snap < lost.inputs[2]
@@ -377,7 +376,7 @@ def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, 
     found = robot.compiled.solve([0.0, 0.13, turn, reach])
     assert_allclose(found.x, turned_there.x, rtol=0, atol=1e-8)
     assert found.determinant > 0.0
-    in_python = solve_scene(robot.scene, inputs)
+    in_python = solve(robot.scene, inputs)
     assert in_python.stable
     assert_allclose(in_python.x - in_python.robot.rotations(in_python.inputs), found.x, rtol=0, atol=1e-5)
 

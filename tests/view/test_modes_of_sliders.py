@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi import build, choose, discretise, read_scene, solve, solve_scene
+from cosserat_casadi import build, choose, discretise, read_scene, solve
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.page.slider_ranges import sliders
 from tests.conftest import ROOT
@@ -15,7 +15,7 @@ def test_a_template_is_right_all_over_its_sliders() -> None:
     robot = read_scene(ROOT / "cosserat_casadi" / "cli" / "templates" / "tendon-robot.toml")
     model = choose(robot).model
     fine = build(robot, discretise(robot, 10, 20, "magnus8"))
-    own = build(robot, solve_scene(robot).model.discretisation)
+    own = build(robot, solve(robot).model.discretisation)
     ends = sliders(model)
     least = np.array([slider.least for slider in ends])
     most = np.array([slider.most for slider in ends])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, build, choose, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Scene, SceneError, build, choose, scene_from_dict, solve
 from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.page.slider_ranges import sliders
@@ -195,7 +195,7 @@ def test_the_robot_is_refined_where_the_hand_rests(planar: ViewSession) -> None:
     rough = tip(planar.reset(inputs))
     refined = planar.refined(inputs, planar.present)
     assert refined["within"] is True
-    exact = solve_scene(unfixed(planar.first.model.scene, 1e-6), {"push.force": inputs}).tip().position[0]
+    exact = solve(unfixed(planar.first.model.scene, 1e-6), {"push.force": inputs}).tip().position[0]
     assert_allclose(tip(refined), exact, rtol=0, atol=1e-4 * planar.first.model.scene.rods[0].length)
     assert np.linalg.norm(rough - exact) > 1e-3
 

@@ -32,7 +32,7 @@ def bench(
     """Measure error against time: the work-precision curve of a scene.
 
     Errors are against a far finer discretisation, solved in the same run. Exit codes: 0 measured, 2 refused,
-    3 no reference found, 130 interrupted; what was measured until then is in bench.csv.
+    3 no reference found, 130 interrupted; bench.csv has the points that were measured until then.
     """
     if output is not None:
         check_inputs_stay({"--output": output / CSV, "the record of --output": output / JSON}, scene, settings)

@@ -1,4 +1,4 @@
-"""Load cases that a command is given: a file, or ranges."""
+"""Load cases of a command: a file, or ranges."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseL
     """Load cases of a file, or spread over ranges, shape (count, size of a case).
 
     Raises:
-        SceneError: both or none are given, or one of them is refused.
+        SceneError: both or none stand in the command, or one of them is refused.
     """
     if over is not None and not ranges:
         return read_load_cases(over, layout)

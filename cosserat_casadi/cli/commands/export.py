@@ -93,8 +93,8 @@ def export(
     is one file that other simulators step.
 
     Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
-    [ranges] or [[bounds]], or their scale, or at the load cases of --over; those that the scene fixes are verified
-    there.
+    [ranges] or [[bounds]], or their scale, or at the load cases of --over. Modes and nodes that the scene fixes are
+    verified there.
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
@@ -231,7 +231,7 @@ def _export_tubes(scene: Scene, output: Path, name: str) -> None:
 
 
 def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
-    """What an export writes over, by option: page, FMU, and what an earlier export left in the folder."""
+    """Files that an export writes over, by option: page, FMU, and the files of an earlier export in the folder."""
     written = {"--page": page, "--fmu": fmu}
     if output is not None and output.is_dir():
         # Names of files are no options: they tell the many of one folder apart.
@@ -240,7 +240,7 @@ def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> 
 
 
 def _refuse_without_sources(options: Mapping[str, bool]) -> None:
-    """Refuse options that only sources in C know: page and FMU hold what they hold."""
+    """Refuse options that only sources in C know: page and FMU have no such parts."""
     remedy = "name a folder for them with --output, or leave it out"
     problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
     if problems:

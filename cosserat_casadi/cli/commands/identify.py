@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cosserat_casadi import identification
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -26,14 +27,13 @@ from cosserat_casadi.cli.reports.identification import (
 )
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.identification import identify_scene
 from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.identification_file import identification_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
 ENDED_EARLY = "The numbers are those at which the search ended."
-"""What a scene that is written all the same says of itself."""
+"""The sentence in a scene that is written although the identification failed."""
 
 
 def identify(
@@ -75,7 +75,7 @@ def identify(
         def show_step(step: int, cost: float) -> None:
             display.show_share(step / (step + 10))
 
-        found = identify_scene(
+        found = identification.identify(
             checked_scene, hold_out=hold_out, starts=starts, report=display.show_stage, progress=show_step
         )
     if output is not None:

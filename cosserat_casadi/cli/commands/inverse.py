@@ -8,13 +8,14 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cosserat_casadi import control
 from cosserat_casadi.cli.commands.solving import draw_solution
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay, check_outputs, given_files
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
-from cosserat_casadi.control.inverse_accuracy import inverse_rows, inverse_scene
+from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import read_targets
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
@@ -42,8 +43,8 @@ def inverse(
     """Find inputs that bring rods and bodies to the targets of a scene.
 
     Where the scene has [[bounds]], only the inputs that it bounds change. Exit codes: 0 targets met, 2 refused, 3 not
-    met, unstable, or no equilibrium found; the files show the closest pose then. With --table every row is a target
-    of its own, and 3 says that one of them or more is not met.
+    met, unstable, or no equilibrium found; the files show the closest pose then. With --table every row is a separate
+    target, and 3 says that at least one of them is not met.
     """
     if stable and unstable:
         raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
@@ -56,7 +57,7 @@ def inverse(
     with solve_display("Finding inputs") as display:
         # Read inside: building the problem is part of what the bar shows, and may be interrupted.
         given_scene = read_scene(scene, tuple(settings or ()))
-        solved = inverse_scene(given_scene, stable=stable, report=display.show_stage)
+        solved = control.inverse(given_scene, stable=stable, report=display.show_stage)
     if output is not None:
         write_atomically(output, inverse_text(solved).encode())
     if plot is not None:

@@ -21,7 +21,7 @@ from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.modes import print_modes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
-from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of_scene
+from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
 from cosserat_casadi.results.modes_file import modes_text
 from cosserat_casadi.scene import Scene, read_scene
 
@@ -51,7 +51,7 @@ def modes(
         raise SceneError(*problems)
 
     with solve_display("Finding modes") as display:
-        found = modes_of_scene(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
+        found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
     _check_mode_is_there(found, animation, mode)
     if output is not None:
         write_atomically(output, modes_text(found).encode())

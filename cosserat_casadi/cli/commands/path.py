@@ -30,7 +30,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
-from cosserat_casadi.paths.path_refinement import follow_scene_path
+from cosserat_casadi.paths.path_refinement import follow
 from cosserat_casadi.results.path_file import path_table, path_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
@@ -61,10 +61,10 @@ def path(
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot, "--csv": table}, scene, settings)
     checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
-    # The branch that follow_scene_path leaves along is a number; 0 stays on the path.
+    # The branch that follow leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0
     with solve_display("Following the path") as display:
-        followed = follow_scene_path(
+        followed = follow(
             checked_scene,
             name,
             value,
@@ -103,7 +103,7 @@ def _check_input(
         settings: values of it to change.
         name: the input.
         text: its value, as TOML.
-        problems: what was refused before.
+        problems: the refusals so far.
 
     Raises:
         SceneError: with those problems and every fault of the scene, the input and its value.

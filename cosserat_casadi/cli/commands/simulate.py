@@ -58,8 +58,8 @@ def simulate(
 ) -> None:
     """Simulate the motion of a scene over time.
 
-    Exit codes: 0 computed to its end, 2 refused, 3 ended early, 130 interrupted; what was computed is written in any
-    case but 2.
+    Exit codes: 0 computed to its end, 2 refused, 3 ended early, 130 interrupted. The motion is written as far as
+    it was computed, in any case but 2.
     """
     # Options that stand for a key of the scene come last: they win over --set.
     keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
@@ -94,7 +94,7 @@ def simulate(
 def _check_files(
     output: Path | None, plot: Path | None, animation: Path | None, speed: float, problems: list[Problem]
 ) -> None:
-    """Add what is wrong with the files that are to be written, before time is spent on a simulation."""
+    """Add the faults of output files, before time is spent on a simulation."""
     if output is not None:
         with collect_problems(problems):
             check_writable(output, "--output")
@@ -124,7 +124,7 @@ def _check_scene(
         scene_file: the scene.
         settings: values of it to change.
         start: a result file.
-        problems: what was refused before.
+        problems: the refusals so far.
 
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.
@@ -147,10 +147,10 @@ def _check_scene(
 def _simulate_with_progress(scene: Scene, start: Solution | None) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
-    from cosserat_casadi.motion.motion_refinement import simulate_scene
+    from cosserat_casadi.motion.motion_refinement import simulate
 
     with motion_display() as show_motion:
-        motion: Motion = simulate_scene(scene, start=start, progress=show_motion)
+        motion: Motion = simulate(scene, start=start, progress=show_motion)
         return motion
 
 

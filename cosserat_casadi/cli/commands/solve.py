@@ -92,7 +92,7 @@ def solve(
 
 
 def _give(solution: Solved, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
-    """Write, draw and print what was found."""
+    """Write, draw and print the solution."""
     if output is not None:
         write_result(solution, output)
     if plot is not None:

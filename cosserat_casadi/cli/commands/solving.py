@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cosserat_casadi.accuracy.refine import solve_rods, solve_scene
+from cosserat_casadi.accuracy.refine import solve, solve_rods
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.results.solution_file import Solved
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution | TubeSolution:
     """Solve a scene and show how far the solve is."""
     with solve_display("Solving") as display:
-        return solve_scene(scene, stable=stable, progress=display.show_share, report=display.show_stage)
+        return solve(scene, stable=stable, progress=display.show_share, report=display.show_stage)
 
 
 def solve_rods_with_progress(scene: Scene) -> Solution:

@@ -23,16 +23,14 @@ from cosserat_casadi.cli.reports.sobol import print_sobol
 from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.sobol_file import sobol_text
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.sweep.outcome_file import record_file
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.shards import Shard
-from cosserat_casadi.sweep.sobol import sobol_indices
-from cosserat_casadi.sweep.table import Table, crossed, range_table, read_table
+from cosserat_casadi.sweeps.outcome_file import record_file
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.shards import Shard
+from cosserat_casadi.sweeps.sobol import sobol_indices
+from cosserat_casadi.sweeps.table import Table, crossed, range_table, read_table
 
 
 def sweep(
@@ -218,7 +216,7 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
 def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
     """Write, draw and print the indices of a sweep that was drawn for them."""
     indices = sobol_indices(swept)
-    write_atomically(file, sobol_text(indices).encode())
+    indices.write(file)
     written = [file]
     if plot is not None:
         # Imported here, because matplotlib is an extra and takes long to load.

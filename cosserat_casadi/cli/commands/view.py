@@ -30,9 +30,9 @@ def view(
 ) -> None:
     """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
 
-    Modes and nodes are chosen so that the tolerance is met wherever the sliders go, whose ends are those of --range,
-    the scene's [ranges] or [[bounds]], or of the scale of the input. Those that the scene fixes are verified, and those
-    in exact contact are chosen, where --range is given.
+    Modes and nodes are chosen so that the tolerance is met wherever the sliders go. Their ends are taken from --range,
+    the scene's [ranges] or [[bounds]], or the scale of the input. With --range, modes and nodes that the scene fixes
+    are verified, and in exact contact they are chosen.
 
     Only this machine reaches the page, and only who knows its address. Exit codes: 2 refused, 3 not solved, 130 ended.
     """

@@ -1,1 +1,1 @@
-"""What commands print: tables and sentences."""
+"""Reports of commands: tables and sentences."""

@@ -1,4 +1,4 @@
-"""What ``identify`` prints."""
+"""The report of ``identify``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_CASES = 10
 
 
 def print_identification(console: Console, found: Identification, written: Sequence[Path]) -> None:
-    """Print the outcome, what was found, how well it is known, and the files that were written."""
+    """Print the outcome, the values with their uncertainty, and the files that were written."""
     print_plain(console, title_line(found.model.scene.title))
     colour = "green" if found.converged else "red"
     print_plain(console, f"[bold {colour}]{escape(found.message)}[/]")
@@ -41,13 +41,13 @@ def print_identification(console: Console, found: Identification, written: Seque
 
 
 def print_identification_warnings(console: Console, found: Identification) -> None:
-    """Print what a user must know of what was found."""
+    """Print the warnings that a user must know."""
     for warning in found.warnings:
         print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
 
 
 def print_refused_scene(console: Console, refusal: SceneError) -> None:
-    """Print why what was found makes no scene: nothing was written."""
+    """Print why the values make no scene: nothing was written."""
     for problem in refusal.problems:
         print_plain(console, f"[bold red]No scene was written:[/] {escape(str(problem))}", soft_wrap=True)
 

@@ -1,4 +1,4 @@
-"""What ``inverse --table`` prints."""
+"""The report of ``inverse --table``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``check``, ``export`` and ``tune`` print."""
+"""The reports of ``check``, ``export`` and ``tune``."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def print_check(
 
 
 def print_export(console: Console, solution: Solution, folder: Path) -> None:
-    """Print what was written, at what accuracy, and how to try it."""
+    """Print the files, their accuracy, and how to try them."""
     model = solution.model
     # The forces of contacts are inputs of the solved model, not of the library.
     inputs = input_layout(without_contacts(model.scene)).size
@@ -106,7 +106,7 @@ def print_choice(console: Console, choice: Choice) -> None:
 
 
 def print_missed(console: Console, *, fixed: bool) -> None:
-    """Print that what was written does not keep the tolerance, and what to do.
+    """Print that the files do not keep the tolerance, and the remedy.
 
     Args:
         console: of standard error.

@@ -1,4 +1,4 @@
-"""What ``modes`` prints."""
+"""The report of ``modes``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cosserat_casadi.motion.vibration_modes import Mode, Modes
 
 
 def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None:
-    """Print the outcome, the modes, what they were found on, and the files that were written."""
+    """Print the outcome, the modes, their discretisation, and the files that were written."""
     print_plain(console, title_line(modes.model.scene.title))
     print_plain(console, f"[bold {_colour(modes)}]{escape(modes.message)}[/]")
     if modes.modes:

@@ -1,4 +1,4 @@
-"""What ``simulate`` prints."""
+"""The report of ``simulate``."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _end_table(motion: Motion) -> Table:
 
 
 def _merit_sentences(motion: Motion) -> Iterator[str]:
-    """How the motion was computed, how good it is, and what it was computed on."""
+    """The steps of the motion, its accuracy, and its discretisation."""
     if motion.start:
         yield f"start: {motion.start}"
     yield f"steps: {_step_words(motion)}"

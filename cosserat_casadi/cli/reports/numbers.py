@@ -8,14 +8,14 @@ from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.maths.typing import FloatArray
 
 ROUNDING = 1e-14
-"""What is smaller beside the largest entry of a vector is shown as zero."""
+"""Share of the largest entry of a vector below which an entry is shown as zero."""
 
 SMALLEST = 1e-300
 """Keeps the scale of a vector of zeros away from zero."""
 
 
 def digits(vector: FloatArray) -> list[str]:
-    """Entries with six digits; what is zero beside the largest one is shown as zero."""
+    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero."""
     magnitudes = np.abs(vector)
     largest = max(float(magnitudes.max()), SMALLEST)
     # What is left of a cancellation would look like a result.

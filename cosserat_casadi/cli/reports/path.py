@@ -1,4 +1,4 @@
-"""What ``path`` prints."""
+"""The report of ``path``."""
 
 from __future__ import annotations
 

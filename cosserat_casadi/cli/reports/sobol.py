@@ -1,4 +1,4 @@
-"""What ``sweep --sobol`` prints."""
+"""The report of ``sweep --sobol``."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.sweep.sobol import SobolIndices
+from cosserat_casadi.sweeps.sobol import SobolIndices
 
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:
-    """Print the indices of every result, and what they do not rest on."""
+    """Print the indices of every result, and the draws that they leave out."""
     table = Table()
     for heading in ("result", "input"):
         table.add_column(heading, no_wrap=True)

@@ -1,4 +1,4 @@
-"""What ``solve`` and ``inverse`` print."""
+"""The reports of ``solve`` and ``inverse``."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 
 def _merit_sentence(solution: Solution, work: str) -> str:
-    """How good the solution is, what it took to find it, and what it was found on."""
+    """Accuracy of the solution, the iterations of the solver, and the discretisation."""
     parts = [f"residual {solution.residual_norm:.1e}", work]
     parts += _errors(solution)
     parts += [escape(sentence) for sentence in discretisation_sentences(solution.model)]

@@ -1,4 +1,4 @@
-"""What ``sweep`` prints."""
+"""The report of ``sweep``."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.sweep.outcome_file import STABLE, record_file
-from cosserat_casadi.sweep.outcome_table import ERROR, Sweep
-from cosserat_casadi.sweep.shards import Shard
+from cosserat_casadi.sweeps.outcome_file import STABLE, record_file
+from cosserat_casadi.sweeps.outcome_table import ERROR, Sweep
+from cosserat_casadi.sweeps.shards import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
 """Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
 
 
 def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None, *, finished: bool) -> None:
-    """Print how the rows ended, on what they were computed, what the check of some rows gave, and the files.
+    """Print how the rows ended, their discretisation, the check of some rows, and the files.
 
     Args:
         console: where to print.
@@ -56,7 +56,7 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
 
 
 def print_stopped_sweep(console: Console, part: Path | None) -> None:
-    """Print what a stopped sweep left in the file of what is done."""
+    """Print which rows a stopped sweep has kept in its file."""
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
@@ -133,7 +133,7 @@ def _error_sentences(sweep: Sweep) -> Iterator[str]:
 
 
 def _remedy(sweep: Sweep) -> str:
-    """What brings rows above the tolerance below it."""
+    """The remedy for rows whose error is above the tolerance."""
     if sweep.record["chosen"]["discretisation"] is None:
         return (
             "The scene fixes its modes, nodes or rotation: leave them out, or choose them for the ranges of the table "

@@ -1,4 +1,4 @@
-"""What commands print of concentric tubes."""
+"""Reports of concentric tubes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _print_equilibrium(console: Console, solution: TubeSolution) -> None:
 
 
 def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
-    """Print what was written, at what accuracy, and how to try it."""
+    """Print the files, their accuracy, and how to try them."""
     robot = solution.robot
     print_plain(console, title_line(robot.scene.title))
     sizes = f"{solution.model.unknowns} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"

@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_directions, seen_positions
-from cosserat_casadi.equilibrium.contact.contact_search import Found
+from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
@@ -35,7 +35,7 @@ PRESSING = 1e-9
 """Force, relative to the largest, from which a contact is a constraint."""
 
 
-def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> Solution:
+def judged(found: ContactEquilibrium, *, holds: bool, iterations: int, tolerance: float) -> Solution:
     """A state as a solution.
 
     Args:
@@ -73,7 +73,7 @@ def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> S
     )
 
 
-def contacts_of(found: Found) -> tuple[Contact, ...]:
+def contacts_of(found: ContactEquilibrium) -> tuple[Contact, ...]:
     """The contacts by name, with the forces on the rods."""
     contacts = []
     for touch, carried, line in found.parts():
@@ -107,7 +107,9 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
     return tuple(contacts)
 
 
-def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
+def _resultant(
+    found: ContactEquilibrium, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray
+) -> FloatArray:
     """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
     grid = found.placed.model.discrete.rods[touch.owner].grid
     total = np.zeros(3)
@@ -120,7 +122,7 @@ def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line
     return total
 
 
-def _eigenvalues(found: Found) -> FloatArray:
+def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
     """Eigenvalues of the second variation over the motions that contacts admit."""
     placed = found.placed
     model = placed.model
@@ -150,7 +152,7 @@ def _eigenvalues(found: Found) -> FloatArray:
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 
-def _gap_curvature(found: Found, touch: Touch) -> float:
+def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
     """Second derivative of the gap with X at a point of contact, over the length."""
     X = np.array([touch.start])
     pose = found.solution.pose(X, touch.owner)

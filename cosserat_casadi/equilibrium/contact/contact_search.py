@@ -46,7 +46,7 @@ SAMPLES = np.linspace(0.0, 1.0, 41)
 
 
 @dataclass(frozen=True)
-class Found:
+class ContactEquilibrium:
     """A state whose equations are solved.
 
     Attributes:
@@ -192,7 +192,7 @@ class Settling:
         """Abscissae inside each rod at which lines of contact have seams, by name."""
         return load_sections(self.scene)
 
-    def run(self, guesses: Sequence[tuple[ContactState, Solution]]) -> tuple[Found | None, bool]:
+    def run(self, guesses: Sequence[tuple[ContactState, Solution]]) -> tuple[ContactEquilibrium | None, bool]:
         """Try states until one holds.
 
         Args:
@@ -203,7 +203,7 @@ class Settling:
         """
         waiting = list(guesses)
         tried: list[ContactState] = []
-        last: Found | None = None
+        last: ContactEquilibrium | None = None
         while waiting and len(tried) < MOST_STATES:
             candidate, start = waiting.pop(0)
             candidate = candidate.split(self.sections)
@@ -225,13 +225,13 @@ class Settling:
             waiting = [(other, found.solution) for other in others] + waiting
         return last, False
 
-    def solve(self, state: ContactState, near: Solution) -> Found | None:
+    def solve(self, state: ContactState, near: Solution) -> ContactEquilibrium | None:
         """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
         equations = ContactEquations(self.scene, self.given, self.grids, state)
         z = self.solved(equations, near)
         if z is None:
             return None
-        return found_at(equations, z, self.given)
+        return contact_equilibrium(equations, z, self.given)
 
     def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
         """Unknowns, forces and places that solve equations, from a shape near them."""
@@ -252,7 +252,7 @@ class Settling:
         return result.x
 
 
-def found_at(equations: ContactEquations, z: FloatArray, given: FloatArray) -> Found:
+def contact_equilibrium(equations: ContactEquations, z: FloatArray, given: FloatArray) -> ContactEquilibrium:
     """The solution z of the equations of a state, for stacked inputs of its scene."""
     x, forces, places = equations.parts(z)
     # What only rounding presses does not press.
@@ -262,7 +262,7 @@ def found_at(equations: ContactEquations, z: FloatArray, given: FloatArray) -> F
     outcome = Outcome.CONVERGED
     norm = relative_norm(placed.residual(x, forces), np.concatenate([x, forces]))
     solution = Solution(placed.model, placed.inputs(forces), x, outcome, outcome.value, norm, iterations=0)
-    return Found(placed, x, forces, solution)
+    return ContactEquilibrium(placed, x, forces, solution)
 
 
 def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:
@@ -303,7 +303,7 @@ class Replacement:
     options: tuple[tuple[Touch, ...], ...]
 
 
-def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
+def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[ContactState]:
     """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
     changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
@@ -324,7 +324,7 @@ def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
             yield _changed(found.state, [*others, (change.touch, option)])
 
 
-def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
+def _by_touch(found: ContactEquilibrium, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
     """Stretches inside an obstacle, each with the contact that it is at; those on both sides of one contact joined."""
     alone: list[tuple[Penetrated, Touch | None]] = []
     joined: dict[Touch, Penetrated] = {}
@@ -345,7 +345,7 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
     return ContactState.of([*kept, *added])
 
 
-def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
+def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[Touch, ...]]:
     """Contacts that may take the place of one that pulls; of a line that is lifted in its middle first two."""
     if touch.is_line:
         lifted = found.weakest(touch)

@@ -1,9 +1,9 @@
-"""What the columns of a table are to a scene: inputs at run time, or parameters.
+"""Columns of a table as parts of a scene: inputs at run time, or parameters.
 
 A column that may be an input is made one, whatever the scene's own ``inputs`` say, and all else is baked in: a load or
 a cable, the length of a rod, its base. Other columns are what ``--set`` takes, such as ``wire.section.radius``. In a
-table of many rows those that may be parameters of a model are arguments of one compiled library; what is left makes
-another scene for each set of values, which rows of equal values share.
+table of many rows the columns that may be parameters of a model are arguments of one compiled library. Other columns
+make another scene for each set of values, which rows of equal values share.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
-from cosserat_casadi.sweep.arguments import accepts_parameters, argument_columns, extreme_rows
-from cosserat_casadi.sweep.sampling import farthest_rows
-from cosserat_casadi.sweep.table import Table
+from cosserat_casadi.sweeps.arguments import accepts_parameters, argument_columns, extreme_rows
+from cosserat_casadi.sweeps.sampling import farthest_rows
+from cosserat_casadi.sweeps.table import Table
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
-"""Tables of a scene that are no property of what is computed."""
+"""Tables of a scene that do not change the computed results."""
 
 STIFFNESS = ("material", "section", "stiffness", "linear_density")
 """Tables and numbers of a rod that say how it yields, not where it is."""
@@ -43,7 +43,7 @@ class Variant:
     """Rows of one scene.
 
     Attributes:
-        scene: the scene, its inputs those that are swept, and its parameters those that its library takes.
+        scene: the scene, its inputs the swept inputs, and its parameters the arguments of its library.
         rows: their numbers in the table, shape (k,).
     """
 
@@ -56,7 +56,7 @@ class Variants:
     """A table seen by a scene.
 
     Attributes:
-        nominal: the scene as it stands, its inputs those that are swept.
+        nominal: the scene as it stands, its inputs the swept inputs.
         entries: scenes, in the order in which the table meets them.
         inputs: stacked inputs of every row of the table, shape (rows, size).
         layout: of the inputs.
@@ -83,7 +83,7 @@ class Variants:
         return _overridden(scene_tables(scene.baked()), self.arguments, self.p[row], scene.input_names())
 
     def given(self, rows: npt.NDArray[np.int64]) -> FloatArray:
-        """What a library is given for rows: inputs, and parameters behind them."""
+        """Arguments of a library for rows: inputs, and parameters behind them."""
         return np.hstack([self.inputs[rows], self.p[rows]])
 
     def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
@@ -132,7 +132,7 @@ def variants_of(scene: Scene, table: Table) -> Variants:
 def _overridden(
     tables: Mapping[str, Any], names: Sequence[str], values: FloatArray, inputs: Sequence[str] | None = None
 ) -> Scene:
-    """The scene with other numbers, and with these inputs where they are given.
+    """The scene with other numbers, and with these inputs unless they are left out.
 
     A number is named as ``--set`` names it, or as ``parameters`` does, such as ``wire.intrinsic.curvature.y``.
     """
@@ -177,7 +177,7 @@ def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: Floa
 
 
 def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
-    """The scene whose inputs are those that columns name, and no other."""
+    """The scene with the inputs that columns name, and no other."""
     tables = scene_tables(scene)
     # Targets and bounds may name inputs that are none in a sweep.
     tables.pop("targets", None)
@@ -194,7 +194,7 @@ def _possible_inputs(scene: Scene) -> list[str]:
 
 
 def _input_of_column(column: str, possible: Sequence[str]) -> str | None:
-    """The input that a column is an entry of; None where there is none.
+    """The input that a column is an entry of; None for a column of another kind.
 
     A column adds an axis and a degree to the name of its input: ``push.force.x.1`` is of ``push.force``.
     """
@@ -259,7 +259,7 @@ def all_rows(table: Table) -> npt.NDArray[np.int64]:
 
 
 def _is_reserved(column: str) -> bool:
-    """Whether a column is in a table of the scene that is no property of what is computed."""
+    """Whether a column is in a table of the scene that does not change the computed results."""
     first_key = column.replace("[", ".").split(".")[0]
     return first_key in NOT_PARAMETERS
 

@@ -1,4 +1,4 @@
-"""What is done of a sweep: on disc a file that only grows, so that a kill loses no more than its last entry.
+"""Finished rows of a sweep: on disc a file that only grows, so that a kill loses no more than its last entry.
 
 The results of chunks lie there alone until all are done: memory does not grow with them. A sweep that no file is wanted
 of keeps them in memory.
@@ -31,7 +31,7 @@ ENTRY = struct.Struct("<qqI")
 
 
 class StoreChangedError(CosseratError):
-    """What a sweep has kept on disc was changed by others while it ran."""
+    """The rows that a sweep has kept on disc were changed by others while it ran."""
 
     page = "sweeps"
 
@@ -78,7 +78,7 @@ class Store:
         return self._places.keys()
 
     def head(self) -> dict[str, Any] | None:
-        """What sweep the file is of; None where there is none, or where it is damaged."""
+        """Identity of the sweep that the file is of; None without a file, or where it is damaged."""
         # Opening a pipe would wait for who writes into it.
         if not self.path.is_file():
             return None
@@ -108,7 +108,7 @@ class Store:
                 raise
 
     def resume(self, rows: Mapping[int, int], width: int) -> None:
-        """Find what is done; the file is ready for more.
+        """Find the finished rows; the file is ready for more.
 
         Args:
             rows: of each chunk of the sweep, by its number.
@@ -127,7 +127,7 @@ class Store:
         """Keep the results of a chunk.
 
         Raises:
-            WriteError: it cannot be written; what was kept before stays.
+            WriteError: it cannot be written; the rows that were kept before stay.
         """
         content = np.ascontiguousarray(results, dtype="<f8").tobytes()
         if self._file is None:
@@ -142,7 +142,7 @@ class Store:
         """Every chunk that is done with its results, one at a time.
 
         Raises:
-            StoreChangedError: the file does not hold any more what was kept.
+            StoreChangedError: the file does not hold the kept rows any more.
         """
         if self._file is None:
             raise ValueError("the store is not open")

@@ -16,7 +16,7 @@ from typing import BinaryIO
 
 from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.work import Part, solve_parts
+from cosserat_casadi.sweeps.work import Part, solve_parts
 
 
 class Worker:
@@ -32,7 +32,7 @@ class Worker:
         # Small matrices: threads of BLAS would only take the other processes' cores.
         environment["OPENBLAS_NUM_THREADS"] = "1"
         self._process = subprocess.Popen(
-            [sys.executable, "-c", "from cosserat_casadi.sweep.worker import main; main()"],
+            [sys.executable, "-c", "from cosserat_casadi.sweeps.worker import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=environment,

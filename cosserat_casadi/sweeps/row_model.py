@@ -19,7 +19,7 @@ from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.scene import parse_scene
-from cosserat_casadi.sweep.outcome_table import ENDINGS
+from cosserat_casadi.sweeps.outcome_table import ENDINGS
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def solved_poses(solution: Solution) -> FloatArray:
 
 
 def error_numbers(estimate: float | None) -> list[float]:
-    """Columns :data:`ERRORS` of a row; what is not known is NaN, and so is the verdict, which the sweep passes."""
+    """Columns :data:`ERRORS` of a row; an unknown error is NaN, and so is the verdict, which the sweep passes."""
     return [np.nan if estimate is None else estimate, np.nan]
 
 

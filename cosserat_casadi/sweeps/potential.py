@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.variants import Variants
-from cosserat_casadi.sweep.work import Chunk
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.variants import Variants
+from cosserat_casadi.sweeps.work import Chunk
 
 
 def rows_with_potential(variants: Variants, work: Sequence[Chunk], scratch: Scratch) -> npt.NDArray[np.bool_]:

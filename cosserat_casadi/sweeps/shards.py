@@ -1,6 +1,6 @@
 """Shards of a sweep: parts of its work that machines do for themselves, and that are merged into one file of results.
 
-A shard keeps what it has done in a file of its own beside the results, as an unfinished sweep does. So a shard that was
+A shard keeps its finished rows in its file beside the results, as an unfinished sweep does. So a shard that was
 killed goes on, and shards on one file system need no word between them.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.sweep.work import Chunk
+from cosserat_casadi.sweeps.work import Chunk
 
 MOST = 100_000
 """Shards into which a sweep may be cut."""
@@ -55,7 +55,7 @@ class Shard:
         return chunk.number % self.count == self.number - 1
 
     def file(self, output: Path) -> Path:
-        """Where it keeps what it has done of a sweep that is to be written to a file."""
+        """File in which a shard keeps its finished rows, beside the file of the results."""
         width = len(str(self.count))
         return output.with_name(f"{output.name}.shard-{self.number:0{width}}-of-{self.count}")
 

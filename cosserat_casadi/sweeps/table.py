@@ -15,8 +15,8 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import read_range
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
-from cosserat_casadi.sweep.grid_file import grid, paired_draws, read_tables, too_many_rows
-from cosserat_casadi.sweep.scratch import BLOCK, MEMORY, Scratch
+from cosserat_casadi.sweeps.grid_file import grid, paired_draws, read_tables, too_many_rows
+from cosserat_casadi.sweeps.scratch import BLOCK, MEMORY, Scratch
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Table:
     scratch: Scratch = MEMORY
 
     def where_of(self, row: int) -> str:
-        """What a refusal calls a row."""
+        """Name of a row in a refusal."""
         if self.lines is None:
             return f"{self.where}, row {row + 1}"
         return f"{self.where}, line {int(self.lines[row])}"

@@ -17,7 +17,8 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.result import Result
+from cosserat_casadi.sweeps.outcome_table import Sweep
 
 CONFIDENCE = 0.95
 """Share of bootstrap estimates within the intervals."""
@@ -56,8 +57,8 @@ class Estimates:
     total_interval: FloatArray
 
 
-@dataclass(frozen=True)
-class SobolIndices:
+@dataclass(frozen=True, repr=False)
+class SobolIndices(Result):
     """Sobol indices of the results of a sweep.
 
     Attributes:

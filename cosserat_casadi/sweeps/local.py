@@ -10,8 +10,8 @@ from types import TracebackType
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.work import Chunk, Part, solve_parts
-from cosserat_casadi.sweep.worker import Worker
+from cosserat_casadi.sweeps.work import Chunk, Part, solve_parts
+from cosserat_casadi.sweeps.worker import Worker
 
 AHEAD = 4
 """Chunks that wait for each core: enough to keep it busy, few enough to stop soon."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,8 @@ from cosserat_casadi.codegen.rows import ERRORS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.sweep.scratch import MEMORY, Scratch
+from cosserat_casadi.result import Result
+from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
 """How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
@@ -25,8 +26,8 @@ LABELS = tuple(outcome.label for outcome in ENDINGS)
 """Words of the column ``outcome``."""
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Result):
     """Every row of a table, solved.
 
     Attributes:
@@ -34,7 +35,7 @@ class Sweep:
         found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert, errors.
         values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
         outcomes: how each row ended, as its place in LABELS, shape (rows,).
-        record: what was computed, how and how well, as plain data: the file beside the results; empty without it.
+        record: scene, discretisation and accuracy, as plain data: the file beside the results; empty without it.
         scratch: where values and outcomes lie.
     """
 
@@ -42,8 +43,8 @@ class Sweep:
     found: tuple[str, ...]
     values: FloatArray
     outcomes: npt.NDArray[np.int64]
-    record: dict[str, Any] = field(repr=False)
-    scratch: Scratch = field(default=MEMORY, repr=False)
+    record: dict[str, Any]
+    scratch: Scratch = MEMORY
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -106,6 +107,8 @@ class Sweep:
     @property
     def worst(self) -> tuple[int, float, int]:
         """How many converged rows have an estimate of their error, the largest of these, and its row; NaN of none."""
+        if ERROR not in self.found:
+            return 0, np.nan, 0
         known, largest, row = 0, np.nan, 0
         for first, part in self.parts():
             errors = np.where(part.converged & np.isfinite(part[ERROR]), part[ERROR], -np.inf)

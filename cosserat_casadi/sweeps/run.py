@@ -19,25 +19,27 @@ from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import build
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.arguments import COMPILED_FROM
-from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
-from cosserat_casadi.sweep.cluster import Cluster
-from cosserat_casadi.sweep.local import Cores
-from cosserat_casadi.sweep.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
-from cosserat_casadi.sweep.outcome_table import Sweep
-from cosserat_casadi.sweep.potential import rows_with_potential
-from cosserat_casadi.sweep.row_model import RowModel
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.shards import Shard, named, shard_files
-from cosserat_casadi.sweep.store import Memory, Store, StoreChangedError
-from cosserat_casadi.sweep.table import Table, read_table, table_of
-from cosserat_casadi.sweep.tubes import TubeRows, tube_results, tube_variants
-from cosserat_casadi.sweep.variants import Variants, variants_of
-from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.choice import Choice, Progress, check, choose
+from cosserat_casadi.sweeps.cluster import Cluster
+from cosserat_casadi.sweeps.local import Cores
+from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.sweeps.potential import rows_with_potential
+from cosserat_casadi.sweeps.row_model import RowModel
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.shards import Shard, named, shard_files
+from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
+from cosserat_casadi.sweeps.table import Table, read_table, table_of
+from cosserat_casadi.sweeps.tubes import TubeRows, tube_results, tube_variants
+from cosserat_casadi.sweeps.variants import Variants, variants_of
+from cosserat_casadi.sweeps.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
 IN_LANES_FROM = 1_250_000
 """Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it. For
@@ -74,7 +76,7 @@ class Plan:
 
     @property
     def identity(self) -> str:
-        """What tells this sweep from others: the same identity gives the same results."""
+        """Identity of the sweep: the same identity gives the same results."""
         words = [
             version("cosserat-casadi"),
             scene_text(self.scene),
@@ -113,7 +115,7 @@ class Plan:
 
     @property
     def part(self) -> Path | None:
-        """The file of what is done, until all is."""
+        """The file of the finished rows, until all are finished."""
         if self.output is None:
             return None
         return self.output.with_name(f"{self.output.name}.part")
@@ -174,8 +176,8 @@ def plan_sweep(
     return plan
 
 
-def sweep_scene(
-    scene: Scene,
+def sweep(
+    subject: Scene | Model,
     table: Table | Mapping[str, npt.ArrayLike] | str | os.PathLike[str],
     output: str | os.PathLike[str] | None = None,
     *,
@@ -189,7 +191,7 @@ def sweep_scene(
     """Solve a scene for every row of a table of inputs and parameters.
 
     Args:
-        scene: a validated scene.
+        subject: a validated scene; or a model of rods, whose modes and nodes are kept.
         table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
         output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
             was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
@@ -201,20 +203,23 @@ def sweep_scene(
             potential.
         estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
             not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
-        progress: told what is being done, how much of it is done, and of how much.
+        progress: told the work under way, how much of it is done, and of how much.
 
     Raises:
         SceneError: with every fault of table and output.
         ExportError: there is no C compiler, or it fails.
         ClusterError: the cluster cannot be used.
     """
+    if not isinstance(subject, Scene):
+        refuse_tubes(subject)
+        subject = with_discretisation(subject.scene, subject.discretisation)
     file = None if output is None else Path(output)
     scratch = Scratch.beside(file)
     if isinstance(table, Mapping):
         table = table_of(table, scratch)
     elif not isinstance(table, Table):
         table = read_table(Path(table), scratch=scratch)
-    plan = plan_sweep(scene, table, file, samples, stability=stability, estimate_errors=estimate_errors)
+    plan = plan_sweep(subject, table, file, samples, stability=stability, estimate_errors=estimate_errors)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -225,11 +230,11 @@ def run_sweep(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Do what a plan says, or what is left of it; of a finished one, read the results.
+    """Do the work of a plan, or the rest of it; of a finished one, read the results.
 
     Args:
         plan: of :func:`plan_sweep`.
-        scheduler: as in :func:`sweep_scene`.
+        scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
     """
@@ -264,14 +269,14 @@ def run_shard(
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """Do what is left of one shard of a sweep, and keep it beside the file of the results; returns its rows.
+    """Do the rest of one shard of a sweep, and keep it beside the file of the results; returns its rows.
 
     Where the file of the results has the whole sweep already nothing is done.
 
     Args:
         plan: of :func:`plan_sweep`, with an output.
         shard: which part.
-        scheduler: as in :func:`sweep_scene`.
+        scheduler: as in :func:`sweep`.
         cores: as there.
         progress: as there.
 
@@ -309,7 +314,7 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
 
     Args:
         plan: of :func:`plan_sweep`, with an output.
-        progress: as in :func:`sweep_scene`.
+        progress: as in :func:`sweep`.
 
     Raises:
         SceneError: shards are missing or not done, of another sweep, or of different discretisations.
@@ -405,7 +410,7 @@ def _ignore(doing: str, done: int, total: int) -> None:
 
 
 def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
-    """What does the work."""
+    """The workers: cores of this machine, or a cluster."""
     if scheduler is None:
         return Cores(cores)
     if cores is not None:
@@ -486,7 +491,7 @@ def _tasks(
 
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
-    """What solves a chunk in Python: a model for each variant that it has rows of."""
+    """Solver of a chunk in Python: a model for each variant that it has rows of."""
     if plan.scene.tubes:
         tubes = TubeRows(scene_text(plan.scene), plan.stability, plan.estimate_errors)
         return [(tubes, plan.variants.inputs[chunk.rows])]
@@ -514,7 +519,7 @@ def _sweep(
         choice: its discretisation.
         work: its chunks.
         answered: for each of them its number and its results, in any order.
-        progress: told what is being done.
+        progress: told the work under way.
     """
     swept = len(plan.table.columns)
     result_names = plan.columns[swept:]

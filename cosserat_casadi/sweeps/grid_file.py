@@ -21,7 +21,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import shown
-from cosserat_casadi.sweep.scratch import MEMORY, Scratch
+from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 MOST_ROWS = 20_000_000
 """Rows of the largest grid that is made."""
@@ -87,7 +87,7 @@ def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...]
     """Columns and rows of the design that Sobol indices are estimated on, and its random columns.
 
     Two independent draws A and B of ``samples`` rows each, then for each random column A with that column of B. See
-    :mod:`cosserat_casadi.sweep.sobol`.
+    :mod:`cosserat_casadi.sweeps.sobol`.
 
     Raises:
         SceneError: with every fault: no column is random, or another one has several values.

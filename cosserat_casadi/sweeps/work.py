@@ -1,4 +1,4 @@
-"""The work of a sweep in chunks: what is done at once, kept at once, and done again by nobody."""
+"""The work of a sweep in chunks: rows that are solved together, kept together, and never solved again."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.rows import RowLibrary
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.arguments import COMPILED_FROM
-from cosserat_casadi.sweep.variants import Variants
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.variants import Variants
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""

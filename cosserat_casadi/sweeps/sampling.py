@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.scratch import MEMORY, Scratch
+from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 SEED = 20
 """Of the random rows: the same table gives the same sample."""

@@ -1,4 +1,4 @@
-"""The files of a sweep: results as CSV, Parquet or a dataset, and beside them what was computed, as JSON.
+"""The files of a sweep: results as CSV, Parquet or a dataset, and beside them a record of the computation, as JSON.
 
 A dataset is a folder of Parquet files, which many readers take as one table.
 
@@ -20,7 +20,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import atomic_file, atomic_folder, check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.outcome_table import LABELS, WITHIN, Sweep
+from cosserat_casadi.sweeps.outcome_table import LABELS, WITHIN, Sweep
 
 DATASET = ".dataset"
 """Suffix of a folder of Parquet files."""
@@ -76,12 +76,12 @@ def check_output(path: Path) -> None:
 
 
 def record_file(path: Path) -> Path:
-    """The file that says what was computed: ``results.csv.json`` beside ``results.csv``."""
+    """The file of the record: ``results.csv.json`` beside ``results.csv``."""
     return path.with_name(f"{path.name}.json")
 
 
 def read_record(path: Path) -> dict[str, Any] | None:
-    """What was computed for a file of results; None where nothing says so."""
+    """The record of a file of results; None without a record."""
     try:
         text = record_file(path).read_text(encoding="utf-8")
         record = json.loads(text)
@@ -162,7 +162,7 @@ def _write_csv(sweep: Sweep, path: Path) -> None:
 
 
 def _cells(sweep: Sweep) -> Iterator[list[str]]:
-    """Rows of the CSV file; what was not found is an empty cell."""
+    """Rows of the CSV file; a missing result is an empty cell."""
     swept_count = len(sweep.swept)
     iterations = swept_count + sweep.found.index("iterations")
     truths = [swept_count + sweep.found.index(name) for name in TRUTHS if name in sweep.found]

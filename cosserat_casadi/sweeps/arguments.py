@@ -14,8 +14,8 @@ from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.scene import scene_from_dict
-from cosserat_casadi.sweep.sampling import column_ends, farthest_rows
-from cosserat_casadi.sweep.scratch import Scratch
+from cosserat_casadi.sweeps.sampling import column_ends, farthest_rows
+from cosserat_casadi.sweeps.scratch import Scratch
 
 COMPILED_FROM = 1000
 """Rows of equal parameters from which a library is compiled for them; a sweep of inputs alone always has one.

@@ -15,10 +15,10 @@ from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene import Scene, Tube, parse_scene
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.spelling import closest
-from cosserat_casadi.sweep.outcome_table import ENDINGS
-from cosserat_casadi.sweep.row_model import error_numbers
-from cosserat_casadi.sweep.table import Table
-from cosserat_casadi.sweep.variants import Variant, Variants, all_rows
+from cosserat_casadi.sweeps.outcome_table import ENDINGS
+from cosserat_casadi.sweeps.row_model import error_numbers
+from cosserat_casadi.sweeps.table import Table
+from cosserat_casadi.sweeps.variants import Variant, Variants, all_rows
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs

@@ -20,17 +20,17 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.row_model import solved_poses
-from cosserat_casadi.sweep.sampling import representative_rows
-from cosserat_casadi.sweep.scratch import Scratch
-from cosserat_casadi.sweep.table import Table
-from cosserat_casadi.sweep.variants import Variants
+from cosserat_casadi.sweeps.row_model import solved_poses
+from cosserat_casadi.sweeps.sampling import representative_rows
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.table import Table
+from cosserat_casadi.sweeps.variants import Variants
 
 CHECKED = 6
 """Rows that are solved again at the end."""
 
 Progress = Callable[[str, int, int], None]
-"""Told what is being done, how much of it is done, and of how much."""
+"""Told the work under way, how much of it is done, and of how much."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def choose(variants: Variants, table: Table, samples: int, progress: Progress) -
         variants: scenes and inputs of the table.
         table: the rows.
         samples: rows to look at.
-        progress: told what is being done.
+        progress: told the work under way.
     """
     accuracy = variants.entries[0].scene.accuracy
     if accuracy.fixed:
@@ -136,11 +136,12 @@ def check(
         outcomes: how rows ended, 0 where they hold an equilibrium, shape (rows,).
         poses: of their tips and bodies, shape (rows, 7 tips and bodies).
         scratch: where arrays with an entry for each row lie.
-        progress: told what is being done.
+        progress: told the work under way.
 
     Returns:
-        for each row its number from 0, the estimated error, how far its poses lie from those found in Python, relative
-        to the length, whether it is stable; None where the row has no equilibrium in Python, or that has no meaning.
+        for each row its number from 0, the estimated error, the distance of its poses from a solution in Python,
+        relative to the length, whether it is stable; None where the row has no equilibrium in
+        Python, or where stability has no meaning.
     """
     candidates = scratch.joined(_converged(outcomes, poses, scratch), 4)
     if not candidates.size:

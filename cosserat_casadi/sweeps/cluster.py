@@ -14,7 +14,7 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.sweep.work import Answer, Chunk, Part, solve_parts
+from cosserat_casadi.sweeps.work import Answer, Chunk, Part, solve_parts
 
 AHEAD = 256
 """Chunks that the scheduler has at once: enough for many workers, few enough for its memory."""

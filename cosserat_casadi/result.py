@@ -1,0 +1,61 @@
+"""The methods that every result has: plain data, files, a figure, a few lines for a terminal and for a notebook."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+
+class Result:
+    """Base of solutions, paths, motions, modes, sweeps, fits and all other results.
+
+    How a kind of result is written, drawn and described is in :mod:`cosserat_casadi.results.presentation`. That module
+    stands above the rooms that compute, and loads when the first result is shown.
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data, as its JSON file holds it; a number that is not finite becomes None."""
+        data: dict[str, Any] = _presentation().data_of(self)
+        return data
+
+    def write(self, path: Any) -> None:
+        """Write the result into a file, whole or not at all; the suffix says in which format.
+
+        Every result can be written as JSON (``.json``) and as a figure (``.png``, ``.pdf``, ``.svg``); some as a table
+        too.
+
+        Args:
+            path: of the file, a string or a Path.
+
+        Raises:
+            SceneError: this kind of result has no file with that suffix.
+            CosseratError: the format needs a package that is not installed; the sentence names the extra.
+            WriteError: the file cannot be written, as on a full disk.
+        """
+        _presentation().write(self, path)
+
+    def plot(self) -> Any:
+        """Figure of the result.
+
+        Returns:
+            matplotlib.figure.Figure.
+
+        Raises:
+            PlotUnavailableError: matplotlib is not installed.
+        """
+        return _presentation().figure_of(self)
+
+    def __repr__(self) -> str:
+        """The result in at most ten lines."""
+        text: str = _presentation().text_of(self)
+        return text
+
+    def _repr_html_(self) -> str:
+        """The lines of ``repr`` as a table, below them the figure: what a notebook shows."""
+        page: str = _presentation().html_of(self)
+        return page
+
+
+def _presentation() -> Any:
+    """The module that presents results, loaded when the first of them is shown."""
+    return import_module("cosserat_casadi.results.presentation")

@@ -1,0 +1,242 @@
+"""Facts of each kind of result for terminals and notebooks: a title, and pairs of a label and its words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+if TYPE_CHECKING:
+    from cosserat_casadi.control.inverse_result import Inverse
+    from cosserat_casadi.equilibrium.solution import Solution
+    from cosserat_casadi.estimation import Estimate
+    from cosserat_casadi.identification import Identification
+    from cosserat_casadi.motion.trajectory import Motion
+    from cosserat_casadi.motion.vibration_modes import Modes
+    from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+    from cosserat_casadi.sweeps.outcome_table import Sweep
+    from cosserat_casadi.sweeps.sobol import SobolIndices
+    from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.tube_path import TubePath
+    from cosserat_casadi.tubes.tube_solution import TubeSolution
+
+Facts = list[tuple[str, str]]
+"""Labels with their words."""
+
+Titled = tuple[str | None, Facts]
+"""Title of the scene, None where it has none, and facts."""
+
+MOST_OF_A_KIND = 4
+"""Tips, modes, unknowns or events that are listed; the rest is counted."""
+
+
+def solution_facts(solution: Solution) -> Titled:
+    """Outcome, tips, error and stability of an equilibrium."""
+    scene = solution.model.scene
+    error = solution.shape_error_estimate if scene.accuracy.shape else solution.error_estimate
+    facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
+    rods = solution.model.discrete.rods
+    facts += _first("tips", [(f"tip of {name}", _point(solution.tip(name).position[0])) for name in rods])
+    facts.append(("error", _error(error, scene.accuracy.tolerance)))
+    facts.append(("stable", _stable(solution.stable, solution.smallest_eigenvalue)))
+    if scene.obstacles:
+        facts.append(("contacts", str(len(solution.contacts))))
+    return scene.title, facts
+
+
+def path_facts(path: EquilibriumPath) -> Titled:
+    """Outcome, input, end, events and error of a path."""
+    scene = path.model.scene
+    facts = [("outcome", _outcome(path.converged, path.outcome.label, path.message)), ("input", path.name)]
+    if len(path.factor):
+        ends = [(f"tip of {name}", _point(path.tip(name).position[-1])) for name in path.model.discrete.rods]
+        facts.append(("points", f"{len(path.factor)}, to {path.factor[-1]:.6g} of the way"))
+        facts += _first("tips", ends)
+    facts.append(("events", _listed(f"{event.kind} at {event.factor:.6g}" for event in path.events)))
+    facts.append(("error", _error(path.error_estimate, scene.accuracy.tolerance)))
+    return scene.title, facts
+
+
+def motion_facts(motion: Motion) -> Titled:
+    """Outcome, times, tips at the end, impacts and error of a motion."""
+    scene = motion.model.scene
+    facts = [("outcome", _outcome(motion.converged, motion.outcome.label, motion.message))]
+    if len(motion.times):
+        ends = [(f"tip of {name}", _point(motion.tip(name).position[-1])) for name in motion.model.discrete.rods]
+        facts.append(("times", f"{motion.times[0]:g} to {motion.times[-1]:g} s, {len(motion.times)} rows"))
+        facts += _first("tips", ends)
+    facts.append(("steps", str(motion.statistics.steps)))
+    if scene.obstacles:
+        facts.append(("events", str(len(motion.events))))
+    facts.append(("error", _error(motion.error_estimate, scene.motion_tolerance)))
+    return scene.title, facts
+
+
+def modes_facts(modes: Modes) -> Titled:
+    """Outcome and frequencies of modes."""
+    scene = modes.model.scene
+    facts = [("outcome", _outcome(modes.converged, modes.outcome.label, modes.message))]
+    numbered = []
+    for number, mode in enumerate(modes.modes, start=1):
+        words = f"{mode.frequency:.6g} Hz, damping ratio {mode.damping_ratio:.3g}, {mode.words}"
+        numbered.append((f"mode {number}", words))
+    facts += _first("modes", numbered)
+    known = [mode.error_estimate for mode in modes.modes if mode.error_estimate is not None]
+    facts.append(("largest error", _error(max(known, default=None), None)))
+    return scene.title, facts
+
+
+def inverse_facts(inverse: Inverse) -> Titled:
+    """Whether the targets are met, the gaps, and the inputs."""
+    title, facts = solution_facts(inverse.solution)
+    gaps = []
+    for gap in inverse.gaps:
+        angle = "" if gap.angle is None else f", {gap.angle:.3g} rad"
+        gaps.append((f"gap of {gap.what}", f"{gap.position:.3g} m{angle}"))
+    met = ("targets met", _yes(inverse.met))
+    inputs = [(name, _numbers(np.ravel(value, order="F"))) for name, value in inverse.values.items()]
+    return title, [facts[0], met, *_first("gaps", gaps), *_first("inputs", inputs), *facts[1:]]
+
+
+def identification_facts(found: Identification) -> Titled:
+    """Outcome, values with their deviations, misfit and error of an identification."""
+    scene = found.model.scene
+    facts = [("outcome", _outcome(found.converged, found.outcome, found.message))]
+    values = zip(found.labels, found.shared, found.sigma, strict=True)
+    facts += _first("unknowns", [(label, f"{value:.6g} ± {sigma:.2g}") for label, value, sigma in values])
+    facts.append(("data", f"{len(found.rows)} numbers of {len(found.cases)} cases"))
+    rms = found.rms()
+    if rms is not None:
+        facts.append(("misfit", f"{rms:.3g} standard deviations"))
+    facts.append(("error", _error(found.error_estimate, scene.accuracy.tolerance)))
+    return scene.title, facts
+
+
+def estimate_facts(found: Estimate) -> Titled:
+    """How many rows have an estimate, the median deviations of the unknowns, and the error."""
+    facts = [("outcome", found.message)]
+    values = np.where(found.found[:, None], found.sigma, np.nan)
+    for label, unit, sigma in zip(found.labels[:MOST_OF_A_KIND], found.units, values.T, strict=False):
+        typical = float(np.median(sigma[np.isfinite(sigma)])) if np.isfinite(sigma).any() else np.nan
+        facts.append((label, f"standard deviation {typical:.2g} {unit}, median of the rows"))
+    if len(found.labels) > MOST_OF_A_KIND:
+        facts.append(("unknowns", f"{len(found.labels)} in all"))
+    errors = [error for _, error in found.checked if error is not None]
+    facts.append(("error", _error(max(errors, default=None), found.model.scene.accuracy.tolerance)))
+    facts.append(("consistent", _yes(found.consistency.holds)))
+    return found.model.scene.title, facts
+
+
+def sweep_facts(sweep: Sweep) -> Titled:
+    """Rows by their outcome, columns, and the largest error of a sweep."""
+    known, largest, row = sweep.worst
+    facts = [
+        ("rows", f"{len(sweep.values)}: {_listed(f'{count} {word}' for word, count in sweep.counts.items())}"),
+        ("inputs", _listed(sweep.swept)),
+        ("results", f"{len(sweep.found)} columns, of {_listed(sweep.posed)}"),
+        ("error", _error(largest if known else None, sweep.record.get("tolerance"))),
+    ]
+    if known:
+        facts.append(("largest in", f"row {row}"))
+    return sweep.record.get("title"), facts
+
+
+def sobol_facts(indices: SobolIndices) -> Titled:
+    """Draws, and the column with the largest total index of each result."""
+    facts = [("draws", f"{indices.samples}, {indices.left_out} left out"), ("factors", _listed(indices.factors))]
+    leading = []
+    for name, estimates in indices.results.items():
+        if np.isfinite(estimates.total).all():
+            largest = int(np.argmax(estimates.total))
+            leading.append((name, f"{indices.factors[largest]} with total index {estimates.total[largest]:.3g}"))
+    return None, [*facts, *_first("results", leading)]
+
+
+def tube_facts(solution: TubeSolution) -> Titled:
+    """Outcome, tips, error and stability of an equilibrium of tubes."""
+    robot = solution.robot
+    facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
+    facts += _first("tips", [(f"tip of {name}", _point(tip.position)) for name, tip in solution.tips.items()])
+    facts.append(("error", _error(solution.error_estimate, robot.tolerance)))
+    facts.append(("stable", _stable(solution.stable, None)))
+    facts.append(("energy", f"{solution.energy:.6g} J"))
+    return robot.scene.title, facts
+
+
+def tube_equilibria_facts(equilibria: TubeEquilibria) -> Titled:
+    """Energies and stability of all equilibria."""
+    numbered = []
+    for number, solution in enumerate(equilibria.solutions, start=1):
+        stable = _stable(solution.stable, None)
+        words = f"{solution.energy:.6g} J, stable: {stable}, tip at {_point(solution.tip().position)}"
+        numbered.append((f"equilibrium {number}", words))
+    facts = [("complete", _yes(equilibria.complete)), *_first("equilibria", numbered)]
+    errors = [solution.error_estimate for solution in equilibria.solutions if solution.error_estimate is not None]
+    facts.append(("largest error", _error(max(errors, default=None), equilibria.robot.tolerance)))
+    return equilibria.robot.scene.title, facts
+
+
+def tube_path_facts(path: TubePath) -> Titled:
+    """Outcome, input, end, events and error of a path of tubes."""
+    facts = [("outcome", _outcome(path.converged, path.outcome.label, path.message)), ("input", path.name)]
+    tolerance = None
+    if path.solutions:
+        last = path.solutions[-1]
+        tolerance = last.robot.tolerance
+        facts.append(("points", f"{len(path.values)}, to {path.values[-1]:.6g} {path.unit}"))
+        facts += _first("tips", [(f"tip of {name}", _point(tip.position)) for name, tip in last.tips.items()])
+    facts.append(("events", _listed(f"{event.kind} at {event.value:.6g} {path.unit}" for event in path.events)))
+    facts.append(("error", _error(path.error_estimate, tolerance)))
+    return path.title, facts
+
+
+def _outcome(converged: bool, label: str, message: str) -> str:
+    """The outcome in a word; where it is no success, the sentence that says why."""
+    return label if converged else f"{label}: {message}"
+
+
+def _error(estimate: float | None, tolerance: float | None) -> str:
+    """An error estimate beside the tolerance."""
+    words = "not estimated" if estimate is None or np.isnan(estimate) else f"{estimate:.2g}"
+    return words if tolerance is None else f"{words}, tolerance {tolerance:.2g}"
+
+
+def _stable(stable: bool | None, eigenvalue: float | None) -> str:
+    """A verdict on stability, with the smallest eigenvalue of the second variation where it is known."""
+    if stable is None:
+        return "not judged"
+    return _yes(stable) if eigenvalue is None else f"{_yes(stable)}, smallest eigenvalue {eigenvalue:.3g} EI/ℓ"
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def _point(position: FloatArray) -> str:
+    """A position with its unit."""
+    return f"({_numbers(position)}) m"
+
+
+def _numbers(values: FloatArray) -> str:
+    """Numbers with six digits; the rest of a long list is counted."""
+    shown = ", ".join(f"{value + 0.0:.6g}" for value in values[:MOST_OF_A_KIND])
+    left_out = len(values) - MOST_OF_A_KIND
+    return f"{shown} and {left_out} more" if left_out > 0 else shown
+
+
+def _listed(words: Iterable[str]) -> str:
+    """Words in a row; the rest of a long list is counted."""
+    every = list(words)
+    left_out = len(every) - MOST_OF_A_KIND
+    shown = ", ".join(every[:MOST_OF_A_KIND]) or "none"
+    return f"{shown} and {left_out} more" if left_out > 0 else shown
+
+
+def _first(noun: str, facts: Facts) -> Facts:
+    """The first of some facts, and how many there are in all where some are left out."""
+    if len(facts) <= MOST_OF_A_KIND:
+        return facts
+    return [*facts[: MOST_OF_A_KIND - 1], (noun, f"{len(facts)} in all")]

@@ -1,0 +1,219 @@
+"""How each kind of result is presented: its plain data, the files that it can be written to, its figure, its lines.
+
+The table names functions as ``module:function``, so that a result loads the modules of its kind alone. It is the one
+place in which a kind of result is entered; :class:`cosserat_casadi.result.Result` reads it.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from html import escape
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.json_text import json_text
+
+PICTURES = (".png", ".pdf", ".svg")
+"""Suffixes of figures."""
+
+MOST_LINES = 10
+"""Lines of ``repr``."""
+
+NOTEBOOK_RESOLUTION = 72
+"""Dots per inch of the figure in a notebook."""
+
+
+@dataclass(frozen=True)
+class Presentation:
+    """How one kind of result is presented.
+
+    Attributes:
+        data: function of the result that returns its plain data, as ``module:function`` of ``cosserat_casadi``.
+        facts: function of the result that returns what matters as pairs of a label and its words.
+        figure: function of the result that returns the matplotlib figure.
+        tables: functions (result, path) that write a file, by its suffix, in addition to JSON.
+    """
+
+    data: str
+    facts: str
+    figure: str
+    tables: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Suffixes of all files that the result can be written to."""
+        return tuple(dict.fromkeys((".json", *self.tables, *PICTURES)))
+
+
+_MOTION = "results.motion_file:write_motion"
+_SWEEP = "sweeps.outcome_file:write_sweep"
+
+PRESENTATIONS = {
+    "Solution": Presentation(
+        data="results.solution_file:result",
+        facts="results.facts:solution_facts",
+        figure="plots.scene_plot:plot_solution",
+    ),
+    "EquilibriumPath": Presentation(
+        data="results.path_file:path_result",
+        facts="results.facts:path_facts",
+        figure="plots.path_plot:plot_path",
+        tables={".csv": "results.path_file:write_path_table"},
+    ),
+    "Motion": Presentation(
+        data="results.motion_file:motion_result",
+        facts="results.facts:motion_facts",
+        figure="plots.motion_plot:plot_motion",
+        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION},
+    ),
+    "Modes": Presentation(
+        data="results.modes_file:modes_result",
+        facts="results.facts:modes_facts",
+        figure="plots.modes_plot:plot_modes",
+    ),
+    "Inverse": Presentation(
+        data="results.inverse_file:inverse_result",
+        facts="results.facts:inverse_facts",
+        figure="plots.scene_plot:plot_inverse",
+    ),
+    "Identification": Presentation(
+        data="results.identification_file:identification_result",
+        facts="results.facts:identification_facts",
+        figure="plots.identification_plot:plot_identification",
+    ),
+    "Estimate": Presentation(
+        data="results.estimate_file:estimate_result",
+        facts="results.facts:estimate_facts",
+        figure="plots.estimate_plot:plot_estimate",
+        tables={".csv": "results.estimate_file:write_estimate_table"},
+    ),
+    "Sweep": Presentation(
+        data="results.sweep_data:sweep_result",
+        facts="results.facts:sweep_facts",
+        figure="plots.sweep_plot:plot_sweep",
+        tables={".csv": _SWEEP, ".parquet": _SWEEP, ".dataset": _SWEEP},
+    ),
+    "SobolIndices": Presentation(
+        data="results.sweep_data:sobol_result",
+        facts="results.facts:sobol_facts",
+        figure="plots.sobol_plot:plot_sobol",
+    ),
+    "TubeSolution": Presentation(
+        data="results.tubes_file:tubes_result",
+        facts="results.facts:tube_facts",
+        figure="plots.tubes_plot:plot_tubes",
+    ),
+    "TubeEquilibria": Presentation(
+        data="results.tubes_file:tubes_result",
+        facts="results.facts:tube_equilibria_facts",
+        figure="plots.tubes_plot:plot_tubes",
+    ),
+    "TubePath": Presentation(
+        data="results.tubes_file:tube_path_result",
+        facts="results.facts:tube_path_facts",
+        figure="plots.tubes_plot:plot_tube_path",
+        tables={".csv": "results.path_file:write_path_table"},
+    ),
+}
+"""Presentations by the class of the result; a class without an entry is presented as its base."""
+
+
+def presentation_of(result: Any) -> Presentation:
+    """The presentation of a result.
+
+    Raises:
+        TypeError: neither its class nor a base of it is in the table.
+    """
+    for kind in type(result).__mro__:
+        if kind.__name__ in PRESENTATIONS:
+            return PRESENTATIONS[kind.__name__]
+    raise TypeError(f"{type(result).__name__} has no entry in PRESENTATIONS of {__name__}")
+
+
+def data_of(result: Any) -> dict[str, Any]:
+    """Plain data of a result."""
+    data: dict[str, Any] = _function(presentation_of(result).data)(result)
+    return data
+
+
+def figure_of(result: Any) -> Any:
+    """Matplotlib figure of a result.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    return _function(presentation_of(result).figure)(result)
+
+
+def write(result: Any, path: str | Path) -> None:
+    """Write a result into a file, whole or not at all; the suffix says in which format.
+
+    Raises:
+        SceneError: this kind of result has no file with that suffix.
+        CosseratError: the format needs a package that is not installed.
+        WriteError: the file cannot be written.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    presentation = presentation_of(result)
+    if suffix in presentation.tables:
+        _function(presentation.tables[suffix])(result, file)
+    elif suffix == ".json":
+        write_atomically(file, json_text(data_of(result)).encode())
+    elif suffix in PICTURES:
+        figure = figure_of(result)
+        _function("plots.figure:write_figure")(figure, file)
+    else:
+        problem = f"{type(result).__name__} cannot be written to {file}"
+        raise SceneError(Problem("path", problem, f"use one of {', '.join(presentation.suffixes)}"))
+
+
+def text_of(result: Any) -> str:
+    """Lines for a terminal: the class with the title, and below them what matters; at most MOST_LINES."""
+    heading, facts = _facts(result)
+    width = max(len(label) for label, _ in facts)
+    lines = [heading, *(f"  {label:<{width}}  {words}" for label, words in facts)]
+    if len(lines) > MOST_LINES:
+        left_out = len(lines) - MOST_LINES + 1
+        lines = [*lines[: MOST_LINES - 1], f"  and {left_out} more lines"]
+    return "\n".join(lines)
+
+
+def html_of(result: Any) -> str:
+    """HTML for a notebook: a table of the facts and the figure, or the reason why there is none."""
+    heading, facts = _facts(result)
+    rows = [f"<tr><th>{escape(label)}</th><td>{escape(words)}</td></tr>" for label, words in facts]
+    return f"<table><caption>{escape(heading)}</caption>{''.join(rows)}</table>{_picture(result)}"
+
+
+def _picture(result: Any) -> str:
+    """The figure as an image inside the page; a sentence where it cannot be drawn."""
+    try:
+        figure = figure_of(result)
+    except CosseratError as error:
+        return f"<p>{escape(str(error))}</p>"
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=NOTEBOOK_RESOLUTION)
+    encoded = base64.b64encode(content.getvalue()).decode()
+    return f'<img alt="figure" src="data:image/png;base64,{encoded}"/>'
+
+
+def _facts(result: Any) -> tuple[str, list[tuple[str, str]]]:
+    """The class with the title of the scene where it has one; labels and words."""
+    title, facts = _function(presentation_of(result).facts)(result)
+    kind = type(result).__name__
+    heading = f"{kind}: {title}" if title else kind
+    return heading, facts
+
+
+def _function(place: str) -> Callable[..., Any]:
+    """A function of the package by its place, ``module:function``."""
+    module, name = place.split(":")
+    function: Callable[..., Any] = getattr(import_module(f"cosserat_casadi.{module}"), name)
+    return function

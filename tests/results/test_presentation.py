@@ -1,0 +1,286 @@
+"""Every result is plain data, a file, a figure and a few lines: held for each public class of results."""
+
+from __future__ import annotations
+
+import builtins
+import inspect
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import cosserat_casadi
+import cosserat_casadi.control
+import cosserat_casadi.estimation
+from cosserat_casadi import (
+    Outcome,
+    Sweep,
+    build,
+    discretise,
+    follow,
+    identify,
+    inverse,
+    modes_of,
+    read_scene,
+    solve,
+)
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.estimation import Estimate
+from cosserat_casadi.estimation.consistency import Consistency
+from cosserat_casadi.result import Result
+from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, presentation_of
+from cosserat_casadi.scene import scene_from_dict
+from cosserat_casadi.sweeps.outcome_file import read_sweep
+from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
+from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+from cosserat_casadi.tubes.tube_path import TubePath
+from cosserat_casadi.tubes.tube_solve import solve_tubes
+from tests.conftest import ROOT
+from tests.identification.made_up import WIRE, measured_shapes
+from tests.motions import planar_swing, without_start
+from tests.scenes import push, scene
+
+
+@cache
+def solution() -> Any:
+    """A rod under a force."""
+    bent = scene(push(), title="Bent <rod>")
+    return solve(build(bent, discretise(bent, 3, 6)))
+
+
+@cache
+def tube_solution() -> Any:
+    return solve_tubes(read_scene(ROOT / "examples" / "concentric_tubes.toml"))
+
+
+@cache
+def path() -> Any:
+    return follow(solution().model, "push.force", [1.0, 0.5, -0.4])
+
+
+@cache
+def inverse_of_a_tip() -> Any:
+    target = {"kind": "position", "rod": "rod", "position": solution().tip().position[0].tolist()}
+    aimed = scene(push(force=[0.7, 0.4, -0.3]), inputs=["push.force"], targets=[target])
+    return inverse(build(aimed, discretise(aimed, 3, 6)), estimate_error=False)
+
+
+@cache
+def identification() -> Any:
+    model = build(scene_from_dict(WIRE).with_unknowns())
+    shapes = measured_shapes(model, np.random.default_rng(16), cases=2, noise=2e-4)
+    return identify(model, shapes.data)
+
+
+@cache
+def estimate() -> Estimate:
+    """An estimate of two rows, of which one was found, written by hand."""
+    model = solution().model
+    consistency = Consistency(
+        squares=3.0, freedom=3, deviations=0.1, row_deviations=np.array([0.1, np.nan]), bias={"tip": 0.5}
+    )
+    return Estimate(
+        model=model,
+        cases=("row 1", "row 2"),
+        labels=("push.force.x", "push.force.y"),
+        units=("N", "N"),
+        outcomes=("found", "not_determined"),
+        values=np.array([[0.9, 0.5], [np.nan, np.nan]]),
+        covariance=np.array([[[0.01, 0.001], [0.001, 0.02]], np.full((2, 2), np.nan)]),
+        cost=np.array([1.5, np.nan]),
+        numbers=np.array([3, 3]),
+        x=np.stack([solution().x, solution().x]),
+        inputs=np.stack([solution().inputs, solution().inputs]),
+        parameters=np.zeros((2, 0)),
+        second=None,
+        unseen={},
+        consistency=consistency,
+        checked=((0, 1e-8),),
+    )
+
+
+@cache
+def sweep() -> Sweep:
+    """Three rows, of which one has no equilibrium, written by hand."""
+    poses = [f"rod.{axis}" for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+    rows = [
+        [0.0, 4.0, 1e-9, 1.0, 0.0, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0],
+        [0.5, 5.0, 2e-9, 1.0, 0.3, 0.1, 0.7, 1.0, 0.0, 0.0, 0.0],
+        [1.0, 60.0, *[np.nan] * 9],
+    ]
+    record = {"sweep": 1, "title": "Three rows", "tolerance": 1e-6}
+    columns = ("iterations", "error_estimate", "within_tolerance", *poses)
+    return Sweep(("push.force.x",), columns, np.array(rows), np.array([0, 0, 1]), record)
+
+
+def sobol() -> SobolIndices:
+    estimates = Estimates(
+        mean=0.4,
+        variance=0.01,
+        first=np.array([0.7, 0.2]),
+        total=np.array([0.8, 0.3]),
+        first_interval=np.array([[0.6, 0.8], [0.1, 0.3]]),
+        total_interval=np.array([[0.7, 0.9], [0.2, 0.4]]),
+    )
+    return SobolIndices(("push.force.x", "rod.length"), {"rod.x": estimates}, samples=64, left_out=1)
+
+
+def tube_equilibria() -> TubeEquilibria:
+    return TubeEquilibria(tube_solution().robot, (tube_solution(),), complete=True)
+
+
+def tube_path() -> TubePath:
+    ends = (tube_solution(), tube_solution())
+    name = next(iter(tube_solution().robot.columns))
+    return TubePath("Tubes", name, "rad", path().outcome, np.array([0.0, 1.0]), ends, (), 1e-8)
+
+
+MAKERS: dict[str, Callable[[], Any]] = {
+    "Solution": solution,
+    "EquilibriumPath": path,
+    "Motion": cache(planar_swing),
+    "Modes": cache(lambda: modes_of(solution(), count=2)),
+    "Inverse": inverse_of_a_tip,
+    "Identification": identification,
+    "Estimate": estimate,
+    "Sweep": sweep,
+    "SobolIndices": sobol,
+    "TubeSolution": tube_solution,
+    "TubeEquilibria": tube_equilibria,
+    "TubePath": tube_path,
+}
+"""A result of each public class."""
+
+NO_RESULTS = {
+    "Choice",
+    "Collocation",
+    "Compiled",
+    "Condensed",
+    "Condensing",
+    "Discretisation",
+    "Horizon",
+    "Lifted",
+    "LinearModel",
+    "Model",
+    "MotionStage",
+    "Problem",
+    "Scene",
+    "StageEquations",
+    "TargetMiss",
+}
+"""Public classes that are inputs, models, compiled solvers, or parts of results."""
+
+
+def public_classes() -> dict[str, type]:
+    """Public classes by name, without errors and outcomes."""
+    classes = {}
+    for module in (cosserat_casadi, cosserat_casadi.control, cosserat_casadi.estimation):
+        for name in module.__all__:
+            value = getattr(module, name)
+            if inspect.isclass(value) and not issubclass(value, Exception | Enum):
+                classes[name] = value
+    return classes
+
+
+def test_every_public_class_is_a_result_or_known_to_be_none() -> None:
+    results = {name for name, kind in public_classes().items() if issubclass(kind, Result)}
+    assert set(public_classes()) - results == NO_RESULTS
+    assert results == set(PRESENTATIONS) == set(MAKERS)
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_plain_data(name: str) -> None:
+    result = MAKERS[name]()
+    data = result.to_dict()
+    assert data["schema"] == 1
+    assert json.loads(json.dumps(data, allow_nan=False)) == data
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_written_by_suffix(name: str, tmp_path: Path) -> None:
+    result = MAKERS[name]()
+    for suffix in presentation_of(result).suffixes:
+        if suffix == ".json" or suffix not in (".pdf", ".svg"):
+            file = tmp_path / f"result{suffix}"
+            result.write(str(file))
+            assert file.exists(), suffix
+    assert json.loads((tmp_path / "result.json").read_text(encoding="utf-8")) == result.to_dict()
+    with pytest.raises(SceneError, match=rf"{name} cannot be written to .*result\.docx \(use one of \.json"):
+        result.write(tmp_path / "result.docx")
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_says_what_matters_in_a_few_lines(name: str) -> None:
+    result = MAKERS[name]()
+    lines = repr(result).splitlines()
+    assert lines[0].split(": ")[0] == name
+    assert len(lines) <= MOST_LINES
+    assert all(len(line) <= 120 for line in lines)
+    assert "<" not in repr(result).replace("<rod>", "")
+    # The error stands beside its tolerance; indices of a sweep have intervals instead.
+    assert any("error" in line for line in lines) or name == "SobolIndices"
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_notebook_shows_table_and_figure(name: str) -> None:
+    result = MAKERS[name]()
+    assert isinstance(result.plot(), Figure)
+    page = result._repr_html_()
+    assert page.startswith("<table><caption>")
+    assert page.count("<tr>") >= 2
+    assert '<img alt="figure" src="data:image/png;base64,' in page
+
+
+def test_words_are_no_markup() -> None:
+    assert "Bent &lt;rod&gt;" in solution()._repr_html_()
+    assert repr(solution()).startswith("Solution: Bent <rod>\n")
+
+
+def test_without_matplotlib_a_notebook_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    imported = builtins.__import__
+
+    def no_matplotlib(name: str, *arguments: Any, **named: Any) -> Any:
+        if name.startswith("matplotlib"):
+            raise ImportError(name)
+        return imported(name, *arguments, **named)
+
+    monkeypatch.setattr(builtins, "__import__", no_matplotlib)
+    page = solution()._repr_html_()
+    assert "pip install" in page
+    assert "cosserat-casadi[plot]" in page
+    with pytest.raises(cosserat_casadi.CosseratError, match=r"cosserat-casadi\[plot\]"):
+        solution().plot()
+
+
+def test_a_long_result_is_cut() -> None:
+    rods = [{"name": f"rod{k}", "length": 0.8, "strain": "planar", "stiffness": {"bending_y": 1.0}} for k in range(6)]
+    many = scene_from_dict({"schema": 1, "rods": rods})
+    lines = repr(solve(build(many, discretise(many, 1, 2)))).splitlines()
+    assert lines[5].split() == ["tips", "6", "in", "all"]
+
+
+def test_a_failure_says_why() -> None:
+    failed = replace(solution(), outcome=Outcome.LOAD_STALLED, message="The load stalled.")
+    assert "load_stalled: The load stalled." in repr(failed)
+    assert "no_start: " in repr(without_start())
+
+
+def test_a_sweep_that_was_written_is_read(tmp_path: Path) -> None:
+    sweep().write(tmp_path / "rows.csv")
+    again = read_sweep(tmp_path / "rows.csv")
+    assert repr(again) == repr(sweep())
+
+
+def test_a_class_without_presentation_is_told() -> None:
+    class Lost(Result):
+        pass
+
+    with pytest.raises(TypeError, match="Lost has no entry in PRESENTATIONS"):
+        Lost().to_dict()
