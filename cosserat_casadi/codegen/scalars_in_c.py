@@ -290,7 +290,7 @@ class _Writing:
             return
         if isinstance(value, Read):
             entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : {self.arithmetic.number(0.0)}"
-            self.main.statements.append(Statement(f"{{made}} = {entry};", [], number))
+            self.main.statements.append(Statement(entry, [], number))
         elif isinstance(value, Computed):
             self.main.statements.append(self.arithmetic.operation(value.operation, value.operands, number))
         if number in self.place:
