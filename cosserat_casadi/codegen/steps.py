@@ -36,7 +36,6 @@ WORTH_SPLITTING = 0.2
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
 SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
-MAPS = {"Map", "MapSum"}
 ADDING = {ca.OP_SETNONZEROS, ca.OP_ADDNONZEROS}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
@@ -125,7 +124,7 @@ class _Reading:
             function = node.which_function()
             if function.is_a("MXFunction"):
                 return self._read(function, operands)
-            if function.class_name() in MAPS:
+            if function.class_name() == "Map":
                 return self._mapped(function, operands)
             if not function.is_a("SXFunction"):
                 raise UnknownInstructionError
@@ -146,39 +145,19 @@ class _Reading:
         return self._step(scalar, operands, _length(scalar), called=True)
 
     def _mapped(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
-        """Results of a function that is called for one group of columns after the other.
-
-        Arguments as wide as those of a single call are the same in all calls, such results are sums over them.
-
-        Raises:
-            UnknownInstructionError: CasADi does not say which function that is.
-        """
+        """Results of a function that is called for one group of columns after the other."""
         facts = function.info()
-        # CasADi 3.7 does not say which function a map with sums calls.
-        inside = [facts["f"]] if "f" in facts else function.find_functions(0)
-        if not inside:
-            raise UnknownInstructionError
-        one = inside[0]
-        widths = [*map(function.size2_in, range(one.n_in())), *map(function.size2_out, range(one.n_out()))]
-        own_widths = [*map(one.size2_in, range(one.n_in())), *map(one.size2_out, range(one.n_out()))]
-        count = max(whole // own for whole, own in zip(widths, own_widths, strict=True) if own)
+        one = facts["f"]
         calls = []
-        for k in range(count):
+        for k in range(facts["n"]):
             given = []
             for i, operand in enumerate(operands):
                 size = one.nnz_in(i)
-                first = k * size if len(operand.numbers) > size else 0
-                given.append(Value(one.sparsity_in(i), operand.numbers[first : first + size]))
+                given.append(Value(one.sparsity_in(i), operand.numbers[k * size : (k + 1) * size]))
             calls.append(self._called(one, given))
         results = []
         for i in range(one.n_out()):
-            columns = [call[i].numbers for call in calls]
-            if function.size2_out(i) > one.size2_out(i):
-                numbers = np.concatenate(columns)
-            else:
-                numbers = columns[0]
-                for column_of_call in columns[1:]:
-                    numbers = self._sum(ca.OP_ADD, numbers, column_of_call)
+            numbers = np.concatenate([call[i].numbers for call in calls])
             results.append(Value(function.sparsity_out(i), numbers))
         return results
 
