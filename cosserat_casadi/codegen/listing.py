@@ -122,6 +122,11 @@ class Listing:
             return self.calls[value.call].operands
         return []
 
+    @property
+    def has_fours(self) -> bool:
+        """Whether all operations have a form in fours."""
+        return all(value.operation in BINARY for value in self.values if isinstance(value, Computed))
+
     def wanted(self) -> Iterator[int]:
         """Numbers of the values that are results, output after output."""
         for output in self.outputs:

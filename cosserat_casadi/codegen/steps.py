@@ -2,6 +2,8 @@
 
 * What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
   into order when a step asks for them.
+* Of a constant matrix times a constant matrix times what is computed, the two constants are multiplied beforehand where
+  that leaves fewer products: matrices that fold and unfold symmetric ones are worth it without loops alone.
 * A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
   routine of products.py runs along them without looking anything up.
 """
@@ -62,6 +64,7 @@ class _Reading:
         self.origins = Origins()
         self.steps: list[Step] = []
         self._ordered = set[bytes]()
+        self._factors_of: dict[tuple[tuple[int, int], bytes], tuple[Value, Value]] = {}
         self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
         self.outputs = self._read(function, self.inputs)
 
@@ -247,6 +250,14 @@ class _Reading:
 
     def _product(self, added: Value, left: Value, right: Value) -> Value:
         """The sum added + left right."""
+        left, right = self._with_constants_multiplied(left, right)
+        result = self._product_of(added, left, right)
+        if not added.numbers.any():
+            self._factors_of[result.pattern.shape, result.numbers.tobytes()] = left, right
+        return result
+
+    def _product_of(self, added: Value, left: Value, right: Value) -> Value:
+        """The sum added + left right, in the quickest way."""
         turned_left = left.transposed
         turned_right = right.transposed.dense
         along_rows = self._time(turned_right, turned_left)
@@ -257,6 +268,42 @@ class _Reading:
             turned = self._multiplied(added.transposed.dense, turned_right, turned_left)
             return turned.transposed.projected(added.pattern)
         return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
+
+    def _with_constants_multiplied(self, left: Value, right: Value) -> tuple[Value, Value]:
+        """Factors of the same product, of which the constant one may have taken in a constant factor of the other."""
+        if self._is_constant(left):
+            inner = self._factors(right)
+            if inner is not None and self._is_constant(inner[0]):
+                return self._taken_in(left, inner[0], right, inner[1])
+        elif self._is_constant(right):
+            turned_right, turned_left = self._with_constants_multiplied(right.transposed, left.transposed)
+            return turned_left.transposed, turned_right.transposed
+        return left, right
+
+    def _taken_in(self, outer: Value, inner: Value, right: Value, factor: Value) -> tuple[Value, Value]:
+        """Factors of outer (inner factor), which are outer and right, or one constant and the factor."""
+        product = self._matrix(outer) @ self._matrix(inner)
+        before = _multiplications(outer.dense, right) + _multiplications(inner.dense, factor)
+        if product.nnz() * factor.pattern.size2() > before:
+            return outer, right
+        return self.origins.add(product.sparsity(), product.nonzeros()), factor
+
+    def _factors(self, value: Value) -> tuple[Value, Value] | None:
+        """Factors of a matrix that is a product, or the transpose of one; None of any other."""
+        turned = value.transposed
+        if (value.pattern.shape, value.numbers.tobytes()) in self._factors_of:
+            return self._factors_of[value.pattern.shape, value.numbers.tobytes()]
+        if (turned.pattern.shape, turned.numbers.tobytes()) in self._factors_of:
+            left, right = self._factors_of[turned.pattern.shape, turned.numbers.tobytes()]
+            return right.transposed, left.transposed
+        return None
+
+    def _is_constant(self, value: Value) -> bool:
+        return bool(np.all(self.origins.is_constant(value.numbers)))
+
+    def _matrix(self, value: Value) -> ca.DM:
+        """A constant matrix."""
+        return ca.DM(value.pattern, self.origins.constants(value.numbers))
 
     def _multiplied(self, added: Value, left: Value, right: Value) -> Value:
         operands = [left, right]

@@ -1567,7 +1567,7 @@ static void MADE(follower_reissner_k_jacobian_part_3)(const casadi_real **arg, c
   w[873] = w[1534] * w[1563] - w[1535] * w[1561];
   w[874] = w[1535] * w[1574] - w[1533] * w[1563];
   w[875] = w[1533] * w[1561] - w[1534] * w[1574];
-  MADE(follower_reissner_k_jacobian_columns)(w, follower_reissner_k_jacobian_turns + 0, w + 921, w + 1125, 3);
+  MADE(follower_reissner_k_jacobian_columns)(w, follower_reissner_kernels_table_0 + 0, w + 921, w + 1125, 3);
   res[0][0] = 1.0 + w[921];
   res[0][1] = w[933];
   res[0][2] = w[945];

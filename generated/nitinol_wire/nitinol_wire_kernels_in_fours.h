@@ -1405,7 +1405,7 @@ static void MADE(nitinol_wire_k_jacobian_part_2)(const casadi_real **arg, casadi
   w[733] = w[1334] * w[1327];
   w[734] = w[1324] * w[1327];
   w[735] = a11 + a8;
-  MADE(nitinol_wire_k_jacobian_columns)(w, nitinol_wire_k_jacobian_turns + 0, w + 859, w + 915, 2);
+  MADE(nitinol_wire_k_jacobian_columns)(w, nitinol_wire_kernels_table_0 + 0, w + 859, w + 915, 2);
   res[0][0] = 0.9999999999999999 + w[859];
   res[0][1] = w[860];
   res[0][2] = w[861];

@@ -319,7 +319,7 @@ static int MADE(planar_strip_k_jacobian)(const casadi_real **arg, casadi_real **
   w[217] = a39 * a31 + a40 * a11;
   w[218] = a47 * a34 + a46 * a0;
   w[219] = a44 * a37 + a43 * a52;
-  MADE(planar_strip_k_jacobian_columns)(w, planar_strip_k_jacobian_turns + 0, w + 220, w + 236, 1);
+  MADE(planar_strip_k_jacobian_columns)(w, planar_strip_kernels_table_0 + 0, w + 220, w + 236, 1);
   res[0][0] = 1.0 + w[220];
   res[0][1] = w[221];
   res[0][2] = w[222];

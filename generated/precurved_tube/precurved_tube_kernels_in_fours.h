@@ -1648,7 +1648,7 @@ static void MADE(precurved_tube_k_jacobian_part_3)(const casadi_real **arg, casa
   w[760] = w[1539] * w[1696];
   w[761] = w[1537] * w[1696];
   w[762] = a7 + a4;
-  MADE(precurved_tube_k_jacobian_columns)(w, precurved_tube_k_jacobian_turns + 0, w + 922, w + 1130, 4);
+  MADE(precurved_tube_k_jacobian_columns)(w, precurved_tube_kernels_table_0 + 0, w + 922, w + 1130, 4);
   res[0][0] = 1.0 + w[922];
   res[0][1] = w[938];
   res[0][2] = w[954];
