@@ -234,7 +234,7 @@ typedef struct {
   six_rod_platform_real changes[50];
   six_rod_platform_real fewer[168];
   six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 168];
-  six_rod_platform_real kernel_reals[8524];
+  six_rod_platform_real kernel_reals[4554];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 
