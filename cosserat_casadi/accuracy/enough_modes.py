@@ -32,7 +32,7 @@ MODES_SHARE = 0.6
 GRID_SHARE = 0.25
 """Share of the tolerance that the grid may leave."""
 
-MOST_ADDED = ((100.0, 4), (10.0, 2))
+MOST_ADDED = ((100.0, 3), (10.0, 2))
 """Errors over the tolerance, and the modes that a strain may gain in one step beyond each; one below them.
 
 The nearer an answer is, the better is known which modes it lacks, and the more a mode to spare would weigh.
