@@ -10,6 +10,12 @@ from cosserat_casadi.model.watched import watched_owners
 
 ERROR_FILES = ("solver_error.c",)
 
+STEPS_OF_ESTIMATE = 2
+"""Steps that the estimate takes into the updates of the Jacobian that Newton has left: one completes them."""
+
+FOLLOWED = 0.5
+"""Length of the second step over that of the first, up to which the Jacobian that Newton has left is believed."""
+
 KERNEL = "richer_balance"
 """The kernel that a library has which estimates errors."""
 
@@ -41,6 +47,7 @@ def error_words(model: Model, names: Names) -> Words:
         "error_sweeps": answer_error.MOST_SWEEPS,
         "error_safety": answer_error.SAFETY,
         "error_settled": answer_error.SETTLED,
+        "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,
         "error_enough": answer_error.enough_for(tolerance),
         "error_fastest": answer_error.FASTEST,

@@ -232,11 +232,26 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         known = known + step
         missing = missing + missing_step
         _, next_step, residual = balance_lacks(solution, known, missing)
-        known = known - inverse @ residual
+        known = known + _following(solution, inverse, residual)
         # What the missing modes would do next tells of the first step whether they bounce.
         contracts = before is not None or _contracts(missing_step, next_step)
         yield _corrected(solution, known, missing, contracts=contracts)
         before = missing_step
+
+
+def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:
+    """How the unknowns of an answer follow missing modes: by two steps, the second from the answer's own equations.
+
+    In C the Jacobian is that which the solver has left, and the second step makes up for its age.
+
+    Args:
+        solution: the answer.
+        inverse: of its Jacobian.
+        residual: that the missing modes leave.
+    """
+    first = -inverse @ residual
+    left = residual + column(solution.model.path_residual(solution.x + first, solution.inputs, 1.0))
+    return first - inverse @ left
 
 
 def _contracts(before: FloatArray, step: FloatArray) -> bool:

@@ -36,12 +36,12 @@ int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
 #define nitinol_wire_k_richer_balance_SZ_IW 0
-#define nitinol_wire_k_richer_balance_SZ_W 1298
+#define nitinol_wire_k_richer_balance_SZ_W 738
 int nitinol_wire_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_richer_changes_SZ_ARG 4
 #define nitinol_wire_k_richer_changes_SZ_RES 1
 #define nitinol_wire_k_richer_changes_SZ_IW 0
-#define nitinol_wire_k_richer_changes_SZ_W 631
+#define nitinol_wire_k_richer_changes_SZ_W 408
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3

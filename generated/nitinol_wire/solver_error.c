@@ -26,18 +26,46 @@ static real next_missing_step(const real *x, const real *inputs, workspace *work
   return norm_of_missing(work->balance + N);
 }
 
+/* Completes the updates of the Jacobian that Newton has left at x, where no step has followed the last one yet. A step of
+   infinite length in the place of the next makes no update: steps that come behind it begin anew. */
+static void close_updates(const real *x, const loads *at, updated_jacobian *jacobian, workspace *work) {
+  if (jacobian->count == 0) return;
+  residual_at(x, at, work->trial_residual, work);
+  (void)newton_step(jacobian, work->trial_residual, place_of_step(jacobian), work);
+  append_step(jacobian, INFINITY);
+}
+
+/* Lets the unknowns of the answer follow the missing modes, which leave this residual: by a step with the Jacobian at hand,
+   and a second one from what the equations of the answer say after the first. What both do to a tip nearly cancels what the
+   missing modes do, and one step with an old Jacobian is not exact enough. Returns the length of the second step over that
+   of the first. */
+static real follow_missing(const real *x, const loads *at, const real *residual, updated_jacobian *jacobian,
+                           workspace *work) {
+  real *first = place_of_step(jacobian);
+  real *second = work->correction;
+  const real first_square = newton_step(jacobian, residual, first, work);
+  append_step(jacobian, first_square);
+  for (int i = 0; i < N; i++) work->trial[i] = x[i] + first[i];
+  residual_at(work->trial, at, work->trial_residual, work);
+  for (int i = 0; i < N; i++) work->trial_residual[i] += residual[i];
+  const real second_square = newton_step(jacobian, work->trial_residual, second, work);
+  jacobian->count--;
+  for (int i = 0; i < N; i++) work->known_correction[i] += first[i] + second[i];
+  return first_square > 0 ? SQUARE_ROOT(second_square / first_square) : 0;
+}
+
 /* One sweep of the corrections in the workspace, from the balance that is there. Returns the change of what is watched, and
    sets next to the length of the step that the missing modes would make before the unknowns of the answer follow. */
-static real sweep(const real *x, const real *inputs, const updated_jacobian *jacobian, real *next, workspace *work) {
+static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian, real *next, real *shortening,
+                  workspace *work) {
+  const loads at = full_load(inputs);
   const real *elastic_step = work->balance;
   const real *missing_step = elastic_step + N;
   const real *residual = missing_step + MISSING;
-  real *step = work->correction;
   for (int i = 0; i < N; i++) work->known_correction[i] += elastic_step[i];
   for (int i = 0; i < MISSING; i++) work->missing[i] += missing_step[i];
   *next = next_missing_step(x, inputs, work);
-  apply_inverse(jacobian, residual, step, work);
-  for (int i = 0; i < N; i++) work->known_correction[i] += step[i];
+  *shortening = follow_missing(x, &at, residual, jacobian, work);
   return richer_change_at(x, work->known_correction, work->missing, inputs, work);
 }
 
@@ -54,23 +82,30 @@ static real rest_of_series(const real *x, const real *inputs, real change, works
   return last * ratio / (1 - ratio);
 }
 
-/* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. What the corrections do to
-   a tip nearly cancels, so that the Jacobian is made anew: that of the last Newton step is not exact enough. */
-static real estimated_error(const real *x, const real *inputs, workspace *work) {
-  updated_jacobian *jacobian = work->updated_jacobians;
+/* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */
+static real estimated_error(const real *x, const real *inputs, updated_jacobian *jacobian, workspace *work) {
   const loads at = full_load(inputs);
+  const int is_old = jacobian != 0;
   real change_before = -1;
   real step_before = -1;
-  jacobian->count = 0;
-  if (!linearise(x, &at, &jacobian->factors, work)) return 1;
+  if (is_old) {
+    close_updates(x, &at, jacobian, work);
+  } else {
+    jacobian = work->updated_jacobians;
+    jacobian->count = 0;
+    if (!linearise(x, &at, &jacobian->factors, work)) return 1;
+  }
   memset(work->known_correction, 0, sizeof work->known_correction);
   memset(work->missing, 0, sizeof work->missing);
   for (int k = 0; k < ERROR_SWEEPS; k++) {
     real next;
+    real shortening;
     const real step = next_missing_step(x, inputs, work);
     const int is_first = k == 0;
     if (!is_first && !contracts(step_before, step)) break;
-    const real change = sweep(x, inputs, jacobian, &next, work);
+    const real change = sweep(x, inputs, jacobian, &next, &shortening, work);
+    /* An old Jacobian that is far from that of the answer tells nothing. */
+    if (is_old && !(shortening <= ERROR_FOLLOWED)) return estimated_error(x, inputs, 0, work);
     if (!isfinite(change)) break;
     const int settled = !is_first && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
     if (settled) {
@@ -90,6 +125,6 @@ solver_status solver_error_estimate(const real *inputs, const real *x, real *err
   if (!all_finite(inputs, INPUTS) || !isfinite(size)) return SOLVER_NOT_FINITE;
   residual_at(x, &at, work->trial_residual, work);
   if (!(norm_of(work->trial_residual) <= 10 * TOLERANCE * size)) return SOLVER_NOT_IN_EQUILIBRIUM;
-  *error_estimate = estimated_error(x, inputs, work);
+  *error_estimate = estimated_error(x, inputs, 0, work);
   return SOLVER_CONVERGED;
 }

@@ -79,7 +79,7 @@ static solver_status with_paths(solver_status end, const real *x, const real *in
 }
 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */
-static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 0, 1, 1};
+static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1};
 
 /* Elastic steps of unknowns and missing coordinates, and the residual in the unknowns, one behind the other. */
 static void richer_balance_at(const real *x, const real *correction, const real *missing, const real *inputs, real *balance,

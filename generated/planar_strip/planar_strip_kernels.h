@@ -36,12 +36,12 @@ int planar_strip_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define planar_strip_k_richer_balance_SZ_ARG 4
 #define planar_strip_k_richer_balance_SZ_RES 1
 #define planar_strip_k_richer_balance_SZ_IW 0
-#define planar_strip_k_richer_balance_SZ_W 410
+#define planar_strip_k_richer_balance_SZ_W 293
 int planar_strip_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_richer_changes_SZ_ARG 4
 #define planar_strip_k_richer_changes_SZ_RES 1
 #define planar_strip_k_richer_changes_SZ_IW 0
-#define planar_strip_k_richer_changes_SZ_W 131
+#define planar_strip_k_richer_changes_SZ_W 96
 int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_igm_SZ_ARG 4
 #define planar_strip_k_igm_SZ_RES 3

@@ -36,12 +36,12 @@ int precurved_tube_k_richer_balance(const casadi_real** arg, casadi_real** res, 
 #define precurved_tube_k_richer_balance_SZ_ARG 4
 #define precurved_tube_k_richer_balance_SZ_RES 1
 #define precurved_tube_k_richer_balance_SZ_IW 0
-#define precurved_tube_k_richer_balance_SZ_W 1439
+#define precurved_tube_k_richer_balance_SZ_W 851
 int precurved_tube_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_richer_changes_SZ_ARG 4
 #define precurved_tube_k_richer_changes_SZ_RES 1
 #define precurved_tube_k_richer_changes_SZ_IW 0
-#define precurved_tube_k_richer_changes_SZ_W 731
+#define precurved_tube_k_richer_changes_SZ_W 585
 int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_igm_SZ_ARG 4
 #define precurved_tube_k_igm_SZ_RES 3

@@ -56,12 +56,12 @@ int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1
 #define six_rod_platform_k_richer_balance_SZ_IW 0
-#define six_rod_platform_k_richer_balance_SZ_W 8523
+#define six_rod_platform_k_richer_balance_SZ_W 4640
 int six_rod_platform_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_richer_changes_SZ_ARG 4
 #define six_rod_platform_k_richer_changes_SZ_RES 1
 #define six_rod_platform_k_richer_changes_SZ_IW 0
-#define six_rod_platform_k_richer_changes_SZ_W 3891
+#define six_rod_platform_k_richer_changes_SZ_W 2811
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_1_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_1_SZ_RES 3
