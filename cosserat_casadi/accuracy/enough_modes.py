@@ -17,9 +17,9 @@ from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
 from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
     SAFETY,
-    balance_lacks,
     believed_correction,
-    largest_change,
+    change_with_following,
+    richer_balance,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -135,10 +135,8 @@ class _Lack:
     def _change(self, missing: FloatArray) -> float:
         """Change of what is watched by missing modes, which the unknowns of the answer follow, and by a finer grid."""
         none = np.zeros(self.solution.model.size)
-        _, _, residual = balance_lacks(self.solution, none, missing)
-        follow = -self._inverse @ residual
-        change = largest_change(self.solution, follow, missing)
-        return change if np.isfinite(change) else np.inf
+        balance = richer_balance(self.solution, none, missing)
+        return change_with_following(self.solution, balance, -self._inverse @ balance.residual)
 
     @cached_property
     def _inverse(self) -> FloatArray:

@@ -63,8 +63,9 @@ static const follower_reissner_real MAX_CURVATURE_SHARE = (follower_reissner_rea
 static const follower_reissner_real FIRST_STEP = (follower_reissner_real)1.0;
 static const follower_reissner_real SAME_BRANCH = (follower_reissner_real)0.5;
 #define solver_error_estimate follower_reissner_error_estimate
-#define SOLVER_MISSING 25
-#define SOLVER_WATCHED 2
+#define SOLVER_MISSING 18
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const follower_reissner_real ERROR_SAFETY = (follower_reissner_real)1.1;
 static const follower_reissner_real ERROR_SETTLED = (follower_reissner_real)0.2;

@@ -122,8 +122,8 @@ typedef struct {
 
 typedef struct {
   planar_strip_jacobian_factors factors;
-  planar_strip_real steps[14][PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real squares[14];
+  planar_strip_real steps[13][PLANAR_STRIP_UNKNOWNS];
+  planar_strip_real squares[13];
   int count;
 } planar_strip_updated_jacobian;
 
@@ -152,9 +152,10 @@ typedef struct {
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
   planar_strip_real known_correction[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real missing[3];
-  planar_strip_real changes[2];
   planar_strip_real fewer[3];
-  planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3];
+  planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3 + 7];
+  planar_strip_real watched[7];
+  planar_strip_real watched_after[7];
   planar_strip_real kernel_reals[307];
   int kernel_integers[1];
 } planar_strip_workspace;

@@ -124,8 +124,8 @@ typedef struct {
 
 typedef struct {
   precurved_tube_jacobian_factors factors;
-  precurved_tube_real steps[14][PRECURVED_TUBE_UNKNOWNS];
-  precurved_tube_real squares[14];
+  precurved_tube_real steps[13][PRECURVED_TUBE_UNKNOWNS];
+  precurved_tube_real squares[13];
   int count;
 } precurved_tube_updated_jacobian;
 
@@ -154,9 +154,10 @@ typedef struct {
   precurved_tube_real d_pose_d_x[7 * PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real known_correction[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real missing[9];
-  precurved_tube_real changes[2];
   precurved_tube_real fewer[9];
-  precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9];
+  precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
+  precurved_tube_real watched[7];
+  precurved_tube_real watched_after[7];
   precurved_tube_real kernel_reals[1705];
   int kernel_integers[1];
 } precurved_tube_workspace;

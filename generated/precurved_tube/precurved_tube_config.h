@@ -64,7 +64,8 @@ static const precurved_tube_real FIRST_STEP = (precurved_tube_real)1.0;
 static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
 #define solver_error_estimate precurved_tube_error_estimate
 #define SOLVER_MISSING 9
-#define SOLVER_WATCHED 2
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.1;
 static const precurved_tube_real ERROR_SETTLED = (precurved_tube_real)0.2;

@@ -144,8 +144,8 @@ typedef struct {
 
 typedef struct {
   tendon_robot_jacobian_factors factors;
-  tendon_robot_real steps[14][TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real squares[14];
+  tendon_robot_real steps[13][TENDON_ROBOT_UNKNOWNS];
+  tendon_robot_real squares[13];
   int count;
 } tendon_robot_updated_jacobian;
 
@@ -174,9 +174,10 @@ typedef struct {
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real known_correction[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real missing[18];
-  tendon_robot_real changes[6];
   tendon_robot_real fewer[18];
-  tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 18];
+  tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 18 + 11];
+  tendon_robot_real watched[11];
+  tendon_robot_real watched_after[11];
   tendon_robot_real kernel_reals[2232];
   int kernel_integers[1];
 } tendon_robot_workspace;
