@@ -78,6 +78,10 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   real *first = place_of_step(jacobian);
   real *second = work->correction;
   const real first_square = newton_step(jacobian, residual, first, work);
+  if (first_square == 0) {
+    memset(work->correction, 0, sizeof work->correction);
+    return 0;
+  }
   append_step(jacobian, first_square);
   for (int i = 0; i < N; i++) work->trial[i] = x[i] + first[i];
   residual_at(work->trial, at, work->trial_residual, work);
@@ -85,7 +89,7 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   const real second_square = newton_step(jacobian, work->trial_residual, second, work);
   jacobian->count--;
   for (int i = 0; i < N; i++) work->correction[i] += first[i];
-  return first_square > 0 ? SQUARE_ROOT(second_square / first_square) : 0;
+  return SQUARE_ROOT(second_square / first_square);
 }
 
 /* The change of what is watched by the corrections in the workspace, whose balance is there, and the step that the unknowns of

@@ -68,6 +68,14 @@ def test_an_old_jacobian_that_tells_nothing_is_made_anew(
     assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=FRESH, atol=0)
 
 
+def test_an_answer_that_lacks_nothing_is_exact(tmp_path: Path) -> None:
+    # A straight rod: no missing mode moves, and the unknowns of the answer have nothing to follow.
+    straight = scene(push(), accuracy={"modes": 2, "nodes": 6})
+    solved = load(export(build(straight), tmp_path / "straight")).solve({"push.force": [0.0, 0.0, 0.0]})
+    assert solved.error_estimate is not None
+    assert solved.error_estimate <= 1e-12
+
+
 def test_an_answer_beyond_the_tolerance_is_told(in_c: Compiled) -> None:
     away = in_c.solve({"payload.force": [0.0, 0.5, 0.0]})
     assert away.converged
