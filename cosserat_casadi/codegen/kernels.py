@@ -7,6 +7,7 @@ from contextlib import suppress
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
+from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
@@ -22,12 +23,6 @@ from cosserat_casadi.model.watched import watched_owners
 
 PARTED = ("path_residual", "path_jacobian")
 """Functions of which an assembly has parts instead, one for each rod."""
-
-BALANCE = "richer_balance"
-"""A function of an assembly with entries for each unknown twice, and for each missing coordinate in between."""
-
-JUDGING = (BALANCE, "richer_changes")
-"""Functions that the error of an answer is judged by."""
 
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
@@ -49,7 +44,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]
-        if kind in JUDGING:
+        if kind in error_sources.KERNELS:
             every.append(_judging(model, entries[0], parts))
             continue
         plain = [kernel(model, entry.function, entry.kernel) for entry in entries]
@@ -66,11 +61,14 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
-    if entry.spec.name == BALANCE:
-        missing = [numbers[rod] for rod in discrete.richer.missing_rods]
-        owners = [*parts.blocks.owners, *missing, *parts.blocks.owners]
-    else:
-        owners = [numbers[owner] for owner in watched_owners(discrete)]
+    unknowns = parts.blocks.owners
+    missing = [numbers[rod] for rod in discrete.richer.missing_rods]
+    watched = [numbers[owner] for owner in watched_owners(discrete)]
+    owners = {
+        error_sources.LACK: [*unknowns, *missing],
+        error_sources.BALANCE: [*unknowns, *missing, *unknowns, *watched],
+        error_sources.WATCHED: watched,
+    }[entry.spec.name]
     straight = scalar(entry.function, entry.kernel)
     if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT:
         return dense(entry.function, entry.kernel)

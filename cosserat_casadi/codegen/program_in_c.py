@@ -149,11 +149,11 @@ class ConstantTables:
         self._names: dict[ConstantTable, str] = {}
 
     def of_places(self, places: Numbers) -> str:
-        """What a table of whole numbers is called in C."""
+        """The name of a table of whole numbers in C."""
         return self._named(ConstantTable("int", tuple(map(str, places.tolist()))))
 
     def of_numbers(self, values: Sequence[float]) -> str:
-        """What a table of numbers is called in C."""
+        """The name of a table of numbers in C."""
         return self._named(ConstantTable("casadi_real", tuple("0" if value == 0 else repr(value) for value in values)))
 
     def _named(self, table: ConstantTable) -> str:
@@ -408,7 +408,7 @@ class _Writing:
         return ca.SX(values.pop()) if len(values) == 1 else None
 
     def _operand_of_loop(self, numbers: Numbers, in_fours: bool) -> str:
-        """What turn i of a loop reads of an operand."""
+        """The entry of an operand that turn i of a loop reads."""
         if len(numbers) == 1:
             number = f"w[{self.place[numbers[0]]}]"
             return f"EACH({number})" if in_fours else number
@@ -557,7 +557,7 @@ class _Writing:
 
 
 def _units(program: Program) -> list[Unit]:
-    """Units in an order in which each comes behind those that it waits for."""
+    """Units in an order in which each comes behind the units that it waits for."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     made_by: dict[int, tuple[int, _Key]] = {}
     units: dict[tuple[int, _Key], Unit] = {}
@@ -577,7 +577,7 @@ def _units(program: Program) -> list[Unit]:
 
 
 _Key = tuple[Kind, int]
-"""What steps share that one unit may hold: the kind of unit, and its turns, its function or its step."""
+"""A key that steps share which one unit may hold: the kind of unit, and its turns, its function or its step."""
 
 
 def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:

@@ -145,8 +145,8 @@ typedef struct {
 
 typedef struct {
   tendon_robot_jacobian_factors factors;
-  tendon_robot_real steps[12][TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real squares[12];
+  tendon_robot_real steps[13][TENDON_ROBOT_UNKNOWNS];
+  tendon_robot_real squares[13];
   int count;
 } tendon_robot_updated_jacobian;
 
@@ -174,11 +174,12 @@ typedef struct {
   tendon_robot_real d_x_d_inputs[TENDON_ROBOT_UNKNOWNS * 10];
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real known_correction[TENDON_ROBOT_UNKNOWNS];
-  tendon_robot_real missing[24];
-  tendon_robot_real changes[6];
-  tendon_robot_real fewer[24];
-  tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 24];
-  tendon_robot_real kernel_reals[3023];
+  tendon_robot_real missing[18];
+  tendon_robot_real fewer[18];
+  tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 18 + 11];
+  tendon_robot_real watched[11];
+  tendon_robot_real watched_after[11];
+  tendon_robot_real kernel_reals[2232];
   int kernel_integers[1];
 } tendon_robot_workspace;
 
@@ -275,7 +276,7 @@ void tendon_robot_input_jacobian(const tendon_robot_real *x, const tendon_robot_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of tendon_robot_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 42 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 36 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 tendon_robot_status tendon_robot_error_estimate(const tendon_robot_real *inputs, const tendon_robot_real *x, tendon_robot_real *error_estimate,
                                       tendon_robot_workspace *workspace);

@@ -37,16 +37,21 @@ int tendon_robot_k_strain_margins(const casadi_real** arg, casadi_real** res, ca
 #define tendon_robot_k_strain_margins_SZ_RES 1
 #define tendon_robot_k_strain_margins_SZ_IW 0
 #define tendon_robot_k_strain_margins_SZ_W 0
+int tendon_robot_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_richer_lack_SZ_ARG 2
+#define tendon_robot_k_richer_lack_SZ_RES 1
+#define tendon_robot_k_richer_lack_SZ_IW 0
+#define tendon_robot_k_richer_lack_SZ_W 1613
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 3022
-int tendon_robot_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_richer_changes_SZ_ARG 4
-#define tendon_robot_k_richer_changes_SZ_RES 1
-#define tendon_robot_k_richer_changes_SZ_IW 0
-#define tendon_robot_k_richer_changes_SZ_W 1379
+#define tendon_robot_k_richer_balance_SZ_W 1771
+int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_watched_SZ_ARG 2
+#define tendon_robot_k_watched_SZ_RES 1
+#define tendon_robot_k_watched_SZ_IW 0
+#define tendon_robot_k_watched_SZ_W 177
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3

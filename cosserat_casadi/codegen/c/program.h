@@ -2,6 +2,8 @@
 #ifndef COSSERAT_PROGRAM_H
 #define COSSERAT_PROGRAM_H
 
+#include <string.h>
+
 #if defined(__GNUC__)
 #define PROGRAM_MAYBE_UNUSED __attribute__((unused))
 #else
@@ -10,8 +12,11 @@
 
 /* An argument that is not there stands for zeros. */
 static PROGRAM_MAYBE_UNUSED void program_read(casadi_real *to, const casadi_real *from, int count) {
-  int i;
-  for (i = 0; i < count; i++) to[i] = from ? from[i] : 0;
+  if (from) {
+    memcpy(to, from, (size_t)count * sizeof *to);
+  } else {
+    memset(to, 0, (size_t)count * sizeof *to);
+  }
 }
 
 static PROGRAM_MAYBE_UNUSED void program_move(casadi_real *to, const casadi_real *from, int count) {
