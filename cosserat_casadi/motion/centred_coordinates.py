@@ -66,6 +66,11 @@ class CentredCoordinates:
         x, v, a = parts
         return Instant(instant.time, x, v, a)
 
+    def positions_of_model(self, positions: FloatArray) -> FloatArray:
+        """Unknowns of the model at T times, from those in these coordinates, shape (T, size) each."""
+        still = np.zeros(positions.shape[1])
+        return np.array([self.to_model(Instant(0.0, row, still, still)).x for row in positions])
+
     def from_model(self, instant: Instant) -> Instant:
         """Positions and velocities in these coordinates, from those of the model; accelerations are zero."""
         still = np.zeros(len(instant.x))

@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import TimeStep
+from cosserat_casadi.numerics.step import TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -202,10 +202,29 @@ class History:
 
         Between the ends of steps constraints are open there by less than the error of the motion.
         """
-        places = [self.locate(float(time)) for time in times]
-        x = np.array([instant.x for _, instant in places])
-        inputs = np.array([leg.piece.at(instant.time).value for leg, instant in places])
+        if not self.steps:
+            leg = self.legs[0]
+            x = np.tile(self.of_model(leg.start.instant).x, (len(times), 1))
+            return x, np.tile(leg.piece.at(leg.start.instant.time).value, (len(times), 1))
+        x = np.zeros((len(times), self.model.size))
+        inputs = np.zeros((len(times), self.model.inputs.size))
+        numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
+        first = 0
+        for leg in self.legs:
+            steps = leg.integration.steps
+            held = (first <= numbers) & (numbers < first + len(steps))
+            if np.any(held):
+                of_steps = positions_at(steps, numbers[held] - first, times[held])
+                x[held] = self._positions_of_model(of_steps)
+                inputs[held] = leg.piece.values_at(times[held])
+            first += len(steps)
         return x, inputs
+
+    def _positions_of_model(self, positions: FloatArray) -> FloatArray:
+        """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
+        if self.coordinates is None:
+            return positions[:, : self.model.size]
+        return self.coordinates.positions_of_model(positions)
 
     @cached_property
     def contacts(self) -> ContactRecord | None:

@@ -78,6 +78,13 @@ class Piece:
             acceleration[span] += contribution.acceleration
         return InputState(value, rate, acceleration)
 
+    def values_at(self, times: FloatArray) -> FloatArray:
+        """The values alone at T times, shape (T, inputs)."""
+        values = np.tile(self._constant, (len(times), 1))
+        for span, path in self._paths:
+            values[:, span] += path.values_at(times)
+        return values
+
 
 class MovingInputs:
     """The inputs of a model over time.
@@ -186,6 +193,10 @@ class _Path(ABC):
     def at(self, t: float) -> InputState:
         """Value, rate and acceleration at a time, each of shape (entries,)."""
 
+    @abstractmethod
+    def values_at(self, times: FloatArray) -> FloatArray:
+        """Values at T times, shape (T, entries)."""
+
 
 @dataclass(frozen=True)
 class _Wave(_Path):
@@ -218,6 +229,11 @@ class _Wave(_Path):
         value = self.amplitude * sine
         rate = self.amplitude * omega * cosine
         return InputState(value, rate, -self.amplitude * omega**2 * sine)
+
+    def values_at(self, times: FloatArray) -> FloatArray:
+        angles = self.angular_frequency * times + self.phase
+        course = 1.0 - np.cos(angles) if self.begins_at_rest else np.sin(angles)
+        return np.outer(course, self.amplitude)
 
 
 @dataclass(frozen=True)
@@ -263,6 +279,12 @@ class _Table(_Path):
         rate = linear + s * (2 * quadratic + 3 * s * cubic)
         acceleration = 2 * quadratic + 6 * s * cubic
         return InputState(value, rate, acceleration)
+
+    def values_at(self, times: FloatArray) -> FloatArray:
+        segments = np.clip(np.searchsorted(self.knots, times, side="right"), self.first, self.last)
+        s = (times - self.origins[segments])[:, None]
+        constant, linear, quadratic, cubic = np.moveaxis(self.coefficients[segments], 1, 0)
+        return np.asarray(constant + s * (linear + s * (quadratic + s * cubic)))
 
 
 def _path_of(motion: InputMotion) -> _Path:
