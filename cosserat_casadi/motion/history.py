@@ -54,7 +54,7 @@ def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> Mot
         piece: of its inputs.
         p: stacked parameters; those of a model that has some.
     """
-    inverse_dynamics = RepeatedCall(model.inverse_dynamics)
+    inverse_dynamics = RepeatedCall(model.inverse_dynamics_in_scalars)
     parameters = [] if p is None else [p]
     # Every iteration of a step asks for the inputs at the same stages.
     inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
