@@ -68,7 +68,7 @@ def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> Mot
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
         return stiffness.full(), damping.full(), mass.full()
 
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, kinks=piece.kinks)
 
 
 @dataclass(frozen=True)
@@ -312,7 +312,7 @@ def _switched(
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
-            interval = DIFFERENTIATED * (piece.end - piece.start)
+            interval = DIFFERENTIATED * piece.smooth
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:

@@ -28,10 +28,18 @@ def warnings(model: Model, start: Start, moving: MovingInputs, duration: float) 
         duration: of the motion, s.
     """
     at_start = [AT_ONCE] if _loaded_at_once(model, start, moving) else []
-    return at_start + [
-        f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, which modes resolve slowly."
-        for jump in moving.jumps(duration)
-    ]
+    jumps: dict[str, list[float]] = {}
+    for jump in moving.jumps(duration):
+        jumps.setdefault(jump.input, []).append(jump.time)
+    return at_start + [_jumping(name, times) for name, times in jumps.items()]
+
+
+def _jumping(name: str, times: list[float]) -> str:
+    """The sentence on an input that jumps at these times, s."""
+    when = f"at {times[0]:g} s"
+    if len(times) > 1:
+        when = f"{len(times)} times from {times[0]:g} s to {times[-1]:g} s"
+    return f"{name} jumps {when}: waves of all lengths run along the rods, which modes resolve slowly."
 
 
 def _loaded_at_once(model: Model, start: Start, moving: MovingInputs) -> bool:
