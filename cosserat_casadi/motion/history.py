@@ -371,7 +371,8 @@ def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> N
         what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
         problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
     elif start.position_error > CONSISTENT:
-        what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
+        open_by = f"{start.position_error:.2g} (of the length, or rad)"
+        what = f"supports or joints are open by {open_by} where the motion starts"
         problems.append(Problem("simulation.start", what, "start from an equilibrium"))
     if start.velocity_error * duration > CONSISTENT:
         what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"

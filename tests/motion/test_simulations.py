@@ -155,7 +155,7 @@ def test_gauss_is_refused_for_supports() -> None:
 def test_start_off_a_support_is_refused() -> None:
     """Nothing is moved there in silence."""
     message = refused(held(simulation=asked(start="unloaded")))
-    assert "simulation.start: supports or joints are open by 0.2 (over the length)" in message
+    assert "simulation.start: supports or joints are open by 0.2 (of the length, or rad)" in message
 
 
 def test_base_that_starts_with_a_speed_is_refused_in_a_loop() -> None:
