@@ -29,7 +29,7 @@ MOST_CORRECTIONS = 20
 """Corrections of a body's pose before its joints count as ones that no pose closes."""
 
 CLOSED = 1e-12
-"""What a joint may be open by, without unit, where it counts as closed."""
+"""Gap of a joint, without unit, up to which it counts as closed."""
 
 
 class FrameName(NamedTuple):
@@ -64,7 +64,7 @@ class FloatingFrame:
 
 @dataclass(frozen=True)
 class JointGap:
-    """What a joint is open by, without unit.
+    """Gap of a joint, without unit.
 
     Attributes:
         rows: displacements over the length along held directions, and sines of turns about them, shape (k,).
@@ -221,7 +221,7 @@ class UnloadedScene:
         return mean
 
     def _gap(self, joint: scenes.Joint, pose: NumericPose, length: float) -> JointGap:
-        """What a joint is open by where its body has a pose.
+        """Gap of a joint where its body has a pose.
 
         Args:
             joint: the joint.

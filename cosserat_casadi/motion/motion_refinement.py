@@ -89,7 +89,7 @@ class ResolvedMotion:
         rung: place of the modes on the ladder.
         distance: of the paths from those of the level before; infinite for the first.
         unseen: displacement over the length by the last coefficients of strains that have no more modes than on the
-            level before: the distance tells nothing of those that they lack.
+            level before: the distance tells nothing of modes that they lack.
     """
 
     simulator: Simulator

@@ -209,7 +209,7 @@ class _Path(ABC):
 
     @property
     def weak(self) -> frozenset[float]:
-        """Those of these times at which no step has to end, s: none where a path has no more to say."""
+        """Breaks at which no step has to end, s."""
         return frozenset()
 
     @abstractmethod

@@ -94,7 +94,7 @@ def overlooked_error(
 ) -> float:
     """Error over tolerance by what a step does not see of the equations between its stages.
 
-    At one state F depends on the time alone. What it differs by from the polynomial through its values at the stages is
+    At one state F depends on the time alone. Its difference from the polynomial through its values at the stages is
     a force that the step leaves out; it is taken to be linear between the kinks. With its integral I₀ over the step and
     the moment I₁ about its end, the velocities at the end miss h M⁻¹ I₀ and the positions h² M⁻¹ I₁. The dynamic
     stiffness at the real eigenvalue γ stands for M/(γh)², so that stiff directions answer as they do. A missed velocity

@@ -281,6 +281,6 @@ def test_modes_that_are_never_tried_count_by_the_last_coefficients_there_are() -
         "wave": "one_minus_cosine",
     }
     damped = {"damping": {"retardation_time": 0.01}}
-    motion = simulate_scene(scene_from_dict(table(damped, motions=[lifted], simulation=asked(duration=1.0))))
+    motion = simulate(scene_from_dict(table(damped, motions=[lifted], simulation=asked(duration=1.0))))
     assert motion.converged, motion.message
     assert 1e-12 < motion.error_estimate < 1e-4
