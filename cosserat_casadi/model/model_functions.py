@@ -346,7 +346,7 @@ def _enriched(written: Expressions, known: Matrix, missing: Matrix) -> tuple[Ric
 
 
 def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:
-    """Steps of the unknowns and of the missing coordinates by which elasticity alone would take up the lacking balance."""
+    """Steps of unknowns and missing coordinates by which elasticity alone would take up the lacking balance."""
     _, lacking = richer.split(SceneEquations(system).residual)
     return richer.split(richer.elastic_step(lacking))
 
