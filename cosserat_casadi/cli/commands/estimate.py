@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -24,7 +25,7 @@ from cosserat_casadi.cli.reports.format import print_plain, print_written, title
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.estimation import Estimate, estimate_scene
+from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.estimate_file import estimate_table
 from cosserat_casadi.results.json_text import json_text
@@ -63,7 +64,7 @@ def estimate(
     if problems or checked_scene is None:
         raise SceneError(*problems)
     with sweep_display() as show_count:
-        found = estimate_scene(checked_scene, cores=cores, progress=show_count)
+        found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
     text = estimate_table(found) if suffix == ".csv" else json_text(found.to_dict())
     write_atomically(output, text.encode())
     if plot is not None:
