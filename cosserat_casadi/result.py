@@ -34,8 +34,11 @@ class Result:
         """
         _presentation().write(self, path)
 
-    def plot(self) -> Any:
+    def plot(self, **options: Any) -> Any:
         """Figure of the result.
+
+        Args:
+            options: ``colour`` of a sweep, the column that colours its points; ``title`` of Sobol indices.
 
         Returns:
             matplotlib.figure.Figure.
@@ -43,7 +46,7 @@ class Result:
         Raises:
             PlotUnavailableError: matplotlib is not installed.
         """
-        return _presentation().figure_of(self)
+        return _presentation().figure_of(self, **options)
 
     def __repr__(self) -> str:
         """The result in at most ten lines."""

@@ -160,7 +160,7 @@ CONCEPTS = (
         "Estimation",
         "What a robot feels in every row of a table; see [estimate](../estimate.md).",
         (),
-        estimation_names=("estimate_scene", "estimate", "Estimate"),
+        estimation_names=("estimate", "Estimate"),
     ),
     Concept(
         "export",

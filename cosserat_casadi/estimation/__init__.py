@@ -3,7 +3,7 @@
 cases ─ stacking ─▶ arrays ─ codegen/estimator ─▶ maxima a posteriori ─ knowledge ─▶ Estimate
 """
 
-from cosserat_casadi.estimation.estimate import estimate, estimate_scene
+from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.estimation.estimate_outcome import Estimate
 
-__all__ = ["Estimate", "estimate", "estimate_scene"]
+__all__ = ["Estimate", "estimate"]

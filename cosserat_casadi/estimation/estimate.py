@@ -65,27 +65,14 @@ Progress = Callable[[str, int, int], None]
 """Called with the work under way, how much of it is done, and of how much."""
 
 
-def estimate(
+def estimate_model(
     model: Model,
     data: Data | None = None,
     *,
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Estimate:
-    """Estimate the unknowns of each measured case of a model's scene.
-
-    Args:
-        model: of a scene with measurements, whose unknowns are ``per_row`` or have priors:
-            ``build(scene.with_unknowns())``.
-        data: columns by measurement, by its name or its file, that stand for the file.
-        cores: threads, at least 1; those of this machine by default.
-        progress: called with the work under way.
-
-    Raises:
-        SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
-            that is between its bounds.
-        ExportError: there is no C compiler, or it fails.
-    """
+    """As :func:`estimate`, of a model on its modes and nodes."""
     report = progress or _ignore
     check_unknowns(model.scene)
     model = with_unknown_parameters(model)
@@ -257,28 +244,34 @@ class Search:
         return sampled(costs, found.cost[rows], covariance, draws)
 
 
-def estimate_scene(
-    scene: scenes.Scene,
+def estimate(
+    subject: scenes.Scene | Model,
     data: Data | None = None,
     *,
     cores: int | None = None,
     progress: Progress | None = None,
 ) -> Estimate:
-    """Estimate the unknowns of each measured case of a scene, on modes and nodes that meet its tolerance.
+    """Estimate the unknowns of each measured case of a scene, or of a model.
 
-    They are chosen for loads within two deviations of the priors, and some cases are solved again at the end on a finer
-    discretisation that tells their error.
+    A model keeps its modes and nodes. A scene has modes and nodes that meet its tolerance: they are chosen for loads
+    within two deviations of the priors, and some cases are solved again at the end on a finer discretisation that tells
+    their error.
 
     Args:
-        scene: with measurements, whose unknowns are ``per_row`` or have priors.
-        data: as in :func:`estimate`.
-        cores: as there.
-        progress: as there.
+        subject: a scene with measurements, whose unknowns are ``per_row`` or have priors; or a model of such a scene:
+            ``build(scene.with_unknowns())``.
+        data: columns by measurement, by its name or its file, that stand for the file.
+        cores: threads, at least 1; all of this machine by default.
+        progress: called with the work under way.
 
     Raises:
-        SceneError: as in :func:`estimate`.
-        ExportError: as there.
+        SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
+            that is between its bounds.
+        ExportError: there is no C compiler, or it fails.
     """
+    if isinstance(subject, Model):
+        return estimate_model(subject, data, cores=cores, progress=progress)
+    scene = subject
     report = progress or _ignore
     refuse_tubes(scene)
     check_unknowns(scene)
@@ -293,7 +286,7 @@ def estimate_scene(
         inputs = np.array([case.inputs for case in cases])
         expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
         completed = choose(completed, cases=list(expected)).scene
-    result = estimate(build(completed), data, cores=cores, progress=progress)
+    result = estimate_model(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 
 

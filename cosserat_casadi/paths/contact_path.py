@@ -173,7 +173,7 @@ class Travel:
 
     Attributes:
         settings: limits.
-        branch: number of the bifurcation to leave at, as in :func:`cosserat_casadi.follow_path`; 0 once left.
+        branch: number of the bifurcation to leave at, as in :func:`cosserat_casadi.follow`; 0 once left.
         arrangements: in the order of travel.
         points: with the number of the arrangement of each.
         events: in the order of travel.
@@ -311,7 +311,7 @@ def follow_contact_path(
         name: the input that grows.
         base: stacked inputs at load factor 0.
         change: their increments at load factor 1.
-        branch: as in :func:`cosserat_casadi.follow_path`.
+        branch: as in :func:`cosserat_casadi.follow`.
         settings: limits.
         progress: receives the largest factor reached.
     """

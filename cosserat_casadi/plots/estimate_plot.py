@@ -6,14 +6,13 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 from math import ceil
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.plots.colours import CATEGORIES
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 
 MOST_PANELS = 12
 """Unknowns that have a panel: the first."""
@@ -23,16 +22,6 @@ COLUMNS = 3
 
 SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CATEGORIES[1], "label": "second best"}
 """Style of the second best minimum of a row."""
-
-
-def save_estimate_plot(found: Estimate, file: str | Path) -> None:
-    """Draw an estimate into a file, whole or not at all; the same one gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_estimate(found), file)
 
 
 def plot_estimate(found: Estimate) -> Any:

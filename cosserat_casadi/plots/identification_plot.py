@@ -6,14 +6,13 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.identification import Identification, Row
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 
 MOST_PANELS = 4
 """Most measured quantities that have a panel each."""
@@ -28,20 +27,6 @@ CHI_SQUARE_95 = 5.991464547107979
 """Bound of the squared distance from the mean, of a normal distribution in the plane, for 95 % of all draws."""
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-
-
-def save_identification_plot(found: Identification, file: str | Path) -> None:
-    """Draw an identification into a file, whole or not at all; the same one gives the same bytes.
-
-    Args:
-        found: the end of the identification.
-        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-
-    Raises:
-        SceneError: the suffix is none that can be drawn.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_identification(found), file)
 
 
 def plot_identification(found: Identification) -> Any:

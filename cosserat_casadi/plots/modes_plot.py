@@ -19,7 +19,7 @@ from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import WORLD, Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import CLAMP
 
@@ -51,16 +51,6 @@ EQUILIBRIUM = "0.65"
 
 PERIOD_FRAMES = 50
 """Frames of one period of an animation."""
-
-
-def save_modes_plot(modes: Modes, file: str | Path) -> None:
-    """Draw modes into a file, whole or not at all; the same modes give the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_modes(modes), file)
 
 
 def plot_modes(modes: Modes) -> Any:

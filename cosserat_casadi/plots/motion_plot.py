@@ -6,7 +6,6 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 from dataclasses import fields
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
@@ -55,16 +54,6 @@ NOTHING = 1e-12
 
 ROUNDING = 1e-16
 """Imbalance below which the axis of the imbalance does not go: a motion that has not begun has none."""
-
-
-def save_motion_plot(motion: Motion, file: str | Path) -> None:
-    """Draw a motion into a file, whole or not at all; the same motion gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_motion(motion), file)
 
 
 def plot_motion(motion: Motion) -> Any:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 
 MARKERS = {
     "limit": "o",
@@ -48,16 +47,6 @@ SMALLEST_DISPLACEMENT = 1e-9
 
 COLUMNS = 3
 """Most panels beside each other."""
-
-
-def save_path_plot(path: EquilibriumPath, file: str | Path) -> None:
-    """Draw a path into a file, whole or not at all; the same path gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_path(path), file)
 
 
 def plot_path(path: EquilibriumPath) -> Any:

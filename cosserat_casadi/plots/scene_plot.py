@@ -6,7 +6,6 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.control.inverse_result import Inverse
@@ -16,22 +15,12 @@ from cosserat_casadi.plots.arrow_drawing import scene_arrows
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
-
-
-def save_plot(solution: Solution, path: str | Path) -> None:
-    """Draw a solution into a file, whole or not at all; the same solution gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_solution(solution), path)
 
 
 def plot_solution(solution: Solution) -> Any:

@@ -6,14 +6,13 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 from math import ceil
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.colours import CATEGORIES
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 
 COLUMNS = 3
@@ -21,16 +20,6 @@ COLUMNS = 3
 
 HEIGHT = 0.38
 """Of a bar, where inputs are one apart."""
-
-
-def save_sobol_plot(indices: SobolIndices, file: str | Path, title: str | None = None) -> None:
-    """Draw Sobol indices into a file, whole or not at all; the same indices give the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_sobol(indices, title), file)
 
 
 def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.canvas import AXIS_NAMES, Plane
 from cosserat_casadi.plots.colours import category_style
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.sweeps.outcome_table import LABELS, Sweep
 
 FLAT = 1e-6
@@ -39,24 +38,6 @@ OUTCOME = "outcome"
 """Colouring of a figure that no column colours."""
 
 
-def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -> None:
-    """Draw where the last rod or body of a sweep can be into a file, whole or not at all.
-
-    The same sweep gives the same bytes.
-
-    Args:
-        sweep: results.
-        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        colour: column of the colour, or ``outcome``; by default the first swept column that varies.
-
-    Raises:
-        SceneError: the suffix is none that can be drawn.
-        PlotUnavailableError: matplotlib is not installed.
-        KeyError: there is no such column.
-    """
-    save_figure(lambda: plot_sweep(sweep, colour), file)
-
-
 def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     """Figure of a sweep: one panel for points in a plane, else the points in space and their three projections.
 
@@ -64,7 +45,7 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
 
     Args:
         sweep: results.
-        colour: as in :func:`save_sweep_plot`.
+        colour: column of the colour, or ``outcome``; by default the first swept column that varies.
 
     Returns:
         matplotlib.figure.Figure.

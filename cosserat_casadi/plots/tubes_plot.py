@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
@@ -35,16 +34,6 @@ DRAWN = 12
 
 WIDEST = 6.0
 """Width of the innermost reach of the tubes, in points; a tube that ends leaves a thinner line."""
-
-
-def save_tubes_plot(solution: TubeSolution | TubeEquilibria, file: str | Path) -> None:
-    """Draw an equilibrium, or all at the same inputs, into a file, whole or not at all; the same give the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_tubes(solution), file)
 
 
 def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
@@ -164,16 +153,6 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
             label = name
         style = {**category_style(index), "color": colour, "linestyle": STROKES[solution.stable], "markevery": 0.15}
         panel.plot(shape.distance[here], shape.angles[here, index] - first, label=label, **style)
-
-
-def save_tube_path_plot(path: TubePath, file: str | Path) -> None:
-    """Draw a path into a file, whole or not at all; the same path gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    save_figure(lambda: plot_tube_path(path), file)
 
 
 def plot_tube_path(path: TubePath) -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 
 
 def estimate_result(found: Estimate) -> dict[str, Any]:
@@ -70,11 +70,6 @@ def _second_best(found: Estimate, case: int) -> dict[str, Any]:
         return {}
     second = found.second
     return {"share": second.share[case], "second": {"value": second.values[case], "cost": second.cost[case]}}
-
-
-def estimate_text(found: Estimate) -> str:
-    """The file as JSON."""
-    return json_text(estimate_result(found))
 
 
 def estimate_table(found: Estimate) -> str:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 from cosserat_casadi.scene.values import names_in
 
 MOST_OUTLIERS = 100
@@ -54,11 +54,6 @@ def identification_result(found: Identification) -> dict[str, Any]:
     }
     plain_data: dict[str, Any] = plain(data)
     return plain_data
-
-
-def identification_text(found: Identification) -> str:
-    """The file as text."""
-    return json_text(identification_result(found))
 
 
 def _shared(found: Identification) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cosserat_casadi.control.inverse_result import Inverse
-from cosserat_casadi.results.json_text import json_text, plain
+from cosserat_casadi.results.json_text import plain
 from cosserat_casadi.results.solution_file import result
 
 
@@ -25,8 +25,3 @@ def inverse_result(inverse: Inverse) -> dict[str, Any]:
     data = {**result(inverse.solution), "targets_met": inverse.met, "targets": targets}
     plain_data: dict[str, Any] = plain(data)
     return plain_data
-
-
-def inverse_text(inverse: Inverse) -> str:
-    """The file as text."""
-    return json_text(inverse_result(inverse))

@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
-from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.results.solution_file import listed_abscissae, result
 
 
@@ -26,11 +26,6 @@ def modes_result(modes: Modes) -> dict[str, Any]:
     }
     plain_data: dict[str, Any] = plain(data)
     return plain_data
-
-
-def modes_text(modes: Modes) -> str:
-    """The file of modes as text."""
-    return json_text(modes_result(modes))
 
 
 def _mode_entries(modes: Modes) -> list[dict[str, Any]]:

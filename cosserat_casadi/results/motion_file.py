@@ -23,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 
@@ -63,7 +63,6 @@ def write_motion(motion: Motion, path: str | Path) -> None:
     """
     check_motion_path(path)
     contents = {
-        ".json": _json_bytes,
         ".csv": _csv_bytes,
         ".parquet": _parquet_bytes,
         ".npz": _npz_bytes,
@@ -215,10 +214,6 @@ def _vector_columns(name: str, values: FloatArray, endings: tuple[str, ...]) -> 
     """One column for each component of values, shape (T, components)."""
     for ending, component in zip(endings, values.T, strict=True):
         yield f"{name}.{ending}", component
-
-
-def _json_bytes(motion: Motion) -> bytes:
-    return json_text(motion_result(motion)).encode()
 
 
 def _csv_bytes(motion: Motion) -> bytes:

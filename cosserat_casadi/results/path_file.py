@@ -13,7 +13,7 @@ from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 from cosserat_casadi.results.tubes_file import tube_path_result, tube_path_table
 from cosserat_casadi.tubes.tube_path import TubePath
 
@@ -67,11 +67,6 @@ def path_result(path: EquilibriumPath | TubePath) -> dict[str, Any]:
         data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
     plain_data: dict[str, Any] = plain(data)
     return plain_data
-
-
-def path_text(path: EquilibriumPath | TubePath) -> str:
-    """The file of a path as text."""
-    return json_text(path_result(path))
 
 
 def path_table(path: EquilibriumPath | TubePath) -> str:

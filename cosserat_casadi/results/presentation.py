@@ -142,13 +142,13 @@ def data_of(result: Any) -> dict[str, Any]:
     return data
 
 
-def figure_of(result: Any) -> Any:
+def figure_of(result: Any, **options: Any) -> Any:
     """Matplotlib figure of a result.
 
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
-    return _function(presentation_of(result).figure)(result)
+    return _function(presentation_of(result).figure)(result, **options)
 
 
 def write(result: Any, path: str | Path) -> None:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
-from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.contact_entry import point_forces
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 
 if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
@@ -68,16 +66,6 @@ def result(solution: Solved) -> dict[str, Any]:
         data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
     plain_data: dict[str, Any] = plain(data)
     return plain_data
-
-
-def result_text(solution: Solved) -> str:
-    """The result file as text."""
-    return json_text(result(solution))
-
-
-def write_result(solution: Solved, path: str | Path) -> None:
-    """Write the result file, whole or not at all."""
-    write_atomically(Path(path), result_text(solution).encode())
 
 
 def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Solution, build, read_scene, solve
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.solution_file import result_text
+from cosserat_casadi.results.json_text import json_text
 from examples.demo import EXPORTED, HANDFUL, MOTIONS, SCENES, command_lines
 from tests.commands import WIRE, cosserat
 from tests.conftest import ROOT
@@ -251,7 +251,7 @@ def test_not_finite_numbers_become_null(wire: Path) -> None:
     broken = Solution(
         found.model, found.inputs, np.full_like(found.x, np.nan), found.outcome, "broken", float("nan"), 0
     )
-    text = result_text(broken)
+    text = json_text(broken.to_dict())
     assert "NaN" not in text
     assert json.loads(text)["residual_norm"] is None
 

@@ -34,7 +34,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.motion.collocated_stage import motion_stage
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.page import export_page
-from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
+from cosserat_casadi.plots.scene_plot import plot_solution
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
@@ -240,7 +240,7 @@ def test_report_and_figure(table: Solution, tmp_path: Path) -> None:
     figure = plot_solution(table)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"table", "contact"} <= set(labels)
-    save_plot(table, tmp_path / "table.png")
+    table.write(tmp_path / "table.png")
     assert (tmp_path / "table.png").stat().st_size > 10_000
 
 

@@ -22,7 +22,6 @@ from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.paths.contact_path import ContactPath
-from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.scene import Scene, with_exact_contact
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.run import plan_sweep
@@ -562,7 +561,7 @@ def test_results_name_the_body(on_dome: Solution, tmp_path: Path) -> None:
     console = Console(record=True, width=200)
     print_solution(console, on_dome, [])
     assert "body" in console.export_text()
-    save_plot(on_dome, tmp_path / "ball.png")
+    on_dome.write(tmp_path / "ball.png")
 
 
 def test_rows_tell_the_force_on_the_body(on_dome: Solution) -> None:

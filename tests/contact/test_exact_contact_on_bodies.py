@@ -27,7 +27,6 @@ from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
-from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.sweeps.row_model import RowModel
 from tests.conftest import ROOT
 from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH
@@ -413,7 +412,7 @@ def test_the_example_presses(tmp_path: Path) -> None:
     (contact,) = solution.contacts
     assert (contact.obstacle, contact.owner, contact.kind) == ("rim", "lower", "point")
     assert_allclose(solution.base_wrench("lower").force, -contact.force, rtol=0, atol=1e-9)
-    save_plot(solution, tmp_path / "fingers.png")
+    solution.write(tmp_path / "fingers.png")
 
 
 def test_an_obstacle_is_drawn_where_its_body_is(touching: Solution) -> None:

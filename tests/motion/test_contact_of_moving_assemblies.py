@@ -23,7 +23,6 @@ from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.plots.motion_plot import save_motion_plot
 from tests.families import mostly_slow
 
 HEAD = """
@@ -246,7 +245,7 @@ def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -
     assert entry["rod"][-1] == body
     assert entry["of_body"][-1] is True
     assert entry["events"]["of_body"][0] is True
-    save_motion_plot(motion, tmp_path / "motion.png")
+    motion.write(tmp_path / "motion.png")
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from PIL import Image
 from cosserat_casadi import modes_of
 from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
-from cosserat_casadi.plots.modes_plot import mode_words, plot_modes, save_mode_animation, save_modes_plot
+from cosserat_casadi.plots.modes_plot import mode_words, plot_modes, save_mode_animation
 from tests.scenes import rod, scene
 
 ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.05}
@@ -59,8 +59,8 @@ def test_words_of_a_damped_mode(modes: Modes) -> None:
 
 def test_figure_and_animation_are_written(modes: Modes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(modes_plot, "PERIOD_FRAMES", 8)
-    save_modes_plot(modes, tmp_path / "m.png")
-    save_modes_plot(modes, tmp_path / "again.png")
+    modes.write(tmp_path / "m.png")
+    modes.write(tmp_path / "again.png")
     assert (tmp_path / "m.png").read_bytes() == (tmp_path / "again.png").read_bytes()
     torsion = next(index for index, axes in enumerate(plot_modes(modes).axes) if axes.name == "3d")
     shares: list[float] = []

@@ -20,7 +20,6 @@ from cosserat_casadi.plots.motion_plot import (
     _faded,
     _share_of_colour,
     plot_motion,
-    save_motion_plot,
     shown_rows,
 )
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
@@ -182,8 +181,8 @@ def test_a_motion_that_ended_early_says_so_in_red(planar: Motion) -> None:
 
 
 def test_motions_of_one_time_and_of_none_can_be_drawn(tmp_path: Path) -> None:
-    save_motion_plot(swinging_rod(frames=1), tmp_path / "one.png")
-    save_motion_plot(without_start(), tmp_path / "none.png")
+    swinging_rod(frames=1).write(tmp_path / "one.png")
+    without_start().write(tmp_path / "none.png")
     figure = plot_motion(without_start())
     assert figure.axes == []
     assert MotionOutcome.NO_START.value in [text.get_text() for text in figure.texts]
@@ -210,12 +209,12 @@ def test_colours_and_strokes_tell_many_curves_apart() -> None:
 def test_files_are_the_same_every_time(platform: Motion, tmp_path: Path, suffix: str) -> None:
     first = tmp_path / f"a.{suffix}"
     second = tmp_path / f"b.{suffix}"
-    save_motion_plot(platform, first)
-    save_motion_plot(platform, second)
+    platform.write(first)
+    platform.write(second)
     assert first.read_bytes() == second.read_bytes()
 
 
 def test_unknown_suffix_is_refused(planar: Motion, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="--plot"):
-        save_motion_plot(planar, tmp_path / "figure.doc")
+    with pytest.raises(SceneError, match=r"cannot be written to .*use one of"):
+        planar.write(tmp_path / "figure.doc")
     assert list(tmp_path.iterdir()) == []

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import EquilibriumPath, SceneError, build, follow
-from cosserat_casadi.plots.path_plot import plot_path, save_path_plot
+from cosserat_casadi.plots.path_plot import plot_path
 from cosserat_casadi.results.path_file import path_table
 from tests.scenes import push, rod, scene
 
@@ -61,21 +61,21 @@ def test_a_path_that_ended_early_says_so_in_red(straight: EquilibriumPath) -> No
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_files_are_the_same_every_time(buckled: EquilibriumPath, tmp_path: Path, suffix: str) -> None:
     first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
-    save_path_plot(buckled, first)
-    save_path_plot(buckled, second)
+    buckled.write(first)
+    buckled.write(second)
     assert first.read_bytes() == second.read_bytes()
 
 
 def test_unknown_suffix_is_refused(buckled: EquilibriumPath, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="--plot"):
-        save_path_plot(buckled, tmp_path / "figure.doc")
+    with pytest.raises(SceneError, match=r"cannot be written to .*use one of"):
+        buckled.write(tmp_path / "figure.doc")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_path_without_a_start_can_be_drawn_and_written(tmp_path: Path) -> None:
     aside = {"rod": "rod", "kind": "clamped", "position": [0.8, 0.0, 0.0], "quaternion": [1, 0, 0, 0]}
     none = follow(build(scene(push(), strain="planar", supports=[aside])), "push.force", [1, 0, 0])
-    save_path_plot(none, tmp_path / "none.png")
+    none.write(tmp_path / "none.png")
     assert none.to_dict()["path"] == []
     assert none.to_dict()["outcome"] == "no_start"
     assert len(path_table(none).splitlines()) == 1

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Outcome, SceneError, Solution, build, solve
 from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
-from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
+from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
@@ -154,15 +154,15 @@ def test_an_unconverged_solution_says_so_in_red(planar: Solution) -> None:
 )
 def test_files_are_the_same_every_time(planar: Solution, tmp_path: Path, suffix: str, signature: bytes) -> None:
     first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
-    save_plot(planar, first)
-    save_plot(planar, second)
+    planar.write(first)
+    planar.write(second)
     assert first.read_bytes().startswith(signature)
     assert first.read_bytes() == second.read_bytes()
 
 
 def test_unknown_suffix_is_refused_and_nothing_written(planar: Solution, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"--plot: .*png"):
-        save_plot(planar, tmp_path / "figure.doc")
+    with pytest.raises(SceneError, match=r"cannot be written to .*png"):
+        planar.write(tmp_path / "figure.doc")
     assert list(tmp_path.iterdir()) == []
 
 

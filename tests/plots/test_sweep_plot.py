@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError
-from cosserat_casadi.plots.sweep_plot import plot_sweep, save_sweep_plot
+from cosserat_casadi.plots.sweep_plot import plot_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
 
 POSE = ("rod.x", "rod.y", "rod.z", "rod.qw", "rod.qx", "rod.qy", "rod.qz")
@@ -64,9 +64,9 @@ def test_nothing_converged() -> None:
 @pytest.mark.slow
 def test_the_same_sweep_gives_the_same_bytes(tmp_path: Path) -> None:
     for name in ("a.png", "b.png"):
-        save_sweep_plot(swept(planar=False, failing=True), tmp_path / name)
+        swept(planar=False, failing=True).write(tmp_path / name)
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
     with pytest.raises(SceneError):
-        save_sweep_plot(swept(planar=True), tmp_path / "a.bmp")
+        swept(planar=True).write(tmp_path / "a.bmp")
     with pytest.raises(KeyError, match="'none' is no column"):
         plot_sweep(swept(planar=True), "none")

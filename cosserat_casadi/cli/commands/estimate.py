@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -24,13 +25,14 @@ from cosserat_casadi.cli.reports.format import print_plain, print_written, title
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.estimation import Estimate, estimate_scene
+from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import check_writable, write_atomically
-from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
+from cosserat_casadi.results.estimate_file import estimate_table
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.spelling import counted
 
-WRITERS = {".json": estimate_text, ".csv": estimate_table}
+FORMATS = (".json", ".csv")
 
 
 def estimate(
@@ -54,7 +56,7 @@ def estimate(
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
     suffix = output.suffix.lower()
-    if suffix not in WRITERS:
+    if suffix not in FORMATS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
     checked_scene: Scene | None = None
     with collect_problems(problems):
@@ -62,13 +64,11 @@ def estimate(
     if problems or checked_scene is None:
         raise SceneError(*problems)
     with sweep_display() as show_count:
-        found = estimate_scene(checked_scene, cores=cores, progress=show_count)
-    write_atomically(output, WRITERS[suffix](found).encode())
+        found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
+    text = estimate_table(found) if suffix == ".csv" else json_text(found.to_dict())
+    write_atomically(output, text.encode())
     if plot is not None:
-        # Imported here, because matplotlib is an extra and takes long to load.
-        from cosserat_casadi.plots.estimate_plot import save_estimate_plot
-
-        save_estimate_plot(found, plot)
+        found.write(plot)
     _print(Console(), found, checked_scene.title)
     print_written(Console(), given_files(output, plot), soft_wrap=True)
     for warning in found.warnings:

@@ -28,7 +28,7 @@ from cosserat_casadi.cli.reports.identification import (
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside
-from cosserat_casadi.results.identification_file import identification_text
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -79,12 +79,9 @@ def identify(
             checked_scene, hold_out=hold_out, starts=starts, report=display.show_stage, progress=show_step
         )
     if output is not None:
-        write_atomically(output, identification_text(found).encode())
+        write_atomically(output, json_text(found.to_dict()).encode())
     if plot is not None:
-        # Imported here, because matplotlib is an extra and takes long to load.
-        from cosserat_casadi.plots.identification_plot import save_identification_plot
-
-        save_identification_plot(found, plot)
+        found.write(plot)
     written = given_files(output, plot)
     refusal: SceneError | None = None
     if write is not None and (found.converged or found.ended_early):

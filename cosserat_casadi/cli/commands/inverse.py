@@ -9,7 +9,6 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi import control
-from cosserat_casadi.cli.commands.solving import draw_solution
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay, check_outputs, given_files
 from cosserat_casadi.cli.progress import solve_display
@@ -19,8 +18,8 @@ from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import read_targets
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.inverse_file import inverse_text
 from cosserat_casadi.results.inverse_table import MET, row_outcome, table_text
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import read_scene
 
 
@@ -59,9 +58,9 @@ def inverse(
         given_scene = read_scene(scene, tuple(settings or ()))
         solved = control.inverse(given_scene, stable=stable, report=display.show_stage)
     if output is not None:
-        write_atomically(output, inverse_text(solved).encode())
+        write_atomically(output, json_text(solved.to_dict()).encode())
     if plot is not None:
-        draw_solution(solved.solution, plot)
+        solved.write(plot)
     print_inverse(Console(), solved, given_files(output, plot))
     if solved.unstable and not unstable and not stable:
         print_unstable_inverse(Console(stderr=True))

@@ -22,7 +22,7 @@ from cosserat_casadi.cli.reports.modes import print_modes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
-from cosserat_casadi.results.modes_file import modes_text
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
 
 
@@ -54,7 +54,7 @@ def modes(
         found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
     _check_mode_is_there(found, animation, mode)
     if output is not None:
-        write_atomically(output, modes_text(found).encode())
+        write_atomically(output, json_text(found.to_dict()).encode())
     drawn = _draw(found, plot, animation, mode)
     print_modes(Console(), found, given_files(output, *drawn))
     if not found.converged:
@@ -97,11 +97,11 @@ def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) 
     """Draw the figure and the animation that are asked for; returns the files that were written."""
     if plot is None and animation is None:
         return []
-    from cosserat_casadi.plots.modes_plot import save_mode_animation, save_modes_plot
+    from cosserat_casadi.plots.modes_plot import save_mode_animation
 
     written = []
     if plot is not None:
-        save_modes_plot(found, plot)
+        found.write(plot)
         written.append(plot)
     # Where there is no equilibrium nothing swings.
     if animation is not None and found.modes:

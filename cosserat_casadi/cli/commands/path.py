@@ -29,9 +29,9 @@ from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.path_refinement import follow
-from cosserat_casadi.results.path_file import path_table, path_text
+from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.path_file import path_table
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_path import TubePath
@@ -74,11 +74,11 @@ def path(
         )
 
     if output is not None:
-        write_atomically(output, path_text(followed).encode())
+        write_atomically(output, json_text(followed.to_dict()).encode())
     if table is not None:
         write_atomically(table, path_table(followed).encode())
     if plot is not None:
-        _draw(followed, plot)
+        followed.write(plot)
     written = given_files(output, table, plot)
     if isinstance(followed, TubePath):
         print_tube_path(Console(), followed, written)
@@ -161,14 +161,3 @@ def _array(value: object) -> FloatArray:
     if isinstance(value, list):
         return known(coefficients(tuple(value)))
     return np.array([value], dtype=float)
-
-
-def _draw(followed: EquilibriumPath | TubePath, file: Path) -> None:
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.path_plot import save_path_plot
-    from cosserat_casadi.plots.tubes_plot import save_tube_path_plot
-
-    if isinstance(followed, TubePath):
-        save_tube_path_plot(followed, file)
-    else:
-        save_path_plot(followed, file)

@@ -25,7 +25,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
-from cosserat_casadi.results.motion_file import check_motion_path, write_motion
+from cosserat_casadi.results.motion_file import check_motion_path
 from cosserat_casadi.results.start_file import read_start
 from cosserat_casadi.scene import Scene, read_scene
 
@@ -72,7 +72,7 @@ def simulate(
 
     motion = _simulate_with_progress(checked_scene, start_solution)
     if output is not None:
-        write_motion(motion, output)
+        motion.write(output)
     if motion.outcome is MotionOutcome.INTERRUPTED:
         # Who has stopped a simulation does not want to wait for pictures of it.
         print_motion(Console(), motion, given_files(output))
@@ -82,7 +82,7 @@ def simulate(
         plot = None
         animation = None
     if plot is not None:
-        _draw(motion, plot)
+        motion.write(plot)
     if animation is not None:
         _animate(motion, animation, speed)
     print_motion(Console(), motion, given_files(output, plot, animation))
@@ -152,13 +152,6 @@ def _simulate_with_progress(scene: Scene, start: Solution | None) -> Motion:
     with motion_display() as show_motion:
         motion: Motion = simulate(scene, start=start, progress=show_motion)
         return motion
-
-
-def _draw(motion: Motion, file: Path) -> None:
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.motion_plot import save_motion_plot
-
-    save_motion_plot(motion, file)
 
 
 def _animate(motion: Motion, file: Path, speed: float) -> None:

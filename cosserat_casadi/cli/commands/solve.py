@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progress
+from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
@@ -22,8 +22,9 @@ from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_whole
-from cosserat_casadi.results.solution_file import Solved, result_text, write_result
+from cosserat_casadi.files import write_atomically, write_whole
+from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.solution_file import Solved
 from cosserat_casadi.scene import read_scene, with_exact_contact
 
 
@@ -94,13 +95,13 @@ def solve(
 def _give(solution: Solved, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
     """Write, draw and print the solution."""
     if output is not None:
-        write_result(solution, output)
+        write_atomically(output, json_text(solution.to_dict()).encode())
     if plot is not None:
-        draw_solution(solution, plot)
+        solution.write(plot)
     written = given_files(output, plot)
     if as_json:
         # JSON is UTF-8, whatever the terminal knows.
-        write_whole(binary_output(), result_text(solution).encode())
+        write_whole(binary_output(), json_text(solution.to_dict()).encode())
     elif isinstance(solution, Solution):
         print_solution(Console(), solution, written)
     else:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -23,6 +24,8 @@ from cosserat_casadi.cli.reports.sobol import print_sobol
 from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweeps.outcome_file import record_file
 from cosserat_casadi.sweeps.outcome_table import Sweep
@@ -127,7 +130,7 @@ def sweep(
         _write_sobol(swept, sobol, plot)
     else:
         if plot is not None:
-            _draw(swept, plot, colour)
+            _save(lambda: swept.plot(colour=colour), plot)
         print_sweep(Console(), swept, output, plot, finished=finished_before)
     # The rows are written in any case; the exit code says whether they can be trusted.
     if not swept.holds:
@@ -216,20 +219,17 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
 def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
     """Write, draw and print the indices of a sweep that was drawn for them."""
     indices = sobol_indices(swept)
-    indices.write(file)
+    write_atomically(file, json_text(indices.to_dict()).encode())
     written = [file]
     if plot is not None:
-        # Imported here, because matplotlib is an extra and takes long to load.
-        from cosserat_casadi.plots.sobol_plot import save_sobol_plot
-
-        save_sobol_plot(indices, plot, swept.record["title"])
+        _save(lambda: indices.plot(title=swept.record["title"]), plot)
         written.append(plot)
     print_sobol(Console(), indices)
     print_written(Console(), written, soft_wrap=True)
 
 
-def _draw(swept: Sweep, file: Path, colour: str | None) -> None:
+def _save(draw: Callable[[], Any], file: Path) -> None:
     # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.sweep_plot import save_sweep_plot
+    from cosserat_casadi.plots.figure import save_figure
 
-    save_sweep_plot(swept, file, colour)
+    save_figure(draw, file)
