@@ -24,13 +24,18 @@ SETTLED = 8
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return exported(robot(), tmp_path_factory.mktemp("exported") / "robot")
+def model():
+    return robot()
 
 
 @pytest.fixture(scope="module")
-def plant(folder):
-    return Plant(robot(), load(folder))
+def folder(model, tmp_path_factory):
+    return exported(model, tmp_path_factory.mktemp("exported") / "robot")
+
+
+@pytest.fixture(scope="module")
+def plant(model, folder):
+    return Plant(model, load(folder))
 
 
 def mean_error(plant, runs, steps):
