@@ -38,7 +38,7 @@ static real largest_change(const real *before, const real *after) {
     largest = larger_or_none(SQUARE_ROOT(square), largest);
     largest = larger_or_none(angle_between(turned_before + 4 * i, turned_after + 4 * i), largest);
   }
-  for (int i = POSE_SIZE * WATCHED_POSES; i < WATCHED; i++) {
+  for (int i = WATCHED - WATCHED_CABLES; i < WATCHED; i++) {
     largest = larger_or_none(ABSOLUTE(after[i] - before[i]), largest);
   }
   return largest;
