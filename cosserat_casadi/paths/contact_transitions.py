@@ -181,9 +181,8 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
         arrangement.scene, arrangement.equations.given, arrangement.equations.grids, change.state
     )
     found = arrangement.equilibrium_at(z, point.load_factor)
-    nominal = replace(equations.nominal, given=arrangement.inputs(point.load_factor))
-    x = projected(found.solution, nominal.model)
-    near = np.concatenate([x, nominal.fitting_forces(x), change.state.places])
+    x = projected(found.solution, equations.nominal.model)
+    near = equations.start_from(x, arrangement.inputs(point.load_factor))
     following = replace(arrangement, equations=equations, near=near, load_factor=point.load_factor)
     guess = following.y(near, point.load_factor)
     met = _met(following, guess, _plane(following, change, point.load_factor))

@@ -94,7 +94,7 @@ def test_places_are_sought_until_rounding_is_left(pressed: Solution, moved: floa
     beside = own.at((own.places + moved).tolist())
     grids = Grids(pressed.model.discretisation)
     equations = ContactEquations(scene, input_layout(scene).pack(None), grids, beside)
-    start = np.concatenate([pressed.x, equations.nominal.fitting_forces(pressed.x), beside.places])
+    start = equations.start_from(pressed.x, equations.given)
     z, holds, _ = sought(equations, start, NewtonSettings())
     assert holds
     assert relative_norm(equations.residual(z, equations.given), z) < 1e-16

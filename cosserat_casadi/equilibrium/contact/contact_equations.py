@@ -131,15 +131,6 @@ class Placed:
         by_given, by_forces = self._spread
         return ca.sparsify(ca.DM(by_given)) @ given + ca.sparsify(ca.DM(by_forces)) @ forces
 
-    def fitting_forces(self, x: FloatArray) -> FloatArray:
-        """Forces that balance a shape best, shape (k,): its balance is linear in them."""
-        _, matrix = self._spread
-        inputs = self.inputs(np.zeros(len(self.force_units)))
-        balance = column(self.model.path_residual(x, inputs, 1.0))
-        by_forces = self.model.input_jacobian(x, inputs).full() @ matrix
-        fitting, *_ = np.linalg.lstsq(by_forces, -balance, rcond=FIT)
-        return np.asarray(fitting)
-
     def residual(self, x: FloatArray, forces: FloatArray) -> FloatArray:
         """Balance and gaps, without unit."""
         inputs = self.inputs(forces)
@@ -350,6 +341,26 @@ class ContactEquations:
         """Rate of the residual as the inputs change, shape (len(z),)."""
         by_given = self._rate(*self.parts(z), given).full()
         return np.asarray(by_given @ change)
+
+    def start_from(self, x: FloatArray, given: FloatArray) -> FloatArray:
+        """A shape with the forces that balance it best, at the places of the state: the balance is linear in them.
+
+        Args:
+            x: unknowns of the nominal model, shape (n,).
+            given: stacked inputs of the scene without contacts.
+
+        Returns:
+            z, shape (n + k + p,), for k forces and p places.
+        """
+        forces = np.zeros(len(self.nominal.force_units))
+        z = np.concatenate([x, forces, self.state.places])
+        if not len(forces):
+            return z
+        own = slice(len(x), len(x) + len(forces))
+        balance = self.residual(z, given)[: len(x)]
+        by_forces = self.jacobian(z, given)[: len(x), own]
+        z[own], *_ = np.linalg.lstsq(by_forces, -balance, rcond=FIT)
+        return z
 
     @property
     def equations(self) -> Equations:

@@ -240,8 +240,7 @@ class Settling:
 
     def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
         """Unknowns, forces and places that solve equations, from a shape near them."""
-        x = projected(near, equations.nominal.model)
-        start = np.concatenate([x, equations.nominal.fitting_forces(x), equations.state.places])
+        start = equations.start_from(projected(near, equations.nominal.model), self.given)
         self.squeezed = None
         if len(equations.state.places):
             z, solved, taken = sought(equations, start, self.newton)
