@@ -172,7 +172,7 @@ class ModelFunctions:
         """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
 
         One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
-        unknowns, and what is watched, as the next function gives it.
+        unknowns, and the watched poses and lengths, as the next function gives them.
         """
         richer, system = _enriched(written, written["x"] + written["correction"], written["missing"])
         residual, _ = richer.split(SceneEquations(system).residual)
@@ -345,7 +345,7 @@ def _enriched(written: Expressions, known: Matrix, missing: Matrix) -> tuple[Ric
 
 
 def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:
-    """Steps of the unknowns and of the missing coordinates by which elasticity alone would take up what is lacking."""
+    """Steps of the unknowns and of the missing coordinates by which elasticity alone would restore the balance."""
     _, lacking = richer.split(SceneEquations(system).residual)
     return richer.split(richer.elastic_step(lacking))
 
