@@ -105,7 +105,7 @@ class RicherBalance:
         step: elastic step of the unknowns of the answer, shape (n,).
         missing_step: elastic step of the coordinates of the missing modes, shape (missing,).
         residual: in the unknowns, shape (n,).
-        poses: the watched numbers.
+        poses: watched poses and lengths.
     """
 
     step: FloatArray
@@ -299,12 +299,12 @@ def richer_balance(solution: Solution, known: FloatArray, missing: FloatArray) -
 
 
 def _watched_numbers(solution: Solution, poses: FloatArray) -> WatchedNumbers:
-    """The watched poses, from their column."""
+    """Watched poses and lengths from their column."""
     return WatchedNumbers.of_column(poses, len(watched_cables(solution.model.discrete)))
 
 
 def _watched_at(solution: Solution, x: FloatArray) -> WatchedNumbers:
-    """The watched poses at some unknowns of the answer's model."""
+    """Watched poses and lengths at some unknowns of the answer's model."""
     return _watched_numbers(solution, column(solution.model.watched(x, solution.inputs)))
 
 

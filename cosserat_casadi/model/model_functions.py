@@ -173,7 +173,7 @@ class ModelFunctions:
         """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
 
         One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
-        unknowns, and the watched numbers, as the next function gives them.
+        unknowns, and the watched poses and lengths, as the next function gives them.
         """
         richer, system = _enriched(written, written["x"] + written["correction"], written["missing"])
         residual, _ = richer.split(SceneEquations(system).residual)
