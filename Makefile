@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo gallery test test-slow test-arithmetic fuzz bench dial lint format schema api docs generated clean
+.PHONY: help demo gallery test test-slow test-arithmetic test-casadi-before fuzz bench dial lint format schema api docs generated clean
 
 help:
 	@echo "make demo       set up .venv, solve a handful of example scenes, write results, figures and C sources to out/"
@@ -17,6 +17,7 @@ help:
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make test-ROOM  the tests in tests/ROOM: make test-rod, make test-codegen"
 	@echo "make test-arithmetic  the quick numerical tests once more under the rounding of other processors and compilers"
+	@echo "make test-casadi-before  the quick tests with the minor version of CasADi before the newest, in .venv-casadi-before"
 	@echo "make fuzz       10^4 random scenes at the ends of what is legal; writes figures to docs/hard-cases.md (hours)"
 	@echo "make bench      race the exported C and motions against shooting solvers and packages; writes tables and figures"
 	@echo "make dial       judge what tolerances pick on 200 random scenes, resumable; writes tables and figure"
@@ -53,6 +54,12 @@ test-slow: $(STAMP)
 # Rounds as other processors, BLAS threads and optimised C do; what this processor cannot run is said and left out.
 test-arithmetic: $(STAMP)
 	$(BIN)/python -m tests.arithmetic
+
+# pyproject.toml admits two minor versions of CasADi; `make test` takes the newest, this the one before.
+test-casadi-before:
+	$(PYTHON) -m venv $(VENV)-casadi-before
+	$(VENV)-casadi-before/bin/python -m pip install --quiet --no-compile --editable '.[test]' 'casadi<3.8'
+	$(VENV)-casadi-before/bin/python -m pytest -n 2 --dist loadfile -m "not slow"
 
 test-%: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests/$*

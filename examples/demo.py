@@ -49,6 +49,7 @@ SCENES = (
     "needle_in_tissue",
     "rod_in_stream",
     "rubbing_tendon",
+    "three_materials",
     "wire_from_shapes",
     "released_strip",
     "rod_on_table",

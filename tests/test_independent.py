@@ -250,8 +250,8 @@ def _actuation(basis: DiscreteRod, q: np.ndarray, stress: np.ndarray) -> np.ndar
     densities = np.outer(stress, np.ones(basis.grid.size))
     action = Actuation(StrainSum(range(6), densities), ca.DM(1.0))
     model = InverseGeometricModel(Statics(shape(basis, ca.DM(q)), []), (action,))
-    assert model.actuation_force is not None
+    assert model.further_force is not None
     assert_allclose(
-        model.residual.full()[:, 0], basis.stiffness @ q + model.actuation_force.full()[:, 0], rtol=0, atol=1e-14
+        model.residual.full()[:, 0], basis.stiffness @ q + model.further_force.full()[:, 0], rtol=0, atol=1e-14
     )
-    return np.asarray(model.actuation_force.full()[:, 0])
+    return np.asarray(model.further_force.full()[:, 0])

@@ -13,6 +13,8 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.material_functions import stress_beyond_hooke
 
 BEYOND = 2
 """Modes beyond T/2 from which on the coefficients of a wave show."""
@@ -25,7 +27,7 @@ def node_residual(solution: Solution) -> float:
         X = known(discrete_rod.grid.nodes)
         rod = discrete_rod.properties
         fields = solution.model.fields[name](solution.x, solution.inputs)
-        wrench = fields[2].full().T
+        wrench = fields[2].full().T - _stress_beyond_hooke(solution, name)
         hooke = rod.hooke(X)
         strain = solution.strain(X, name) - rod.intrinsic_strain(X)
         for component in rod.admitted:
@@ -35,6 +37,19 @@ def node_residual(solution: Solution) -> float:
             unit = rod.length if component < 3 else 1.0
             largest = max(largest, float(np.abs(difference).max()) * unit)
     return largest
+
+
+def _stress_beyond_hooke(solution: Solution, name: str) -> FloatArray:
+    """Stress of the material at the nodes beyond that of its Hooke tensor, shape (nodes, 6), N m and N."""
+    discrete_rod = solution.model.discrete.rods[name]
+    law = discrete_rod.properties.beyond_hooke
+    X = known(discrete_rod.grid.nodes)
+    if law is None:
+        return np.zeros((len(X), 6))
+    data = known(law.data(X)).T
+    stress = stress_beyond_hooke(law, len(data)).map(len(X))
+    changes = solution.strain(X, name) - discrete_rod.properties.intrinsic_strain(X)
+    return np.asarray(stress(changes.T, data).full().T)
 
 
 def min_modes(solution: Solution, turn: float, tolerance: float) -> int:

@@ -146,7 +146,11 @@ def _failed(console: Console, error: Exception) -> int:
     # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):
         # What checks values puts its own word before the sentence.
-        _print_error(console, error.format_message().replace("Value error, ", ""))
+        sentence = error.format_message().replace("Value error, ", "")
+        # A bare command has shown its help instead, and has no sentence.
+        if not sentence:
+            return int(error.exit_code)
+        _print_error(console, sentence)
         context = getattr(error, "ctx", None)
         if context is not None:
             print_plain(console, f"Help: {context.command_path} --help")

@@ -72,7 +72,7 @@ END = """#ifdef __cplusplus
 """
 """How every file ends, those of CasADi too."""
 
-GENERATOR = {"with_header": True, "static_aux": True}
+GENERATOR = {"with_header": True}
 
 
 def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:

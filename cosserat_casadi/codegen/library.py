@@ -41,7 +41,7 @@ from cosserat_casadi.equilibrium.load_path import continuation_limits, first_ste
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
-from cosserat_casadi.model.path_stretch import VANISHED
+from cosserat_casadi.model.strain_margins import VANISHED, margins_of
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
@@ -228,6 +228,7 @@ def _words(
     sizes |= error_words(model, names)
     sizes |= _batch_words(names.name, rows)
     functions = public_functions(model, names)
+    margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
@@ -236,7 +237,8 @@ def _words(
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
-        "paths": 0 if model.path_stretch is None else model.path_stretch.size1_out(0),
+        "margins": len(margins),
+        "paths": sum(margin.kind == "path" for margin in margins),
         "vanished": VANISHED,
         **status_words(names),
         **input_words(model, names),

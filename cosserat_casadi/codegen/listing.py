@@ -12,6 +12,9 @@ from cosserat_casadi.maths.calls import called_functions
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
 
+SUMS = {ca.OP_ADD, ca.OP_SUB}
+"""Those that bind less tightly than products."""
+
 FUNCTIONS = {
     ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",
     ca.OP_ASIN: "asin", ca.OP_ACOS: "acos", ca.OP_ATAN: "atan", ca.OP_ATAN2: "atan2", ca.OP_TANH: "tanh",
@@ -118,6 +121,11 @@ class Listing:
         if isinstance(value, Called):
             return self.calls[value.call].operands
         return []
+
+    @property
+    def has_fours(self) -> bool:
+        """Whether all operations have a form in fours."""
+        return all(value.operation in BINARY for value in self.values if isinstance(value, Computed))
 
     def wanted(self) -> Iterator[int]:
         """Numbers of the values that are results, output after output."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import casadi as ca
@@ -36,6 +38,12 @@ CHOICE = """static void MADE({name})(const casadi_real *given, casadi_real *made
 }}
 """
 """The same for the width of vectors that the processor has."""
+
+CHOICE_OF_LOOP = """static void MADE({name})(casadi_real *w) {{
+  IN_FOURS({name}, (w));
+}}
+"""
+"""The same for a loop over entries."""
 
 PART_OF_COLUMNS = """static void MADE({name}_{part})(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed){body}"""
@@ -77,30 +85,50 @@ class Callee:
         return CALLEE.format(name=name, body=self.body, given=given, made=made, call=call.format(name=name))
 
 
+@dataclass(frozen=True)
+class ConstantTable:
+    """A constant array.
+
+    Attributes:
+        type: of its numbers in C.
+        numbers: these in C.
+    """
+
+    type: str
+    numbers: tuple[str, ...]
+
+    def text(self, name: str) -> str:
+        """The array in C, under a name."""
+        lines = textwrap.fill(", ".join(self.numbers), 119, initial_indent="  ", subsequent_indent="  ")
+        return f"static const {self.type} {name}[{len(self.numbers)}] = {{\n{lines}}};\n"
+
+
 @dataclass(frozen=True, eq=False)
 class PrintedKernel:
     """A function in C with the arguments of CasADi.
 
     Attributes:
         signature: a function with its name, arguments and results.
-        tables: constant arrays in C.
+        tables: constant arrays in C, by name: the type of their numbers, and these as text. Kernels share equal ones.
         body: functions in C, the kernel itself last; their names stand in ``MADE()``.
         by_columns: whether some of the functions compute columns, and are compiled for each width of vectors.
         callees: functions that these call by the name of the kernel and a word, by the word.
         reals: size of the array that it works in.
         statements: number of its statements.
+        loops: functions that compute entries four at a time, by name: they are compiled for each width of vectors.
         is_program: whether it is a function of matrices, in loops.
         products: products of matrices whose routines it calls.
         kernels: kernels that it calls.
     """
 
     signature: ca.Function
-    tables: str
+    tables: Mapping[str, ConstantTable]
     body: str
     by_columns: bool
     callees: Mapping[str, Callee]
     reals: int
     statements: int
+    loops: Mapping[str, str] = field(default_factory=dict)
     is_program: bool = False
     products: tuple[Product, ...] = ()
     kernels: tuple[PrintedKernel, ...] = ()
@@ -154,21 +182,27 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str) -> PrintedSourc
     callees = _callees(kernels, stem)
     any_program = any(kernel.is_program for kernel in kernels)
     routines = product_routines(product for kernel in kernels for product in kernel.products)
-    bodies = {kernel.name(): _with_names_of_callees(kernel, callees) for kernel in kernels}
+    tables = _tables(kernels, stem)
+    bodies = {kernel.name(): _with_names(kernel, kernel.body, callees, tables) for kernel in kernels}
     for_each_width = [kernel for kernel in kernels if kernel.by_columns]
     once = [kernel for kernel in kernels if not kernel.by_columns]
     called_once = [callees[callee] for kernel in once for callee in kernel.callees.values()]
     functions = [callee.text(name) for callee, name in callees.items()]
     functions += [bodies[kernel.name()] for kernel in for_each_width]
+    loops: dict[str, str] = {}
+    for kernel in kernels:
+        loops |= {name: _with_names(kernel, text, callees, tables) for name, text in kernel.loops.items()}
+    functions += loops.values()
     words = {
         "stem": stem,
         "programs": '#include "program.h"\n' + routines if any_program else "",
-        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once)),
+        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once))
+        + "".join(CHOICE_OF_LOOP.format(name=name) for name in loops),
         "once": "\n".join(bodies[kernel.name()] for kernel in once),
         "kernels_once": "".join(f"KERNEL({kernel.name()}, KERNEL_ONCE)\n" for kernel in once if kernel in public),
         "kernels_for_each_width": "".join(f"KERNEL({kernel.name()}, IN_FOURS)\n" for kernel in for_each_width),
     }
-    source = "".join(kernel.tables for kernel in kernels)
+    source = "".join(table.text(name) for table, name in tables.items())
     included = {}
     if functions:
         source += fill(resource("templates", "fours.c.in"), words)
@@ -202,9 +236,16 @@ def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
     return name_of
 
 
-def _with_names_of_callees(kernel: PrintedKernel, callees: Mapping[Callee, str]) -> str:
-    """The body of a kernel, which calls functions by the names that they have for all kernels."""
-    body = kernel.body
+def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, str]:
+    """Names of the constant arrays of kernels: one for all that are equal."""
+    every = dict.fromkeys(table for kernel in kernels for table in kernel.tables.values())
+    return {table: f"{stem}_table_{number}" for number, table in enumerate(every)}
+
+
+def _with_names(
+    kernel: PrintedKernel, text: str, callees: Mapping[Callee, str], tables: Mapping[ConstantTable, str]
+) -> str:
+    """Text of a kernel, with the names that functions and constant arrays have for all kernels."""
     for word, callee in kernel.callees.items():
-        body = body.replace(f"MADE({kernel.name()}_{word})", f"MADE({callees[callee]})")
-    return body
+        text = text.replace(f"MADE({kernel.name()}_{word})", f"MADE({callees[callee]})")
+    return re.sub(r"TABLE\((\w+)\)", lambda match: tables[kernel.tables[match[1]]], text)

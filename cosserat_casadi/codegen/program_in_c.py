@@ -2,15 +2,17 @@
 
 A kernel works in an array ``w``. Its first number is zero; every argument and every result of a step has a place in it,
 which later results take over. A step reads its operands where they lie; entries that lie apart are gathered before, by
-a table. Small steps are written together without loops. Calls of one function that do not wait for each other are made
-four at a time.
+a table. Operations on as many entries, such as those of the sections of a rod, are one loop, whose turns keep in
+variables what only they read. Small steps are written together without loops. Calls of one function that do not wait
+for each other are made four at a time.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
 from functools import partial
 
 import casadi as ca
@@ -18,8 +20,8 @@ import numpy as np
 
 from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.codegen.numbered import Numbers, Program, Step
-from cosserat_casadi.codegen.printed_kernels import Callee, PrintedKernel
+from cosserat_casadi.codegen.numbered import SMALL, Numbers, Program, Step
+from cosserat_casadi.codegen.printed_kernels import Callee, ConstantTable, PrintedKernel
 from cosserat_casadi.codegen.products import Product
 from cosserat_casadi.codegen.scalars_in_c import callee, scalars_in_c
 from cosserat_casadi.codegen.statements import (
@@ -37,32 +39,62 @@ from cosserat_casadi.codegen.steps import program_of
 LONGEST_BUNDLE = 3000
 """Instructions of small steps that are written together at the most."""
 
-LONGEST_WITHOUT_LOOP = 100
-"""Entries up to which an operation on each of them is written without a loop."""
+FEWEST_TURNS = 5
+"""Entries from which on an operation on each of them is part of a loop."""
+
+LONGEST_PRODUCT_WITHOUT_LOOP = 40
+"""Instructions up to which a product of matrices is written without a loop."""
 
 FEW_RUNS = 8
 """Runs of neighbours up to which entries that lie apart are moved run by run."""
+
+LOOP_IN_FOURS = """static void MADE({name}_turn)(casadi_real *w, int i) {{
+{lines}
+}}
+static void MADE({name})(casadi_real *w) {{
+  const int last = {count} - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE({name}_turn)(w, i + lane))
+  EVERY_LANE(MADE({name}_turn)(w, last + lane))
+}}
+"""
+"""A loop over entries, four at a time: the last four may compute some once more."""
+
+LOOP = """static void MADE({name}_turn)(casadi_real *w, int i) {{
+{lines}
+}}
+static void MADE({name})(casadi_real *w) {{
+  int i;
+  for (i = 0; i < {count}; i++) MADE({name}_turn)(w, i);
+}}
+"""
+"""The same, one entry at a time: not all its operations have a form in fours."""
 
 UNUSED = -1
 """Place of an entry that has none yet."""
 
 
+class UnitKind(Enum):
+    """Pieces of C that steps become."""
+
+    STRAIGHT = "small steps without a loop"
+    LOOP = "operations on as many entries, in one loop"
+    CALLS = "calls of a function of scalars that calls no other"
+    SINGLE = "one step"
+
+
 @dataclass
 class Unit:
-    """Steps that become one piece of C: small ones without loops, calls of one function, or any other single step.
+    """Steps that become one piece of C.
 
     Attributes:
+        kind: which.
         steps: the steps.
-        is_bundle: whether they are small ones.
     """
 
+    kind: UnitKind
     steps: list[Step]
-    is_bundle: bool = False
-
-    @property
-    def is_batch(self) -> bool:
-        """Whether these are calls of a function of scalars that calls no other."""
-        return not self.is_bundle and self.steps[0].called and not _is_kernel(self.steps[0])
 
     @property
     def operands(self) -> list[Numbers]:
@@ -105,40 +137,29 @@ class RoomOfKernel:
         self._free = joined
 
 
-@dataclass
 class ConstantTables:
-    """Constant arrays of a kernel, each written once.
+    """Constant arrays of a kernel, each there once.
 
     Attributes:
-        stem: beginning of their names.
+        by_name: the arrays.
     """
 
-    stem: str
-    _names: dict[tuple[str, bytes], str] = field(default_factory=dict)
-    _texts: list[str] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.by_name: dict[str, ConstantTable] = {}
+        self._names: dict[ConstantTable, str] = {}
 
     def of_places(self, places: Numbers) -> str:
-        """Name of a table of whole numbers."""
-        return self._named("int", np.asarray(places, dtype=np.int64))
+        """What a table of whole numbers is called in C."""
+        return self._named(ConstantTable("int", tuple(map(str, places.tolist()))))
 
     def of_numbers(self, values: Sequence[float]) -> str:
-        """Name of a table of numbers."""
-        return self._named("casadi_real", np.asarray(values, dtype=np.float64))
+        """What a table of numbers is called in C."""
+        return self._named(ConstantTable("casadi_real", tuple("0" if value == 0 else repr(value) for value in values)))
 
-    @property
-    def text(self) -> str:
-        """All tables in C."""
-        return "".join(self._texts)
-
-    def _named(self, kind: str, values: np.ndarray) -> str:
-        key = (kind, values.tobytes())
-        if key not in self._names:
-            name = f"{self.stem}_t{len(self._names)}"
-            numbers = [repr(value) for value in values.tolist()]
-            lines = [", ".join(numbers[first : first + 16]) for first in range(0, len(numbers), 16)]
-            self._texts.append(f"static const {kind} {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n")
-            self._names[key] = name
-        return self._names[key]
+    def _named(self, table: ConstantTable) -> str:
+        name = self._names.setdefault(table, f"t{len(self._names)}")
+        self.by_name[name] = table
+        return f"TABLE({name})"
 
 
 def program_in_c(program: Program, signature: ca.Function) -> PrintedKernel:
@@ -162,9 +183,10 @@ class _Writing:
         self.origins = program.origins
         self.signature = signature
         self.name: str = signature.name()
-        self.tables = ConstantTables(self.name)
+        self.tables = ConstantTables()
         self.lines: list[str] = []
         self.functions: list[str] = []
+        self.loops: dict[str, str] = {}
         self.callees: dict[str, Callee] = {}
         self.callee_of: dict[tuple[int, int], str] = {}
         self.products: dict[Product, None] = {}
@@ -193,12 +215,13 @@ class _Writing:
         self.functions.append("\n".join([head, *self.lines, "  return 0;", "}\n"]))
         return PrintedKernel(
             self.signature,
-            self.tables.text,
+            self.tables.by_name,
             "\n".join(self.functions),
             False,
             self.callees,
             self.memory.size,
             self.statements,
+            loops=self.loops,
             is_program=True,
             products=tuple(self.products),
             kernels=tuple(self.kernels.values()),
@@ -223,7 +246,7 @@ class _Writing:
         mixed: dict[int, None] = {}
         wanted = [value.numbers for value in self.program.results.values()]
         for operands in self.operands:
-            wanted += operands
+            wanted += [numbers for numbers in operands if not np.all(self.origins.is_constant(numbers))]
         for numbers in wanted:
             constant = self.origins.is_constant(numbers)
             mixed |= dict.fromkeys(numbers[constant & (numbers != 0)].tolist())
@@ -302,57 +325,95 @@ class _Writing:
         return last
 
     def _operands_of(self, unit: Unit) -> list[Numbers]:
-        """Entries of each array that a unit reads; none of a bundle, which reads numbers one by one."""
-        if unit.is_bundle:
+        """Entries of each array that a unit reads; none of steps without a loop, which read numbers one by one."""
+        if unit.kind is UnitKind.STRAIGHT:
             return []
-        return [self._given(unit)] if unit.is_batch else unit.operands
+        if unit.kind is UnitKind.CALLS:
+            return [self._given(unit)]
+        if unit.kind is UnitKind.LOOP:
+            inside = {result.numbers.tobytes() for step in unit.steps for result in step.results}
+            return [numbers for numbers in unit.operands if len(numbers) > 1 and numbers.tobytes() not in inside]
+        return unit.operands
 
     # Units
 
     def _write_unit(self, k: int, unit: Unit) -> None:
-        if unit.is_bundle:
-            self._write_bundle(k, unit.steps)
-        elif unit.is_batch:
+        if unit.kind is UnitKind.STRAIGHT:
+            for steps in _bundles(unit.steps):
+                self._write_bundle(k, steps)
+        elif unit.kind is UnitKind.LOOP:
+            self._write_loop(k, unit.steps)
+        elif unit.kind is UnitKind.CALLS:
             self._write_calls(k, unit)
         elif unit.steps[0].called:
             self._write_kernel(k, unit.steps[0])
-        elif unit.steps[0].operation is not None:
-            self._write_entrywise(k, unit.steps[0])
         else:
             self._write_product(k, unit.steps[0])
 
-    def _write_entrywise(self, k: int, step: Step) -> None:
-        """Write a loop over entries."""
-        assert step.operation is not None
-        pointers = [self._pointer(operand.numbers) for operand in step.operands]
-        (result,) = step.results
-        count = len(result.numbers)
-        first = self._place_things(k, result.numbers)
-        names = ["x", "y"][: len(pointers)]
-        symbols = [ca.SX.sym(name) for name in names]
-        apply = ca.SX.unary if len(symbols) == 1 else ca.SX.binary
-        listing = Listing(ca.Function("entry", symbols, [apply(step.operation, *symbols)]))
-        block = Block("casadi_real", "a", computations(listing, SINGLE))
-        (made,) = listing.outputs[0].values()
-        block.statements.append(Statement("z[i] = {0};", [made]))
+    def _write_loop(self, k: int, steps: Sequence[Step]) -> None:
+        """Write a loop over the entries that the steps compute."""
+        count = len(steps[0].results[0].numbers)
+        inside: dict[bytes, ca.SX] = {}
+        read: dict[bytes, ca.SX] = {}
+        operands_read: list[Numbers] = []
+        for step in steps:
+            entries = []
+            for numbers in (operand.numbers for operand in step.operands):
+                key = numbers.tobytes()
+                if key not in inside and key not in read:
+                    constant = self._one_constant(numbers)
+                    if constant is not None:
+                        entries.append(constant)
+                        continue
+                    read[key] = ca.SX.sym("read")
+                    operands_read.append(numbers)
+                entries.append(inside[key] if key in inside else read[key])
+            assert step.operation is not None, "loops are of operations alone"
+            apply = ca.SX.unary if len(entries) == 1 else ca.SX.binary
+            inside[step.results[0].numbers.tobytes()] = apply(step.operation, *entries)
+        kept = [step.results[0].numbers for step in steps if self._last_use_of(step.results[0].numbers) > k]
+        stored = [inside[numbers.tobytes()] for numbers in kept]
+        symbols = ca.vertcat(*read.values())
+        listing = Listing(ca.Function("turn", [symbols], [ca.densify(ca.vertcat(*ca.cse(stored)))]))
+        in_fours = count >= LANES and listing.has_fours
+        arithmetic = FOURS if in_fours else SINGLE
+        variables = ("FOUR", "b") if in_fours else ("casadi_real", "a")
+        block = Block(*variables, computations(listing, arithmetic))
+        store = "STORE(w + {place} + i, {{0}});" if in_fours else "w[{place} + i] = {{0}};"
+        for numbers, number in zip(kept, listing.outputs[0].values(), strict=True):
+            place = self._place_things(k, numbers)
+            block.statements.append(Statement(store.format(place=place), [number]))
+        operands = [self._operand_of_loop(numbers, in_fours) for numbers in operands_read]
 
         def text(number: int) -> str | None:
             value = listing.values[number]
             if isinstance(value, Constant):
-                return SINGLE.number(value.value)
-            if isinstance(value, Read):
-                scalar = step.operands[value.argument].pattern.numel() == 1
-                return f"{names[value.argument]}0" if scalar and count > 1 else f"{names[value.argument]}[i]"
-            return None
+                return arithmetic.number(value.value)
+            return operands[value.entry] if isinstance(value, Read) else None
 
-        declared = [f"const casadi_real *{name} = {pointer};" for name, pointer in zip(names, pointers, strict=True)]
-        for name, operand in zip(names, step.operands, strict=True):
-            if operand.pattern.numel() == 1 and count > 1:
-                declared.append(f"const casadi_real {name}0 = {name}[0];")
-        declared.append(f"casadi_real *z = w + {first};")
-        body = " ".join(line.strip() for line in block.lines(text))
-        self.lines.append(f"  {{ {' '.join(declared)} int i; for (i = 0; i < {count}; i++) {{ {body} }} }}")
+        name = f"{self.name}_loop_{len(self.loops) + len(self.functions)}"
+        lines = "\n".join(block.lines(text))
+        if in_fours:
+            self.loops[name] = LOOP_IN_FOURS.format(name=name, count=count, lines=lines)
+        else:
+            self.functions.append(LOOP.format(name=name, count=count, lines=lines))
+        self.lines.append(f"  MADE({name})(w);")
         self.statements += len(block.statements)
+
+    def _one_constant(self, numbers: Numbers) -> ca.SX | None:
+        """The constant that all entries are; None where they are no constants, or several."""
+        if not np.all(self.origins.is_constant(numbers)):
+            return None
+        values = set(self.origins.constants(numbers))
+        return ca.SX(values.pop()) if len(values) == 1 else None
+
+    def _operand_of_loop(self, numbers: Numbers, in_fours: bool) -> str:
+        """What turn i of a loop reads of an operand."""
+        if len(numbers) == 1:
+            number = f"w[{self.place[numbers[0]]}]"
+            return f"EACH({number})" if in_fours else number
+        pointer = f"{self._pointer(numbers)} + i"
+        return f"LOAD({pointer})" if in_fours else f"*({pointer})"
 
     def _write_product(self, k: int, step: Step) -> None:
         """Write a product of matrices, which may be added to a third."""
@@ -496,34 +557,50 @@ class _Writing:
 
 
 def _units(program: Program) -> list[Unit]:
-    """Units in layers: in each the small steps, then the others, which do not wait for each other."""
+    """Units in an order in which each comes behind those that it waits for."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
-    layer_of = defaultdict[int, int](int)
-    large_in = set[int]()
-    layers: list[tuple[list[Step], list[Step]]] = []
-    for step in program.steps:
-        together = step.called and (calls[hash(step.function)] >= FEWEST or _stays(step))
-        small = step.small and not together and not _is_long(step)
-        needed = program.origins.holders(_joined([operand.numbers for operand in step.operands]))
-        layer = max((layer_of[owner] + int(owner in large_in) for owner in needed), default=0)
-        while len(layers) <= layer:
-            layers.append(([], []))
-        layers[layer][0 if small else 1].append(step)
+    made_by: dict[int, tuple[int, _Key]] = {}
+    units: dict[tuple[int, _Key], Unit] = {}
+    for number, step in enumerate(program.steps):
+        key = _key(step, number, calls)
+        depth = 0
+        for operand in step.operands:
+            for owner in program.origins.holders(operand.numbers):
+                if owner in made_by:
+                    before, other = made_by[owner]
+                    joins = key == other and _joins(key, operand.numbers, program.origins.numbers(owner))
+                    depth = max(depth, before if joins else before + 1)
+        units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
         for owner in program.origins.holders(_joined([result.numbers for result in step.results])):
-            layer_of[owner] = layer
-            if not small:
-                large_in.add(owner)
-    units = []
-    for small_ones, large_ones in layers:
-        units += [Unit(steps, True) for steps in _bundles(small_ones) if steps]
-        batches: dict[int, list[Step]] = {}
-        for step in large_ones:
-            if step.called and not _is_kernel(step):
-                batches.setdefault(hash(step.function), []).append(step)
-            else:
-                units.append(Unit([step]))
-        units += [Unit(steps) for steps in batches.values()]
-    return units
+            made_by[owner] = (depth, key)
+    return [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
+
+
+_Key = tuple[UnitKind, int]
+"""What steps share that one unit may hold: the kind of unit, and its turns, its function or its step."""
+
+
+def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:
+    """Which unit may hold a step.
+
+    Args:
+        step: the step.
+        number: its number.
+        calls: how often each function is called, by its hash.
+    """
+    if step.called and (calls[hash(step.function)] >= FEWEST or _stays(step)):
+        return (UnitKind.SINGLE, number) if _is_kernel(step) else (UnitKind.CALLS, hash(step.function))
+    if step.operation is not None and len(step.results[0].numbers) >= FEWEST_TURNS:
+        return UnitKind.LOOP, len(step.results[0].numbers)
+    longest = SMALL if step.called or step.operation is not None else LONGEST_PRODUCT_WITHOUT_LOOP
+    if step.instructions <= longest:
+        return UnitKind.STRAIGHT, 0
+    return (UnitKind.CALLS, hash(step.function)) if step.called and not _is_kernel(step) else (UnitKind.SINGLE, number)
+
+
+def _joins(key: _Key, operand: Numbers, made: Numbers) -> bool:
+    """Whether a step may stand in the unit that computes an operand: a turn of a loop reads what that turn made."""
+    return key[0] is UnitKind.STRAIGHT or (key[0] is UnitKind.LOOP and np.array_equal(operand, made))
 
 
 def _stays(step: Step) -> bool:
@@ -541,11 +618,6 @@ def _stays(step: Step) -> bool:
 def _is_kernel(step: Step) -> bool:
     """Whether a step calls a function that calls others."""
     return step.called and bool(not step.function.is_a("SXFunction") or step.function.find_functions(0))
-
-
-def _is_long(step: Step) -> bool:
-    """Whether a step on entries takes less code in a loop, and about as long."""
-    return step.operation is not None and step.instructions > LONGEST_WITHOUT_LOOP
 
 
 def _bundles(steps: Sequence[Step]) -> list[list[Step]]:

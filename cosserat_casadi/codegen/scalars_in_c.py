@@ -28,6 +28,7 @@ from cosserat_casadi.codegen.printed_kernels import (
     COLUMNS,
     PART_OF_COLUMNS,
     Callee,
+    ConstantTable,
     Kernel,
     PrintedKernel,
 )
@@ -43,7 +44,6 @@ from cosserat_casadi.codegen.statements import (
     in_parts,
     number_in_c,
 )
-from cosserat_casadi.maths.typing import FloatArray
 
 
 def scalars_in_c(function: ca.Function, signature: ca.Function, arithmetic: Arithmetic = SINGLE) -> PrintedKernel:
@@ -150,13 +150,14 @@ class _Writing:
 
     def result(self) -> PrintedKernel:
         """The kernel."""
-        tables = ""
+        tables = {}
         self._write_callees()
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
             if self.form.turns_behind is None:
-                tables = _table(f"{self.name}_turns", self.form.turns)
+                numbers = tuple(f"{value:.17g}" for value in in_groups(self.form.turns))
+                tables["turns"] = ConstantTable("casadi_real", numbers)
             self._write_columns(self.form)
         self._write_results()
         self._write_main()
@@ -290,7 +291,7 @@ class _Writing:
             return
         if isinstance(value, Read):
             entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : {self.arithmetic.number(0.0)}"
-            self.main.statements.append(Statement(f"{{made}} = {entry};", [], number))
+            self.main.statements.append(Statement(entry, [], number))
         elif isinstance(value, Computed):
             self.main.statements.append(self.arithmetic.operation(value.operation, value.operands, number))
         if number in self.place:
@@ -371,7 +372,7 @@ class _Writing:
             self.statements += len(block.statements)
         listed = "\n".join(calls)
         self.functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
-        turns = f"{self.name}_turns"
+        turns = "TABLE(turns)"
         start = 0
         if form.turns_behind is not None:
             turns = f"arg[{form.columns_argument - 1}]"
@@ -464,10 +465,3 @@ def _starts(sizes: Iterable[int]) -> list[int]:
         starts.append(total)
         total += size
     return starts
-
-
-def _table(name: str, turns: FloatArray) -> str:
-    """The turns as a constant array."""
-    numbers = [f"{value:.17g}" for value in in_groups(turns)]
-    lines = [", ".join(numbers[first : first + 8]) for first in range(0, len(numbers), 8)]
-    return f"static const casadi_real {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n"

@@ -307,10 +307,10 @@ def _by_directions(adjoint: ca.Function, symbols: Sequence[Matrix], j: int) -> l
     along = _along(adjoint, j)
     columns = _columns_with_entries(adjoint, j)
     directions = ca.DM.eye(symbols[j].numel())[:, columns]
-    reused = [True] * len(symbols)
-    stacked = [False] * adjoint.n_out()
-    loop = along.map(len(columns), [*reused, False], stacked)
-    results = loop.call([*symbols, ca.densify(directions)])
+    count = len(columns)
+    # CasADi does not say of a map with arguments that are the same in all calls which function it calls.
+    repeated = [ca.repmat(symbol, 1, count) for symbol in symbols]
+    results = along.map(count).call([*repeated, ca.densify(directions)])
     if len(columns) == symbols[j].numel():
         return list(results)
     return [result @ directions.T for result in results]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
 import casadi as ca
 
-from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, Computed, Listing, UnknownOperationError
+from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, SUMS, Computed, Listing, UnknownOperationError
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
@@ -17,19 +18,45 @@ LONGEST_OF_NUMBERS = 400
 """Statements on numbers in one function: what compilers take grows faster than its length."""
 
 
+CHOICE, SUM, PRODUCT, ATOM = range(4)
+"""How tightly expressions bind in C: choices and comparisons, sums, products, and what needs no parentheses."""
+
+LONGEST_LINE = 110
+"""Characters up to which the expression of a value that is read once stands where it is read."""
+
+
 @dataclass(frozen=True)
 class Statement:
     """One statement.
 
     Attributes:
-        text: with ``{made}`` for its result, and ``{0}``, ``{1}`` for its operands.
+        text: an expression, or all of a statement that only writes; with ``{0}``, ``{1}`` for its operands.
         operands: numbers of the values that it reads.
-        made: number of the value that it computes; None for one that only writes.
+        made: number of the value of the expression; None for a statement that only writes.
+        binding: how tightly the expression binds, of ATOM, PRODUCT, SUM and CHOICE; a written text takes any operand.
+        sides: how tightly each operand must bind to stand without parentheses.
     """
 
     text: str
     operands: Sequence[int]
     made: int | None = None
+    binding: int = 0
+    sides: Sequence[int] = ()
+
+    def with_operand(self, place: int, other: Statement) -> Statement:
+        """The same statement with the expression of another in place of an operand."""
+        count = len(other.operands)
+        inner = other.text.format(*[f"{{{place + i}}}" for i in range(count)])
+        if self.sides and other.binding < self.sides[place]:
+            inner = f"({inner})"
+        before = [f"{{{i}}}" for i in range(place)]
+        behind = [f"{{{count + i}}}" for i in range(place, len(self.operands) - 1)]
+        operands = [*self.operands[:place], *other.operands, *self.operands[place + 1 :]]
+        sides: list[int] = []
+        if self.sides:
+            # The operands of the other stand in its text already.
+            sides = [*self.sides[:place], *[CHOICE] * count, *self.sides[place + 1 :]]
+        return Statement(self.text.format(*before, inner, *behind), operands, self.made, self.binding, sides)
 
 
 @dataclass
@@ -54,19 +81,21 @@ class Block:
         Args:
             text_of: text of a value that is in no variable of this block; None for one that is.
         """
-        last_use = {operand: i for i, statement in enumerate(self.statements) for operand in statement.operands}
+        statements = _nested(self.statements, text_of)
+        last_use = {operand: i for i, statement in enumerate(statements) for operand in statement.operands}
         variable: dict[int, str] = {}
         free: list[str] = []
         lines = []
-        for i, statement in enumerate(self.statements):
+        for i, statement in enumerate(statements):
             texts = [text_of(operand) or variable[operand] for operand in statement.operands]
             done = [operand for operand in dict.fromkeys(statement.operands) if last_use[operand] == i]
             free += [variable[operand] for operand in done if operand in variable]
-            made = ""
+            text = statement.text.format(*texts)
             if statement.made is not None:
                 made = free.pop() if free else self._another()
                 variable[statement.made] = made
-            lines.append(f"  {statement.text.format(*texts, made=made)}")
+                text = f"{made} = {text};"
+            lines.append(f"  {text}")
         return [*self._declarations(), *lines]
 
     def _another(self) -> str:
@@ -106,13 +135,15 @@ class Arithmetic:
             UnknownOperationError: it has no form here.
         """
         if operation in BINARY:
-            return Statement(f"{{made}} = {{0}} {BINARY[operation]} {{1}};", operands, made)
+            binding = SUM if operation in SUMS else PRODUCT
+            # Operands on the right keep their parentheses: a sum is rounded in the order in which it is written.
+            return Statement(f"{{0}} {BINARY[operation]} {{1}}", operands, made, binding, (binding, binding + 1))
         if operation in self.choices:
-            return Statement(f"{{made}} = {self.choices[operation]};", operands, made)
+            return Statement(self.choices[operation], operands, made, CHOICE, [ATOM] * len(operands))
         if operation not in self.functions:
             raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
         places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
-        return Statement(f"{{made}} = {self.functions[operation]}({places});", operands, made)
+        return Statement(f"{self.functions[operation]}({places})", operands, made, ATOM)
 
 
 FEWEST = 3
@@ -131,6 +162,38 @@ LANES_OF_ROWS = Arithmetic(
     None,
 )
 """Numbers of several rows at once, which have no comparison: lanes would answer it each in its own way."""
+
+
+def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None]) -> list[Statement]:
+    """Statements with the expression of each value that is read once in its place, as far as lines stay short."""
+    reads = Counter(operand for statement in statements for operand in statement.operands)
+    waiting: dict[int, Statement] = {}
+    written: list[Statement] = []
+    for statement in statements:
+        place = 0
+        while place < len(statement.operands):
+            other = waiting.pop(statement.operands[place], None)
+            if other is None:
+                place += 1
+                continue
+            longer = statement.with_operand(place, other)
+            if _length(longer, text_of) > LONGEST_LINE:
+                written.append(other)
+                place += 1
+            else:
+                statement = longer
+                place += len(other.operands)
+        if statement.made is not None and reads[statement.made] == 1:
+            waiting[statement.made] = statement
+        else:
+            written.append(statement)
+    # What is left is read by none of these statements.
+    return [*written, *waiting.values()]
+
+
+def _length(statement: Statement, text_of: Callable[[int], str | None]) -> int:
+    """Characters of a statement, whose variables are short."""
+    return len(statement.text.format(*[text_of(operand) or "a00" for operand in statement.operands]))
 
 
 @dataclass(frozen=True)

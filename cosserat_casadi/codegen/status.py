@@ -22,7 +22,7 @@ OUTCOMES = _without(Outcome.CONTACT_UNSETTLED, Outcome.OUT_OF_RANGE)
 CONTACT_OUTCOMES = _without(Outcome.OUT_OF_RANGE)
 """Statuses of the solver of rods in exact contact."""
 
-TUBE_OUTCOMES = _without(Outcome.PATH_VANISHED, Outcome.CONTACT_UNSETTLED)
+TUBE_OUTCOMES = _without(Outcome.PATH_VANISHED, Outcome.BEYOND_MATERIAL, Outcome.CONTACT_UNSETTLED)
 """Statuses of the solver of concentric tubes."""
 
 

@@ -2,6 +2,8 @@
 
 * What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
   into order when a step asks for them.
+* Of a constant matrix times a constant matrix times what is computed, the two constants are multiplied beforehand where
+  that leaves fewer products: matrices that fold and unfold symmetric ones are worth it without loops alone.
 * A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
   routine of products.py runs along them without looking anything up.
 """
@@ -36,7 +38,6 @@ WORTH_SPLITTING = 0.2
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
 SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
-MAPS = {"Map", "MapSum"}
 ADDING = {ca.OP_SETNONZEROS, ca.OP_ADDNONZEROS}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
@@ -63,6 +64,7 @@ class _Reading:
         self.origins = Origins()
         self.steps: list[Step] = []
         self._ordered = set[bytes]()
+        self._factors_of: dict[tuple[tuple[int, int], bytes], tuple[Value, Value]] = {}
         self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
         self.outputs = self._read(function, self.inputs)
 
@@ -125,7 +127,7 @@ class _Reading:
             function = node.which_function()
             if function.is_a("MXFunction"):
                 return self._read(function, operands)
-            if function.class_name() in MAPS:
+            if function.class_name() == "Map":
                 return self._mapped(function, operands)
             if not function.is_a("SXFunction"):
                 raise UnknownInstructionError
@@ -146,39 +148,19 @@ class _Reading:
         return self._step(scalar, operands, _length(scalar), called=True)
 
     def _mapped(self, function: ca.Function, operands: Sequence[Value]) -> list[Value]:
-        """Results of a function that is called for one group of columns after the other.
-
-        Arguments as wide as those of a single call are the same in all calls, such results are sums over them.
-
-        Raises:
-            UnknownInstructionError: CasADi does not say which function that is.
-        """
+        """Results of a function that is called for one group of columns after the other."""
         facts = function.info()
-        # CasADi 3.7 does not say which function a map with sums calls.
-        inside = [facts["f"]] if "f" in facts else function.find_functions(0)
-        if not inside:
-            raise UnknownInstructionError
-        one = inside[0]
-        widths = [*map(function.size2_in, range(one.n_in())), *map(function.size2_out, range(one.n_out()))]
-        own_widths = [*map(one.size2_in, range(one.n_in())), *map(one.size2_out, range(one.n_out()))]
-        count = max(whole // own for whole, own in zip(widths, own_widths, strict=True) if own)
+        one = facts["f"]
         calls = []
-        for k in range(count):
+        for k in range(facts["n"]):
             given = []
             for i, operand in enumerate(operands):
                 size = one.nnz_in(i)
-                first = k * size if len(operand.numbers) > size else 0
-                given.append(Value(one.sparsity_in(i), operand.numbers[first : first + size]))
+                given.append(Value(one.sparsity_in(i), operand.numbers[k * size : (k + 1) * size]))
             calls.append(self._called(one, given))
         results = []
         for i in range(one.n_out()):
-            columns = [call[i].numbers for call in calls]
-            if function.size2_out(i) > one.size2_out(i):
-                numbers = np.concatenate(columns)
-            else:
-                numbers = columns[0]
-                for column_of_call in columns[1:]:
-                    numbers = self._sum(ca.OP_ADD, numbers, column_of_call)
+            numbers = np.concatenate([call[i].numbers for call in calls])
             results.append(Value(function.sparsity_out(i), numbers))
         return results
 
@@ -268,6 +250,14 @@ class _Reading:
 
     def _product(self, added: Value, left: Value, right: Value) -> Value:
         """The sum added + left right."""
+        left, right = self._with_constants_multiplied(left, right)
+        result = self._product_of(added, left, right)
+        if not added.numbers.any():
+            self._factors_of[result.pattern.shape, result.numbers.tobytes()] = left, right
+        return result
+
+    def _product_of(self, added: Value, left: Value, right: Value) -> Value:
+        """The sum added + left right, in the quickest way."""
         turned_left = left.transposed
         turned_right = right.transposed.dense
         along_rows = self._time(turned_right, turned_left)
@@ -278,6 +268,42 @@ class _Reading:
             turned = self._multiplied(added.transposed.dense, turned_right, turned_left)
             return turned.transposed.projected(added.pattern)
         return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
+
+    def _with_constants_multiplied(self, left: Value, right: Value) -> tuple[Value, Value]:
+        """Factors of the same product, of which the constant one may have taken in a constant factor of the other."""
+        if self._is_constant(left):
+            inner = self._factors(right)
+            if inner is not None and self._is_constant(inner[0]):
+                return self._taken_in(left, inner[0], right, inner[1])
+        elif self._is_constant(right):
+            turned_right, turned_left = self._with_constants_multiplied(right.transposed, left.transposed)
+            return turned_left.transposed, turned_right.transposed
+        return left, right
+
+    def _taken_in(self, outer: Value, inner: Value, right: Value, factor: Value) -> tuple[Value, Value]:
+        """Factors of outer (inner factor), which are outer and right, or one constant and the factor."""
+        product = self._matrix(outer) @ self._matrix(inner)
+        before = _multiplications(outer.dense, right) + _multiplications(inner.dense, factor)
+        if product.nnz() * factor.pattern.size2() > before:
+            return outer, right
+        return self.origins.add(product.sparsity(), product.nonzeros()), factor
+
+    def _factors(self, value: Value) -> tuple[Value, Value] | None:
+        """Factors of a matrix that is a product, or the transpose of one; None of any other."""
+        turned = value.transposed
+        if (value.pattern.shape, value.numbers.tobytes()) in self._factors_of:
+            return self._factors_of[value.pattern.shape, value.numbers.tobytes()]
+        if (turned.pattern.shape, turned.numbers.tobytes()) in self._factors_of:
+            left, right = self._factors_of[turned.pattern.shape, turned.numbers.tobytes()]
+            return right.transposed, left.transposed
+        return None
+
+    def _is_constant(self, value: Value) -> bool:
+        return bool(np.all(self.origins.is_constant(value.numbers)))
+
+    def _matrix(self, value: Value) -> ca.DM:
+        """A constant matrix."""
+        return ca.DM(value.pattern, self.origins.constants(value.numbers))
 
     def _multiplied(self, added: Value, left: Value, right: Value) -> Value:
         operands = [left, right]

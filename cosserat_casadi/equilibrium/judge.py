@@ -20,7 +20,7 @@ from cosserat_casadi.equilibrium.stability import (
     stability_of,
     variations,
 )
-from cosserat_casadi.equilibrium.vanished_paths import with_paths
+from cosserat_casadi.equilibrium.strain_limits import within_limits
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
@@ -61,7 +61,7 @@ def judge(
     # Short of the full load there is no equilibrium of the scene to judge.
     if load_factor == 1.0:
         outcome = _verdict(model, x, inputs, outcome, norm, tolerance)
-    outcome, message = with_paths(model, x, inputs, outcome)
+    outcome, message = within_limits(model, x, inputs, outcome)
     if load_factor != 1.0:
         message += f" Load factor reached: {load_factor:.6g}."
     if outcome is not Outcome.CONVERGED:

@@ -7,6 +7,7 @@ has no column keeps the scene's values.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -112,6 +113,71 @@ def read_load_cases(path: Path, layout: CaseLayout) -> FloatArray:
     return cases
 
 
+@dataclass(frozen=True)
+class AskedRange:
+    """A range as options ask for it: ``column=low:high``, or ``column=low:high:count``.
+
+    Attributes:
+        column: an input or a parameter, such as ``push.force.x``.
+        low: lower end, SI units.
+        high: upper end.
+        count: values between the ends, both among them; None where the text has none.
+    """
+
+    column: str
+    low: float
+    high: float
+    count: int | None
+
+
+def read_range(text: str) -> AskedRange:
+    """The range that a text asks for.
+
+    Raises:
+        SceneError: it is no range.
+    """
+    name, _, numbers = text.partition("=")
+    first, _, rest = numbers.partition(":")
+    last, colon, values = rest.partition(":")
+    low = finite_number(first)
+    high = finite_number(last)
+    if low is None or high is None:
+        raise SceneError(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
+    # At most nine digits: Python refuses to read integers of thousands.
+    if colon and not re.fullmatch(r"[0-9]{1,9}", values):
+        problem = f"{text!r} has no whole number of values"
+        raise SceneError(Problem("--range", problem, "such as push.force.x=-1:1:21"))
+    return AskedRange(name.strip(), low, high, int(values) if colon else None)
+
+
+def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
+    """Lower and upper end by column of ``column=low:high``.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    problems: list[Problem] = []
+    ends: dict[str, tuple[float, float]] = {}
+    for text in ranges:
+        try:
+            asked = read_range(text)
+        except SceneError as error:
+            problems.extend(error.problems)
+            continue
+        if asked.column not in layout.columns:
+            problems.append(no_column("--range", asked.column, layout.columns))
+        elif asked.count is not None:
+            problem = f"{text!r} counts values, and modes are chosen for a whole range"
+            problems.append(Problem("--range", problem, f"write {asked.column}={asked.low:g}:{asked.high:g}"))
+        elif asked.column in ends:
+            problems.append(Problem("--range", f"{asked.column!r} has two ranges", "give one of them"))
+        else:
+            ends[asked.column] = (asked.low, asked.high)
+    if problems:
+        raise SceneError(*problems)
+    return ends
+
+
 def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     """Load cases spread evenly over a box, shape (count, size of a case).
 
@@ -126,45 +192,12 @@ def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     Raises:
         SceneError: with every fault.
     """
-    bounds = _bounds(ranges, layout.columns)
+    ends = ends_by_column(ranges, layout)
     cases = np.tile(layout.default, (count, 1))
-    shares = _additive_recurrence(count, len(bounds))
-    for (index, (low, high)), share in zip(bounds.items(), shares.T, strict=True):
-        cases[:, index] = low + share * (high - low)
+    shares = _additive_recurrence(count, len(ends))
+    for (column, (low, high)), share in zip(ends.items(), shares.T, strict=True):
+        cases[:, layout.columns[column]] = low + share * (high - low)
     return cases
-
-
-def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
-    """Lower and upper end by column of ``column=low:high``.
-
-    Raises:
-        SceneError: with every fault.
-    """
-    columns = list(layout.columns)
-    return {columns[k]: ends for k, ends in _bounds(ranges, {c: i for i, c in enumerate(columns)}).items()}
-
-
-def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[float, float]]:
-    """Lower and upper end by the index of the column."""
-    problems: list[Problem] = []
-    bounds: dict[int, tuple[float, float]] = {}
-    for text in ranges:
-        name, _, ends = text.partition("=")
-        column = name.strip()
-        first, _, last = ends.partition(":")
-        low = finite_number(first)
-        high = finite_number(last)
-        if column not in indices:
-            problems.append(no_column("--range", column, indices))
-        elif low is None or high is None:
-            problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
-        elif indices[column] in bounds:
-            problems.append(Problem("--range", f"{column!r} has two ranges", "give one of them"))
-        else:
-            bounds[indices[column]] = (low, high)
-    if problems:
-        raise SceneError(*problems)
-    return bounds
 
 
 def _additive_recurrence(count: int, dimension: int) -> FloatArray:

@@ -23,11 +23,11 @@ from cosserat_casadi.model.function_table import (
     scene_function,
 )
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
-from cosserat_casadi.model.path_stretch import path_stretches
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_actuators import rod_actuation
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.section_poses import interpolation_weights
+from cosserat_casadi.model.strain_margins import strain_margins
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
 from cosserat_casadi.model.watched import watched
@@ -141,15 +141,16 @@ class ModelFunctions:
         """
         return [resolution_index(written)]
 
-    @scene_function(Output("path_stretch"), kernel="path_stretch")
-    def path_stretch(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ length per length of the rod that each tendon's path has left where it has least.
+    @scene_function(Output("strain_margins"), kernel="strain_margins")
+    def strain_margins(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ how far strains are from what a rod cannot be: a number for each thing that has an end.
 
-        One number for each tendon whose path can change; at zero the rod has pressed it to nothing, below it is turned
-        inside out. None without such tendons.
+        For each tendon whose path can change the length per length of the rod that it has left where it has least: at
+        zero the rod has pressed it to nothing. Then for each rod whose material is not linear how far it is from where
+        the law ends. None where neither is there.
         """
-        stretches = path_stretches(written.system)
-        return [ca.vertcat(*stretches.values())] if stretches else None
+        margins = strain_margins(written.system)
+        return [ca.vertcat(*margins.values())] if margins else None
 
     @scene_function(Output("depth"))
     def contact_depth(self, written: Expressions) -> list[Matrix] | None:
@@ -375,8 +376,8 @@ def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
     efforts = rod_actuation(written.discrete, written.owner, written["inputs"])
     model = InverseGeometricModel(Statics(rod_shape, loads), tuple(efforts))
     force = model.generalised_force
-    if model.actuation_force is not None:
-        force = force + model.actuation_force
+    if model.further_force is not None:
+        force = force + model.further_force
     base_force = rotation @ model.statics.base_force
     base_moment = rotation @ model.statics.base_moment
     return [force, base_force, base_moment]

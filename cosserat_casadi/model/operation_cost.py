@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operations import Count, count, counts
+from cosserat_casadi.scene.records import HashedTable
 
 PriceProgress = Callable[[str, int, int], None]
 """A function that takes the part being counted, the number of counts that are done, and their total."""
@@ -103,11 +104,24 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
 
 
 def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
-    """The scene without one of its loads or actuators, and without the inputs that were its."""
-    loads = tuple(load for load in scene.loads if load.name != name)
-    actuators = tuple(actuator for actuator in scene.actuators if actuator.name != name)
-    inputs = tuple(entry.name for entry in scene.free_inputs() if entry.owner != name)
-    return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": inputs})
+    """The scene without one of its loads or actuators, and without the inputs, ranges and parameters that are of it."""
+
+    def is_other(field: str) -> bool:
+        """Whether a name such as ``push.force`` is of another part of the scene."""
+        return field.split(".")[0] != name
+
+    named = zip(scene.parameters, scene.parameter_names(), strict=True)
+    return scene.model_copy(
+        update={
+            "loads": tuple(load for load in scene.loads if load.name != name),
+            "actuators": tuple(actuator for actuator in scene.actuators if actuator.name != name),
+            "inputs": tuple(entry.name for entry in scene.free_inputs() if is_other(entry.name)),
+            "parameters": tuple(entry for entry, parameter in named if is_other(parameter)),
+            "ranges": HashedTable({field: pairs for field, pairs in scene.ranges.items() if is_other(field)}),
+            "bounds": tuple(bound for bound in scene.bounds if is_other(bound.input)),
+            "motions": tuple(motion for motion in scene.motions if is_other(motion.input)),
+        }
+    )
 
 
 def without_obstacle(scene: scenes.Scene, name: str) -> scenes.Scene:

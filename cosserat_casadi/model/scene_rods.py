@@ -17,15 +17,16 @@ from cosserat_casadi.maths.numbers import (
     as_vector,
     is_symbolic,
     known,
-    repeated,
     side_by_side,
 )
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.sections import SHAPES, sizes_of
-from cosserat_casadi.rod.properties import STRAINS, Field, RodProperties
+from cosserat_casadi.model.materials import LAWS, LawOfRod, coupled_stiffness
+from cosserat_casadi.model.sections import SHAPES, along, linear, sizes_along, sizes_of
+from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, RodProperties
 from cosserat_casadi.rod.section import SectionShape
 from cosserat_casadi.rod.section import hooke as hooke_tensor
+from cosserat_casadi.scene.material_records import INCOMPRESSIBLE
 
 SMALLEST_FORCE = 1e-150
 """Least EI/ℓ² that can be computed with, N: its square is still a number."""
@@ -51,6 +52,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         admitted=rod.admitted,
         basis=rod.basis,
         hooke=hooke,
+        beyond_hooke=_beyond_hooke(rod, hooke),
         intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
         linear_density=_linear_density(rod),
         rotary_inertia=_rotary_inertia(rod),
@@ -121,20 +123,6 @@ def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
     return tuple(float(v) for v in values)
 
 
-def _linear(value: Scalar | Sequence[Scalar]) -> Field:
-    """A size along the rod: constant, or linear from base to tip."""
-    if isinstance(value, int | float):
-        return lambda X: np.full(X.shape[0], float(value))
-    if is_symbolic(value):
-        # One stands for all abscissae.
-        expression: Numbers = value
-        return lambda X: expression
-    assert isinstance(value, tuple)
-    base, tip = value
-    linear: Field = lambda X: base + (tip - base) * X  # noqa: E731
-    return linear
-
-
 def _shared(field: Field, *sizes: Any) -> Field:
     """A field of sections that are all alike, if no size varies: where it is an expression, one stands for all."""
     if any(isinstance(size, tuple) for size in sizes):
@@ -148,6 +136,11 @@ def _shared(field: Field, *sizes: Any) -> Field:
 
 
 def _hooke(rod: scenes.Rod) -> Field:
+    if rod.stiffness_matrix is not None:
+        diagonal = as_vector([row[i] for i, row in enumerate(rod.stiffness_matrix)])
+        if is_symbolic(diagonal):
+            return lambda X: diagonal.T
+        return lambda X: np.tile(known(diagonal), (X.shape[0], 1))
     if rod.stiffness is not None:
         # One that is not given is not admitted, and not read.
         return _direct(rod.stiffness, np.nan)
@@ -159,12 +152,30 @@ def _hooke(rod: scenes.Rod) -> Field:
     return _of_sections(rod.section, lambda shape: hooke_tensor(shape, youngs_modulus, shear, correction))
 
 
+def _beyond_hooke(rod: scenes.Rod, hooke: Field) -> EnergyBeyondHooke | None:
+    """Elastic energy that the Hooke tensor does not hold; None of a rod that is linear.
+
+    Raises:
+        SceneError: the law of its material does not fit its section.
+    """
+    if rod.stiffness_matrix is not None:
+        return coupled_stiffness(rod.stiffness_matrix, LawOfRod(rod, hooke))
+    if rod.material is None or rod.section is None:
+        return None
+    of_rod = LawOfRod(rod, hooke)
+    energy: EnergyBeyondHooke | None = LAWS[rod.material.law].beyond_hooke(rod.material, of_rod)
+    return energy
+
+
 def shear_modulus(material: scenes.Material) -> Scalar:
-    """G of an isotropic material: its shear modulus, or E / (2 (1 + ν)) from Poisson's ratio."""
+    """G of an isotropic material: its shear modulus, or E / (2 (1 + ν)) from Poisson's ratio.
+
+    A material that has neither keeps its volume: G = E/3.
+    """
     if material.shear_modulus is not None:
         return material.shear_modulus
-    assert material.poisson_ratio is not None
-    return material.youngs_modulus / (2 * (1 + material.poisson_ratio))
+    poisson_ratio = INCOMPRESSIBLE if material.poisson_ratio is None else material.poisson_ratio
+    return material.youngs_modulus / (2 * (1 + poisson_ratio))
 
 
 def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
@@ -175,8 +186,8 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
         left_out: value of coefficients that the scene does not give.
     """
     fields = [getattr(given, name) for name in STRAINS]
-    linear = [_linear(left_out if field is None else field) for field in fields]
-    return _shared(lambda X: side_by_side([_along(f, X) for f in linear]), *fields)
+    coefficients = [linear(left_out if field is None else field) for field in fields]
+    return _shared(lambda X: side_by_side([along(coefficient, X) for coefficient in coefficients]), *fields)
 
 
 def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numbers]) -> Field:
@@ -195,20 +206,10 @@ def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numb
     return at
 
 
-def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
-    """Sizes of a section at abscissae, shape (k,) each, m, by their keys."""
-    return {key: _along(_linear(size), X) for key, size in sizes_of(record).items()}
-
-
-def _along(field: Field, X: Numbers) -> Numbers:
-    """Values of a field at every abscissa."""
-    return repeated(field(X), X.shape[0])
-
-
 def _linear_density(rod: scenes.Rod) -> Field | None:
     if rod.linear_density is not None:
-        given = _linear(rod.linear_density)
-        return _shared(lambda X: _along(given, X), rod.linear_density)
+        given = linear(rod.linear_density)
+        return _shared(lambda X: along(given, X), rod.linear_density)
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density
@@ -240,8 +241,8 @@ def _diameter(rod: scenes.Rod) -> Field | None:
     """Outer diameter of round sections (k,); None of others."""
     if rod.section is None or rod.section.radius_key is None:
         return None
-    radius = _linear(getattr(rod.section, rod.section.radius_key))
-    return lambda X: 2 * _along(radius, X)
+    radius = linear(getattr(rod.section, rod.section.radius_key))
+    return lambda X: 2 * along(radius, X)
 
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:

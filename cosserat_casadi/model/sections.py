@@ -6,12 +6,16 @@ A member is one class: it gives :meth:`CrossSection.shape`. Stiffness, mass and 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Generic, TypeVar, final
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.maths.numbers import Numbers
+from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, repeated
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod import section
+from cosserat_casadi.rod.properties import Field
 from cosserat_casadi.rod.section import SectionShape
 from cosserat_casadi.scene.families import Kind, Kinds, register
 from cosserat_casadi.scene.rod_records import SECTIONS, SectionRecord
@@ -20,6 +24,19 @@ RecordType = TypeVar("RecordType", bound=SectionRecord)
 
 Sizes = Mapping[str, Numbers]
 """Sizes of k sections by the keys of their record, shape (k,) each, m; expressions where parameters set them."""
+
+
+Fibre = tuple[Matrix, Matrix, Matrix]
+"""Place of a fibre in the section, x and y, m, and its area, m²."""
+
+RADIAL_POINTS = 3
+"""Points along the radius of a round section: exact up to its eleventh power."""
+
+DIRECTIONS = 12
+"""Directions in which they lie: products of powers of x and y are exact up to a sum of 11."""
+
+POINTS_ACROSS = 6
+"""Points across each side of a rectangle: exact up to the eleventh power of x and of y."""
 
 
 class CrossSection(Kind, ABC, Generic[RecordType]):
@@ -32,6 +49,13 @@ class CrossSection(Kind, ABC, Generic[RecordType]):
     @abstractmethod
     def shape(self, sizes: Sizes) -> SectionShape:
         """Area, second moments and torsion constant of sections of these sizes."""
+
+    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre] | None:
+        """Points of a quadrature over the section, x, y and area of each, m and m², symmetric about both axes.
+
+        None for a section of linear materials alone.
+        """
+        return None
 
     def half_widths(self, sizes: Sizes) -> tuple[Numbers, Numbers] | None:
         """Half of the widths along x and y as a page draws them, m; of a round section its radius.
@@ -51,6 +75,30 @@ def sizes_of(record: SectionRecord) -> dict[str, Any]:
     return {key: getattr(record, key) for key in type(record).model_fields if key not in ("shape", "shear_correction")}
 
 
+def linear(value: Scalar | Sequence[Scalar]) -> Field:
+    """A size along the rod: constant, or linear from base to tip."""
+    if isinstance(value, int | float):
+        return lambda X: np.full(X.shape[0], float(value))
+    if is_symbolic(value):
+        # One stands for all abscissae.
+        expression: Numbers = value
+        return lambda X: expression
+    assert isinstance(value, tuple)
+    base, tip = value
+    from_base_to_tip: Field = lambda X: base + (tip - base) * X  # noqa: E731
+    return from_base_to_tip
+
+
+def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
+    """Sizes of a section at abscissae, shape (k,) each, m, by their keys."""
+    return {key: along(linear(size), X) for key, size in sizes_of(record).items()}
+
+
+def along(field: Field, X: Numbers) -> Numbers:
+    """Values of a field at every abscissa."""
+    return repeated(field(X), X.shape[0])
+
+
 @final
 @register
 class CircleSection(CrossSection[scenes.Circle]):
@@ -61,6 +109,10 @@ class CircleSection(CrossSection[scenes.Circle]):
     def shape(self, sizes: Sizes) -> SectionShape:
         """From its radius."""
         return section.circle(sizes["radius"])
+
+    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+        """Of a tube without bore."""
+        return _round_fibres(sizes["radius"], 0.0 * sizes["radius"])
 
 
 @final
@@ -74,6 +126,10 @@ class AnnulusSection(CrossSection[scenes.Annulus]):
         """From its radii."""
         return section.annulus(sizes["outer_radius"], sizes["inner_radius"])
 
+    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+        """Between its radii."""
+        return _round_fibres(sizes["outer_radius"], sizes["inner_radius"])
+
 
 @final
 @register
@@ -86,6 +142,31 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
         """From its width along x and its height along y."""
         return section.rectangle(sizes["width"], sizes["height"])
 
+    def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
+        """Gauss points across its width times those across its height."""
+        points, weights = np.polynomial.legendre.leggauss(POINTS_ACROSS)
+        width, height = sizes["width"], sizes["height"]
+        return [
+            (x / 2 * width, y / 2 * height, along_x * along_y / 4 * width * height)
+            for x, along_x in zip(points.tolist(), weights.tolist(), strict=True)
+            for y, along_y in zip(points.tolist(), weights.tolist(), strict=True)
+        ]
+
     def half_widths(self, sizes: Sizes) -> tuple[Numbers, Numbers]:
         """Half of its width and height."""
         return sizes["width"] / 2, sizes["height"] / 2
+
+
+def _round_fibres(outer: Matrix, inner: Matrix) -> list[Fibre]:
+    """Points on rings between two radii, m, Gauss points in the square of the radius, all of one ring alike."""
+    points, weights = np.polynomial.legendre.leggauss(RADIAL_POINTS)
+    squares = outer**2 - inner**2
+    fibres = []
+    for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
+        radius = (inner**2 + float(point) * squares) ** 0.5
+        area = np.pi * float(weight) / DIRECTIONS * squares
+        for direction in range(DIRECTIONS):
+            # Half a step off the axes, so that the points of all four quadrants mirror each other.
+            angle = 2 * np.pi * (direction + 0.5) / DIRECTIONS
+            fibres.append((float(np.cos(angle)) * radius, float(np.sin(angle)) * radius, area))
+    return fibres

@@ -19,6 +19,9 @@ NEARLY_TAUT = 1e-3
 DEPENDENT = 1e-2
 """Independence of the constraints below which they end a motion: it falls with the root of the time that is left."""
 
+BEYOND_LIMITS = (MotionOutcome.PATH_VANISHED, MotionOutcome.BEYOND_MATERIAL)
+"""Ends of motions with strains beyond their limits."""
+
 OUTCOMES = {
     StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
     StepOutcome.STEP_TOO_SMALL: MotionOutcome.STEP_TOO_SMALL,
@@ -84,7 +87,7 @@ def snapping_cables(history: History) -> list[str]:
 
 def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
-    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, MotionOutcome.PATH_VANISHED):
+    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, *BEYOND_LIMITS):
         return str(outcome.value)
     if outcome is MotionOutcome.CONTACT_UNSETTLED:
         return f"{outcome.value} {unsettled(history)}"

@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.vanished_paths import first_vanished
+from cosserat_casadi.equilibrium.strain_limits import first_beyond
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_checks import told_inside, too_deep
@@ -333,14 +333,15 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
-def told_vanished(history: History, duration: float) -> str:
-    """When the path of a tendon has first no length left, in a sentence; empty where that is never so."""
+def told_beyond(history: History, duration: float) -> tuple[MotionOutcome, str] | None:
+    """When strains are first beyond their limits, as outcome and sentence; None where they never are."""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
-    vanished = first_vanished(history.model, x, inputs)
-    if vanished is None:
-        return ""
-    return f"It is the path of '{vanished.tendon}', from t = {times[vanished.state]:.6g} s on."
+    beyond = first_beyond(history.model, x, inputs)
+    if beyond is None:
+        return None
+    outcome = MotionOutcome[beyond.word]
+    return outcome, f"{outcome.value} {beyond.whose}, from t = {times[beyond.state]:.6g} s on."
 
 
 def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
@@ -355,14 +356,13 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
     duration = simulator.simulation.duration
-    vanished = told_vanished(history, duration)
+    beyond = told_beyond(history, duration)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
         message = message_of(history, outcome) + too_deep(history, duration)
-    elif vanished:
-        outcome = MotionOutcome.PATH_VANISHED
-        message = f"{outcome.value} {vanished}"
+    elif beyond is not None:
+        outcome, message = beyond
     elif entered:
         outcome = MotionOutcome.CONTACT_UNSETTLED
         message = entered

@@ -58,6 +58,10 @@ class MotionOutcome(Enum):
         "A motion of the discrete model was computed, but the rod is bent so far on its way that the path of a tendon "
         "has no length left in it: lessen the loads, or move the path nearer to the axis."
     )
+    BEYOND_MATERIAL = (
+        "A motion of the discrete model was computed, but on its way the rod is strained beyond where the law of its "
+        "material holds: lessen the loads, or give the law for larger strains."
+    )
 
     @property
     def label(self) -> str:

@@ -33,6 +33,10 @@ class Outcome(Enum):
         "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond "
         "that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis."
     )
+    BEYOND_MATERIAL = (
+        "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a "
+        "further strain would set energy free: lessen the loads, or give the law for larger strains."
+    )
     CONTACT_UNSETTLED = (
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
         "and forces that only push."

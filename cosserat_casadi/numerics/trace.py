@@ -53,6 +53,10 @@ class PathOutcome(Enum):
         "The rod cannot follow the path of the discrete model: it is bent so far that a tendon has no length left "
         "along it."
     )
+    BEYOND_MATERIAL = (
+        "The rod cannot follow the path of the discrete model: it is strained beyond where the law of its material "
+        "holds."
+    )
 
     @property
     def label(self) -> str:

@@ -20,8 +20,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.scene_rods import sizes_along
-from cosserat_casadi.model.sections import SHAPES
+from cosserat_casadi.model.sections import SHAPES, sizes_along
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
 from cosserat_casadi.page.slider_ranges import movable, sliders

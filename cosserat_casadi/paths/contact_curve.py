@@ -248,12 +248,14 @@ class Arrangement:
         """Second derivatives of the positions with X, shape (E, N + 1, 3), but for what lies along the tangent.
 
         Curvature follows from the moment, which at the end of an element is known to more digits than the strain's
-        polynomial, a mean over the element. Under actuators the polynomial is taken.
+        polynomial, a mean over the element. Under actuators, and of materials that are not linear, the polynomial is
+        taken.
         """
         discrete_rod = self.equations.nominal.model.discrete.rods[rod]
         intervals = discrete_rod.grid.intervals
         widths = np.diff(ends)[:, None, None]
-        if any(actuator.rod == rod for actuator in self.scene.actuators):
+        is_actuated = any(actuator.rod == rod for actuator in self.scene.actuators)
+        if is_actuated or discrete_rod.properties.beyond_hooke is not None:
             return np.asarray(chebyshev.differentiation_matrix(intervals) @ tangents / widths)
         properties = discrete_rod.properties
         local = chebyshev.nodes(intervals)

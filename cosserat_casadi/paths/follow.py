@@ -17,7 +17,7 @@ from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
-from cosserat_casadi.equilibrium.vanished_paths import first_vanished
+from cosserat_casadi.equilibrium.strain_limits import first_beyond
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
@@ -213,7 +213,7 @@ def follow_path(
         return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
-    return _unless_vanished(_unless_too_deep(followed.record(traced)))
+    return _within_limits(_unless_too_deep(followed.record(traced)))
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:
@@ -248,15 +248,15 @@ def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
     return replace(path, outcome=PathOutcome.UNRESOLVED, message=message)
 
 
-def _unless_vanished(path: EquilibriumPath) -> EquilibriumPath:
-    """The path; told where a tendon has no length left along the rod on the way, or where the path stops for that."""
+def _within_limits(path: EquilibriumPath) -> EquilibriumPath:
+    """The path; told where strains are beyond their limits on the way, or where the path stops for that."""
     if path.outcome not in (PathOutcome.CONVERGED, PathOutcome.LOAD_STALLED):
         return path
-    vanished = first_vanished(path.model, path.x, path.all_inputs)
-    if vanished is None:
+    beyond = first_beyond(path.model, path.x, path.all_inputs)
+    if beyond is None:
         return path
-    outcome = PathOutcome.PATH_VANISHED
-    message = f"{outcome.value} It is the tendon '{vanished.tendon}', from factor {path.factor[vanished.state]:.6g} on."
+    outcome = PathOutcome[beyond.word]
+    message = f"{outcome.value} {beyond.whose}, from factor {path.factor[beyond.state]:.6g} on."
     return replace(path, outcome=outcome, message=message)
 
 

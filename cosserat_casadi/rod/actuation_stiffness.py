@@ -1,4 +1,4 @@
-"""Stiffness of a rod from efforts of actuators whose lengths or volumes are nonlinear in the strains."""
+"""Stiffness of a rod from functions of its strains that are nonlinear: lengths, volumes, energy beyond Hooke's law."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 
 
 def actuation_stiffness(igm: InverseGeometricModel) -> Matrix | None:
-    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts, n×n; None where it vanishes."""
+    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None where it vanishes."""
     parts = []
     curved = _curvature_stiffness(igm)
     if curved is not None:
         parts.append(curved)
-    for effort, conjugate in igm.efforts:
+    for effort, conjugate in igm.strain_functions:
         further = conjugate.further_stiffness
         if further is not None:
             parts.append(effort / igm.rod.energy_unit * further)
@@ -45,7 +45,7 @@ def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
     phi_b = ca.sparsify(ca.DM(igm.rod.at_nodes[b]))
     # Efforts first add their rows at the nodes: one product with Φ for all of them.
     rows = []
-    for effort, conjugate in igm.efforts:
+    for effort, conjugate in igm.strain_functions:
         curvature = conjugate.curvature(a, b)
         if curvature is not None:
             rows.append(effort / igm.rod.energy_unit * curvature)

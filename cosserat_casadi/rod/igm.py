@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.block_operators import stack
 from cosserat_casadi.maths.rotation import dot
@@ -18,6 +19,7 @@ from cosserat_casadi.rod.actuation import Actuation, Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.strain_density import StrainDensity
 from cosserat_casadi.rod.transport import interval_kernels
 
 
@@ -70,12 +72,33 @@ class InverseGeometricModel:
         return tuple(efforts)
 
     @cached_property
-    def actuation_force(self) -> Matrix | None:
-        """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        if not self.efforts:
+    def energy_beyond_hooke(self) -> Conjugate | None:
+        """Elastic energy beyond that of the Hooke tensor, J, at this shape; None of a rod that is linear."""
+        rod = self.rod
+        law = rod.properties.beyond_hooke
+        if law is None:
+            return None
+        nodes = np.arange(rod.grid.size)
+        data = law.data(rod.grid.nodes).T
+        return StrainDensity(law.density, nodes, data, of_change=True).on(self.shape)
+
+    @cached_property
+    def strain_functions(self) -> tuple[tuple[Matrix, Conjugate], ...]:
+        """Functions of the strains with their factors: the sum of the products is energy, J, that no pose enters."""
+        if self.energy_beyond_hooke is None:
+            return self.efforts
+        return (*self.efforts, (ca.DM(1.0), self.energy_beyond_hooke))
+
+    @cached_property
+    def further_force(self) -> Matrix | None:
+        """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what stands beside the linear stress, report (2.16); None if nothing does.
+
+        The stress of actuators, and that of the material beyond Hooke's law.
+        """
+        if not self.strain_functions:
             return None
         forces = []
-        for effort, conjugate in self.efforts:
+        for effort, conjugate in self.strain_functions:
             forces.append(effort / self.rod.energy_unit * conjugate.pull)
         return sum(forces[1:], forces[0])
 
@@ -84,16 +107,19 @@ class InverseGeometricModel:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
         elastic = self._elastic(self.rod.stiffness_matrix @ self.shape.q)
         passive = elastic + self.generalised_force
-        if self.actuation_force is None:
+        if self.further_force is None:
             return passive
-        return passive + self.actuation_force
+        return passive + self.further_force
 
     @cached_property
     def energy(self) -> Matrix:
-        """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
+        """Elastic energy, 1×1, J: ½ qᵀ K_εε q, and the energy beyond Hooke's law."""
         q = self.shape.q
         stored = ca.bilin(self.rod.stiffness_matrix, q, q)
-        return self.rod.energy_unit / 2 * self._elastic(stored)
+        linear = self.rod.energy_unit / 2 * self._elastic(stored)
+        if self.energy_beyond_hooke is None:
+            return linear
+        return linear + self.energy_beyond_hooke.value
 
     @cached_property
     def potential(self) -> Matrix | None:

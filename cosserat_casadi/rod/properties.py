@@ -35,6 +35,22 @@ Field = Callable[[Numbers], Numbers]
 
 
 @dataclass(frozen=True)
+class EnergyBeyondHooke:
+    """Elastic energy of a section beyond that of its Hooke tensor: the law of a material that is not linear.
+
+    Attributes:
+        density: change of the strains ξ − ξ⁰, 6×1, and data, d×1 ↦ energy per length, 1×1, J/m; zero with its gradient
+            at no change.
+        data: abscissae (k,) ↦ numbers that the density depends on (k, d), a row for each abscissa.
+        margin: the same arguments ↦ 1×1, not negative where the law is known; None where it is known everywhere.
+    """
+
+    density: Callable[[Matrix, Matrix], Matrix]
+    data: Field
+    margin: Callable[[Matrix, Matrix], Matrix] | None = None
+
+
+@dataclass(frozen=True)
 class RodProperties:
     """A rod in its unloaded state.
 
@@ -49,6 +65,7 @@ class RodProperties:
         basis: "legendre" or "chebyshev", the polynomials of report (2.4).
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6), N m² and N; rows of strains that are not
             admitted are not read.
+        beyond_hooke: elastic energy that the Hooke tensor does not hold; None of a rod that is linear.
         intrinsic: ξ⁰ as six tuples of Legendre coefficients in 2X − 1: three of 1/m, three without unit.
         linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None where the rod has no mass.
         rotary_inertia: abscissae (k,) ↦ moments of inertia per length about section x, y and tangent (k, 3), kg m;
@@ -68,6 +85,7 @@ class RodProperties:
     basis: str
     hooke: Field
     intrinsic: tuple[tuple[Scalar, ...], ...]
+    beyond_hooke: EnergyBeyondHooke | None = None
     linear_density: Field | None = None
     rotary_inertia: Field | None = None
     damping: Field | None = None

@@ -283,11 +283,17 @@ class DiscreteRod:
             own = column(intrinsic, c)
             if not is_zero(own):
                 row = per_reference_length(as_matrix(each_times(own, self.node_rates)).T, ratio)
-            if c in self.columns:
-                varying = (self.node_matrix(c) @ q[self.columns[c]]).T
+            varying = self.change_row(q, c)
+            if varying is not None:
                 row = varying if row is None else row + varying
             rows.append(row)
         return rows
+
+    def change_row(self, q: Matrix, component: int) -> Matrix | None:
+        """The share of the coordinates in a row of :meth:`strain_rows`, 1×M; None of a strain that is not admitted."""
+        if component not in self.columns:
+            return None
+        return (self.node_matrix(component) @ q[self.columns[component]]).T
 
     @cached_property
     def magnus_order(self) -> int:

@@ -1,7 +1,8 @@
 """A quantity given by its density along the rod, g(ξ), which CasADi differentiates.
 
-For an actuator whose quantity is no cable's length and not linear in the strains: its density is a small function of
-the six strains of one section, and gradient and curvature are its derivatives at the nodes.
+For an actuator whose quantity is no cable's length and not linear in the strains, and for the energy of a material that
+is not linear: the density is a small function of the six strains of one section, and gradient and curvature are its
+derivatives at the nodes.
 """
 
 from __future__ import annotations
@@ -19,22 +20,24 @@ from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
 
 Density = Callable[[Matrix, Matrix], Matrix]
-"""Strains of a section per reference length, 6×1, and its data, d×1 ↦ quantity per length, 1×1."""
+"""Strains of a section, 6×1, and its data, d×1 ↦ quantity per length of the rod, 1×1."""
 
 
 @dataclass(frozen=True)
 class StrainDensity:
-    """A quantity L = ℓ Σ_k w_k g(ξ_k, data_k) over the nodes of an actuator's span.
+    """A quantity L = ℓ Σ_k w_k g(ξ_k, data_k) over the nodes of a span.
 
     Attributes:
         density: g, a function of CasADi matrices.
         nodes: the k nodes of the span.
         data: what g depends on along the rod, shape (d, k).
+        of_change: whether g is a function of the change of the strains from the unloaded ones, ξ − ξ⁰.
     """
 
     density: Density
     nodes: Indices
     data: Numbers
+    of_change: bool = False
 
     def on(self, shape: Shape) -> StrainDensityOnRod:
         """The quantity on a rod of this shape."""
@@ -87,12 +90,12 @@ class StrainDensityOnRod(Lossless):
     def _at_nodes(self) -> tuple[Matrix, Matrix, Matrix]:
         """Density, 1×k, its gradient, 6×k, and its second derivatives column by column, 36×k, at the nodes."""
         nodes = self.quantity.nodes.tolist()
-        rows = self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
+        rows = self._strain_rows
         present = [c for c, row in enumerate(rows) if row is not None]
         zero = ca.DM(1, len(nodes))
         strain = ca.vertcat(*[zero if row is None else row[nodes] for row in rows])
         if self._rates is not None:
-            # Rows are per length of the grid's coordinate, densities of strains per length of the rod.
+            # Rows are per length of the grid's coordinate, strains per length of the rod.
             strain = strain @ ca.diag(as_matrix(1 / self._rates))
         kernel = self._kernel(present).map(len(nodes))
         density, gradient, second = kernel.call([strain, as_matrix(self.quantity.data)])
@@ -118,7 +121,19 @@ class StrainDensityOnRod(Lossless):
         return self.shape.rod.reference_lengths[self.quantity.nodes]
 
     @property
+    def _strain_rows(self) -> list[Matrix | None]:
+        """Strains at all nodes that the density is a function of, 1×M each; None for strains that stay zero."""
+        rod = self.shape.rod
+        if self.quantity.of_change:
+            return [rod.change_row(self.shape.q, c) for c in range(6)]
+        return rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
+
+    @cached_property
     def _rates(self) -> Numbers | None:
-        """Rate of the rod's abscissa at the nodes of the span, shape (k,); None where it is one."""
+        """Length of rod for each reference length at the nodes of the span, shape (k,); None where it is one."""
         grid = self.shape.rod.grid
-        return grid.rates_in(grid.element_of_node[self.quantity.nodes])
+        rates = grid.rates_in(grid.element_of_node[self.quantity.nodes])
+        ratio = self.shape.ratio
+        if ratio is None:
+            return rates
+        return ratio * (ca.DM.ones(len(self.quantity.nodes)) if rates is None else as_matrix(rates))

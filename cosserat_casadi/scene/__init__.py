@@ -38,6 +38,7 @@ from cosserat_casadi.scene.load_records import (
     TipWrench,
 )
 from cosserat_casadi.scene.magnet_record import Dipole, Magnet
+from cosserat_casadi.scene.material_records import MATERIALS, LinearMaterial, Material
 from cosserat_casadi.scene.measurement_record import MEASUREMENTS, InputColumn, MeasurementRecord
 from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motion_records import InputMotion
@@ -50,7 +51,6 @@ from cosserat_casadi.scene.rod_records import (
     Circle,
     Damping,
     Intrinsic,
-    Material,
     Rectangle,
     Rod,
     Section,
@@ -66,6 +66,7 @@ __all__ = [
     "ACTUATORS",
     "JOINTS",
     "LOADS",
+    "MATERIALS",
     "MEASUREMENTS",
     "OBSTACLES",
     "SUPPORTS",
@@ -99,6 +100,7 @@ __all__ = [
     "Intrinsic",
     "Joint",
     "JointRecord",
+    "LinearMaterial",
     "Load",
     "LoadRecord",
     "Lumen",

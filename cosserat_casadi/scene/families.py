@@ -29,12 +29,14 @@ class Family(Generic[Member]):
     Attributes:
         table: where they stand, such as "loads".
         key: the key of the word, such as "kind".
+        default: the word of a table that has none; None where it must have one.
         records: the record of each word, in the order in which they were registered.
     """
 
-    def __init__(self, table: str, key: str = "kind") -> None:
+    def __init__(self, table: str, key: str = "kind", default: str | None = None) -> None:
         self.table = table
         self.key = key
+        self.default = default
         self.records: dict[str, type[Member]] = {}
 
     def register(self, record: type[Member]) -> type[Member]:
@@ -52,7 +54,7 @@ class Family(Generic[Member]):
 
     def record_of(self, given: Table) -> type[Member] | None:
         """The record of a table, by its word; None where the word is faulty or missing."""
-        word = given.get(self.key)
+        word = given.get(self.key, self.default)
         if not isinstance(word, str):
             return None
         return self.records.get(word)
@@ -75,9 +77,9 @@ class Family(Generic[Member]):
     def _validated(self, value: Any) -> Member:
         # A scene may be built from records in Python as well as from tables.
         if isinstance(value, BaseModel):
-            given = getattr(value, self.key, None)
+            given = getattr(value, self.key, self.default)
         elif isinstance(value, Mapping):
-            given = value.get(self.key)
+            given = value.get(self.key, self.default)
         else:
             raise refusal([Fault((), f"must be a table, got {shown(value)}")])
         word = self._known_word(given)

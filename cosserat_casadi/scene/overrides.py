@@ -11,10 +11,13 @@ from typing import Any
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.scene.faults import Path, shown
 from cosserat_casadi.scene.toml import keys_are_too_deep
-from cosserat_casadi.spelling import closest
+from cosserat_casadi.spelling import close_matches
 
 NAMED_LISTS = ("obstacles", "supports", "joints", "bodies", "rods", "actuators", "loads", "tubes")
 """Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
+
+MOST_NAMES = 12
+"""Names that a remedy lists."""
 
 
 @dataclass(frozen=True)
@@ -105,18 +108,32 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
 
 
 def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
-    """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
+    """The segments of a key from the root: a load, actuator, rod or support may stand for itself.
+
+    Raises:
+        RefusedOverride: nothing has the name that the key begins with, or the key ends there.
+    """
     # Both loads[0].force and loads.0.force are read.
     segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
     lists = _lists_by_name(tables)
     first = segments[0]
-    if first in lists and len(segments) > 1:
+    if first in lists:
+        if len(segments) == 1:
+            entry = _entry(tables[lists[first]], first)
+            raise RefusedOverride("is a whole table, not one of its values", _fields(first, entry))
         return [lists[first], *segments]
     if first not in known:
         problem = f"no load, actuator, rod, support or table is named {shown(first)}"
-        remedy = closest(first, [*lists, *known])
-        raise RefusedOverride(problem, remedy)
+        raise RefusedOverride(problem, _known_names(first, lists, known))
     return segments
+
+
+def _known_names(word: str, lists: Mapping[str, str], known: Sequence[str]) -> str:
+    """A remedy for an unknown first word of a key: the name that it looks like, or the names of the scene's entries."""
+    close = close_matches(word, [*lists, *known])
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"the scene has {', '.join([*lists][:MOST_NAMES])}, and tables such as accuracy.tolerance"
 
 
 def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
@@ -130,6 +147,17 @@ def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
             if isinstance(entry, dict) and isinstance(entry.get("name"), str):
                 lists[entry["name"]] = key
     return lists
+
+
+def _entry(entries: list[Any], name: str) -> dict[str, Any]:
+    """The entry of a list that has a name."""
+    return next(entry for entry in entries if isinstance(entry, dict) and entry.get("name") == name)
+
+
+def _fields(name: str, entry: Mapping[str, Any]) -> str:
+    """A remedy for a key that stops at the name of an entry: the values that the entry has."""
+    fields = [f"{name}.{field}" for field in entry if field not in ("name", "kind")]
+    return f"name one of {', '.join(fields)}"
 
 
 def _index(container: Any, segment: str) -> Any:

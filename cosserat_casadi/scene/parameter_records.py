@@ -86,7 +86,7 @@ class NamedNumbers:
     Attributes:
         name: as the scene writes it.
         holder: the entry of the scene that has them.
-        keys: the key in the entry, behind the keys of the tables that lead there.
+        keys: the key in the entry, behind the keys of the tables that lead there, and places in lists of tables.
         unit: SI unit of each, "1" without unit.
         form: how the key holds its numbers.
         cells: which of the numbers of the key they are, column after column.
@@ -137,6 +137,10 @@ class NamedNumbers:
 
     def _changed(self, record: Any, keys: Sequence[str], values: Sequence[Any]) -> Any:
         key = keys[0]
+        if isinstance(record, tuple):
+            entries = list(record)
+            entries[int(key)] = self._changed(entries[int(key)], keys[1:], values)
+            return tuple(entries)
         old = getattr(record, key)
         if len(keys) > 1:
             new = self._changed(old, keys[1:], values)
@@ -226,6 +230,10 @@ def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumb
         keys.append(key)
         owner = record
         record = getattr(owner, key)
+        if _holds_tables(record):
+            place = _part(remaining.pop(0) if remaining else "", (), len(record), "entry")
+            keys.append(str(place))
+            record = record[place]
     reason = owner.parameter_refusal(keys[-1])
     if reason is not None:
         raise RefusedParameter(*reason)
@@ -239,6 +247,11 @@ def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumb
     chosen_rows = len({row for row, _ in cells})
     default = default.reshape(chosen_rows, -1, order="F")
     return NamedNumbers(name, holder, tuple(keys), "1" if unit == "–" else unit, form, cells, default)
+
+
+def _holds_tables(value: Any) -> bool:
+    """Whether a key holds a list of tables, such as the terms of a polynomial."""
+    return isinstance(value, tuple) and bool(value) and isinstance(value[0], Record)
 
 
 def _form(value: Any, *, along: bool, by_component: bool) -> Form:

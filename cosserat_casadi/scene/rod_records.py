@@ -1,18 +1,21 @@
-"""Rods: their material and section, the strains that they admit, the pose of their base.
+"""Rods: their section, the strains that they admit, the pose of their base.
 
 The local z axis of a section is the rod's tangent; strains are ordered K_x, K_y, K_z, Γ_x, Γ_y, Γ_z.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Field, StrictBool
 
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.material_records import ElasticMaterial
 from cosserat_casadi.scene.profiles import ends_of
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import (
@@ -33,6 +36,7 @@ from cosserat_casadi.scene.values import (
     Vector,
     above_base,
     listed,
+    numbers_of,
     without_repetition,
 )
 
@@ -56,30 +60,7 @@ StrainChoice = Annotated[
 ]
 
 
-# Material and section
-
-
-class Material(Record):
-    """An isotropic linear elastic material."""
-
-    example: ClassVar[str] = """\
-material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
-"""
-
-    youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
-    poisson_ratio: Annotated[Number, Field(gt=-1, le=0.5)] | None = Field(
-        None, description="Poisson's ratio, without unit; instead of shear_modulus"
-    )
-    shear_modulus: Positive | None = Field(None, description="shear modulus G, Pa; instead of poisson_ratio")
-    density: Positive | None = Field(None, description="density, kg/m³; needed where gravity acts")
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Poisson's ratio and the shear modulus say the same."""
-        if "poisson_ratio" in given and "shear_modulus" in given:
-            yield Fault(("shear_modulus",), "stands beside poisson_ratio", "give one of the two")
-        if "poisson_ratio" not in given and "shear_modulus" not in given:
-            yield Fault(("poisson_ratio",), "missing", "give poisson_ratio or shear_modulus, Pa")
+# Section
 
 
 class SectionRecord(Record):
@@ -173,6 +154,10 @@ linear_density = 0.01
     shear_x: Size | None = Field(None, description="shear stiffness along local x, N")
     shear_y: Size | None = Field(None, description="shear stiffness along local y, N")
     extension: Size | None = Field(None, description="axial stiffness, N")
+
+
+Row6 = Annotated[tuple[Number, Number, Number, Number, Number, Number], listed(6, "6 numbers")]
+StiffnessMatrix = Annotated[tuple[Row6, Row6, Row6, Row6, Row6, Row6], listed(6, "6 rows of 6 numbers")]
 
 
 class Damping(Record):
@@ -301,11 +286,18 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         "'reissner' (all six), or a list out of bending_x, bending_y, torsion, shear_x, shear_y, extension"
     )
     basis: Literal["legendre", "chebyshev"] = Field("legendre", description="polynomials that the strains are made of")
-    material: Material | None = Field(None, description="what the rod is made of; with section")
+    material: ElasticMaterial | None = Field(None, description="what the rod is made of; with section")
     section: Section | None = Field(None, description="its cross-section; with material")
     stiffness: Stiffness | None = Field(None, description="stiffnesses, N m² and N; instead of material and section")
+    stiffness_matrix: StiffnessMatrix | None = Field(
+        None,
+        description="full symmetric 6 × 6 matrix of the strains in their order, coupled ones too, N m², N m and N; "
+        "instead of material and section, or of stiffness",
+    )
     linear_density: Size | None = Field(
-        None, description="mass per length, kg/m, with stiffness; a list of two goes linearly from base to tip"
+        None,
+        description="mass per length, kg/m, with stiffness or stiffness_matrix; a list of two goes linearly from "
+        "base to tip",
     )
     rotary_inertia: RotaryInertia | None = Field(
         None,
@@ -327,6 +319,7 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         yield from _elasticity_given_once(given)
         yield from _inertia_without_mass(given)
         admitted = [STRAINS[index] for index in admitted_strains(given.get("strain"))]
+        yield from _not_positive(given.get("stiffness_matrix"), admitted_strains(given.get("strain")))
         stiffness = given.get("stiffness")
         if isinstance(stiffness, Mapping):
             for name in admitted:
@@ -369,7 +362,9 @@ def is_round(section: Any) -> bool:
 
 def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
     made_of = [key for key in ("material", "section") if key in rod]
-    direct = [key for key in ("stiffness", "linear_density") if key in rod]
+    direct = [key for key in ("stiffness", "stiffness_matrix", "linear_density") if key in rod]
+    if "stiffness" in rod and "stiffness_matrix" in rod:
+        yield Fault(("stiffness_matrix",), "stands beside stiffness", "give one of the two")
     if made_of and direct:
         remedy = "give material and section, or stiffness and linear_density"
         yield Fault((direct[0],), f"stands beside {' and '.join(made_of)}", remedy)
@@ -377,8 +372,30 @@ def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
         yield Fault(("section",), "missing", "a material needs a section")
     elif made_of == ["section"]:
         yield Fault(("material",), "missing", "a section needs a material")
-    elif not made_of and "stiffness" not in rod:
+    elif not made_of and "stiffness" not in rod and "stiffness_matrix" not in rod:
         yield Fault(("material",), "missing", "give material and section, or stiffness")
+
+
+def _not_positive(matrix: Any, admitted: Sequence[int]) -> Iterator[Fault]:
+    """Faults of a stiffness matrix: rows that do not mirror columns, or strains that would cost no energy."""
+    rows = [] if not isinstance(matrix, list | tuple) else [numbers_of(row) for row in matrix]
+    if len(rows) != len(STRAINS) or any(len(row) != len(STRAINS) for row in rows):
+        return
+    for i, j in itertools.combinations(range(len(STRAINS)), 2):
+        if rows[i][j] != rows[j][i]:
+            problem = f"must be {shown(rows[i][j])}, as [{i}][{j}], got {shown(rows[j][i])}"
+            yield Fault(("stiffness_matrix", j, i), problem, "the matrix is symmetric")
+            return
+    entries = np.array(rows)
+    block = entries[np.ix_(admitted, admitted)]
+    diagonal = np.diag(block)
+    # In units of the diagonal: entries have different units.
+    if not np.all(diagonal > 0.0):
+        index = admitted[int(np.argmin(diagonal > 0.0))]
+        yield Fault(("stiffness_matrix", index, index), f"must be > 0, got {shown(entries[index, index])}")
+    elif len(block) and np.linalg.eigvalsh(block / np.sqrt(np.outer(diagonal, diagonal)))[0] <= 0.0:
+        problem = "must be positive definite in the admitted strains: some strain would set energy free"
+        yield Fault(("stiffness_matrix",), problem)
 
 
 def _inertia_without_mass(rod: Table) -> Iterator[Fault]:

@@ -171,10 +171,11 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
         if load is None:
             continue
         material = rod.get("material")
-        if "stiffness" in rod and "linear_density" not in rod:
+        is_direct = "stiffness" in rod or "stiffness_matrix" in rod
+        if is_direct and "linear_density" not in rod:
             remedy = f"{load} acts on this rod: give its mass per length, kg/m"
             yield Fault(("rods", i, "linear_density"), "missing", remedy)
-        elif "stiffness" not in rod and isinstance(material, Mapping) and "density" not in material:
+        elif not is_direct and isinstance(material, Mapping) and "density" not in material:
             remedy = f"{load} acts on this rod: give its density, kg/m³"
             yield Fault(("rods", i, "material", "density"), "missing", remedy)
 

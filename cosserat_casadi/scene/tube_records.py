@@ -10,8 +10,8 @@ from pydantic import Field
 
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
-from cosserat_casadi.scene.rod_records import Material
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
 BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds")

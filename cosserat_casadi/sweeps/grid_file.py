@@ -76,7 +76,7 @@ def grid(tables: Mapping[str, Any], where: str, scratch: Scratch = MEMORY) -> tu
     axes, samples = _axes(tables, where, problems)
     # Counted before the rows are made: a grid too large would not fit into memory.
     combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
-    _check_count(combinations * samples, where, problems)
+    problems += too_many_rows(combinations * samples, where)
     if problems:
         raise SceneError(*problems)
     seed = int(tables.get("seed", 0))
@@ -103,7 +103,7 @@ def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...]
         problems.append(Problem(where, "names no random column to find Sobol indices of", REMEDY))
     if samples < 2 and factors:
         problems.append(Problem(f"{where}, samples", "must be at least 2 for Sobol indices", "give some thousands"))
-    _check_count(samples * (len(factors) + 2), where, problems)
+    problems += too_many_rows(samples * (len(factors) + 2), where)
     if problems:
         raise SceneError(*problems)
     seed = int(tables.get("seed", 0))
@@ -130,9 +130,11 @@ def _axes(
     return axes, samples
 
 
-def _check_count(rows: int, where: str, problems: list[Problem]) -> None:
-    if rows > MOST_ROWS:
-        problems.append(Problem(where, f"asks for {rows:,} rows", f"at most {MOST_ROWS:,}"))
+def too_many_rows(rows: int, where: str) -> list[Problem]:
+    """The problem of a grid that is too large; empty for others."""
+    if rows <= MOST_ROWS:
+        return []
+    return [Problem(where, f"asks for {rows:,} rows", f"at most {MOST_ROWS:,}")]
 
 
 class _Refused(Exception):  # noqa: N818 - it never leaves this module

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import read_range
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
-from cosserat_casadi.sweeps.grid_file import grid, paired_draws, read_tables
+from cosserat_casadi.sweeps.grid_file import grid, paired_draws, read_tables, too_many_rows
 from cosserat_casadi.sweeps.scratch import BLOCK, MEMORY, Scratch
 
 
@@ -73,6 +74,70 @@ def read_table(path: Path, *, sobol: bool = False, scratch: Scratch = MEMORY) ->
     if problems:
         raise SceneError(*shortened(problems, str(path)))
     return Table(tuple(header), numbers[:, 1:], str(path), numbers[:, 0], scratch=scratch)
+
+
+def range_table(ranges: Sequence[str], scratch: Scratch = MEMORY) -> Table:
+    """The grid of ranges ``column=from:to:count``: every combination of their values, the last range running fastest.
+
+    Args:
+        ranges: at least one.
+        scratch: where the rows are to lie.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    problems: list[Problem] = []
+    tables: dict[str, Any] = {}
+    for text in ranges:
+        try:
+            asked = read_range(text)
+        except SceneError as error:
+            problems.extend(error.problems)
+            continue
+        if asked.count is None:
+            problem = f"{text!r} does not say how many values"
+            problems.append(Problem("--range", problem, f"write {text}:21 for 21 of them"))
+        elif asked.column in tables:
+            problems.append(Problem("--range", f"{asked.column!r} has two ranges", "give one of them"))
+        else:
+            tables[asked.column] = {"from": asked.low, "to": asked.high, "count": asked.count}
+    if problems:
+        raise SceneError(*problems)
+    columns, values = grid(tables, "--range", scratch)
+    return Table(columns, values, "--range", scratch=scratch)
+
+
+def crossed(table: Table, ranges: Table) -> Table:
+    """Every row of a table beside every row of ranges, which run fastest.
+
+    Args:
+        table: rows of a file.
+        ranges: a grid of other columns, in memory.
+
+    Raises:
+        SceneError: a column stands in both, there are too many rows, or the rows were drawn for Sobol indices.
+        WriteError: the disc has no room for the rows.
+    """
+    problems = [
+        Problem("--range", f"{column!r} is a column of {table.where} too", "leave one of them out")
+        for column in ranges.columns
+        if column in table.columns
+    ]
+    if table.factors:
+        problems.append(Problem("--range", "has several values; Sobol indices are of random columns", "leave it out"))
+    rows = len(table.values) * len(ranges.values)
+    problems += too_many_rows(rows, f"{table.where} and --range")
+    if problems:
+        raise SceneError(*problems)
+    stays = len(ranges.values)
+    own = len(table.columns)
+    values = table.scratch.array((rows, own + len(ranges.columns)))
+    for block in table.scratch.blocks(rows):
+        numbers = np.arange(block.start, block.stop)
+        values[block, :own] = table.values[numbers // stays]
+        values[block, own:] = ranges.values[numbers % stays]
+    lines = None if table.lines is None else np.repeat(table.lines, stays)
+    return Table((*table.columns, *ranges.columns), values, table.where, lines, scratch=table.scratch)
 
 
 def _blocks(

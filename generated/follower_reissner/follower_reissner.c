@@ -72,8 +72,8 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* No tendon has a path that the strains change. */
-static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
+/* Nothing in the scene has a limit of its strains. */
+static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   (void)x;
   (void)inputs;
   (void)work;
@@ -228,6 +228,8 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
     case FOLLOWER_REISSNER_PATH_VANISHED:
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
+    case FOLLOWER_REISSNER_BEYOND_MATERIAL:
+      return "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains.";
   }
   return "No such status.";
 }
@@ -252,6 +254,8 @@ const char *follower_reissner_status_label(follower_reissner_status status) {
       return "lost_track";
     case FOLLOWER_REISSNER_PATH_VANISHED:
       return "path_vanished";
+    case FOLLOWER_REISSNER_BEYOND_MATERIAL:
+      return "beyond_material";
   }
   return "unknown";
 }

@@ -55,7 +55,7 @@ static real residual_left(const real *x, const real *inputs, workspace *work) {
 /* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
 static solver_status finish(const real *x, const real *inputs, solver_info *found, solver_info *info, workspace *work) {
   if (found->status == SOLVER_CONVERGED && !(resolution_index(x, inputs, work) <= 1)) found->status = SOLVER_UNRESOLVED;
-  found->status = with_paths(found->status, x, inputs, work);
+  found->status = within_limits(found->status, x, inputs, work);
   const int solved = found->status == SOLVER_CONVERGED || found->status == SOLVER_UNRESOLVED;
   if (!solved) found->residual_norm = residual_left(x, inputs, work);
 #ifdef SOLVER_MISSING

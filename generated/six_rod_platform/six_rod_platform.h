@@ -164,7 +164,8 @@ typedef enum {
   SIX_ROD_PLATFORM_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
   SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   SIX_ROD_PLATFORM_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
-  SIX_ROD_PLATFORM_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
+  SIX_ROD_PLATFORM_PATH_VANISHED      = 8, /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
+  SIX_ROD_PLATFORM_BEYOND_MATERIAL    = 9  /* No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains. */
 } six_rod_platform_status;
 
 typedef struct {
@@ -233,7 +234,7 @@ typedef struct {
   six_rod_platform_real changes[50];
   six_rod_platform_real fewer[168];
   six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 168];
-  six_rod_platform_real kernel_reals[8524];
+  six_rod_platform_real kernel_reals[4554];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 

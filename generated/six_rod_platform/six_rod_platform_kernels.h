@@ -41,7 +41,7 @@ int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_i
 #define six_rod_platform_k_rate_SZ_ARG 5
 #define six_rod_platform_k_rate_SZ_RES 1
 #define six_rod_platform_k_rate_SZ_IW 0
-#define six_rod_platform_k_rate_SZ_W 2157
+#define six_rod_platform_k_rate_SZ_W 1756
 int six_rod_platform_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tangent_SZ_ARG 1
 #define six_rod_platform_k_tangent_SZ_RES 1
@@ -56,132 +56,132 @@ int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1
 #define six_rod_platform_k_richer_balance_SZ_IW 0
-#define six_rod_platform_k_richer_balance_SZ_W 8523
+#define six_rod_platform_k_richer_balance_SZ_W 4553
 int six_rod_platform_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_richer_changes_SZ_ARG 4
 #define six_rod_platform_k_richer_changes_SZ_RES 1
 #define six_rod_platform_k_richer_changes_SZ_IW 0
-#define six_rod_platform_k_richer_changes_SZ_W 3891
+#define six_rod_platform_k_richer_changes_SZ_W 3111
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_1_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_1_SZ_RES 3
 #define six_rod_platform_k_igm_leg_1_SZ_IW 0
-#define six_rod_platform_k_igm_leg_1_SZ_W 672
+#define six_rod_platform_k_igm_leg_1_SZ_W 613
 int six_rod_platform_k_igm_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_2_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_2_SZ_RES 3
 #define six_rod_platform_k_igm_leg_2_SZ_IW 0
-#define six_rod_platform_k_igm_leg_2_SZ_W 672
+#define six_rod_platform_k_igm_leg_2_SZ_W 613
 int six_rod_platform_k_igm_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_3_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_3_SZ_RES 3
 #define six_rod_platform_k_igm_leg_3_SZ_IW 0
-#define six_rod_platform_k_igm_leg_3_SZ_W 672
+#define six_rod_platform_k_igm_leg_3_SZ_W 613
 int six_rod_platform_k_igm_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_4_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_4_SZ_RES 3
 #define six_rod_platform_k_igm_leg_4_SZ_IW 0
-#define six_rod_platform_k_igm_leg_4_SZ_W 672
+#define six_rod_platform_k_igm_leg_4_SZ_W 613
 int six_rod_platform_k_igm_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_5_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_5_SZ_RES 3
 #define six_rod_platform_k_igm_leg_5_SZ_IW 0
-#define six_rod_platform_k_igm_leg_5_SZ_W 672
+#define six_rod_platform_k_igm_leg_5_SZ_W 613
 int six_rod_platform_k_igm_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_6_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_6_SZ_RES 3
 #define six_rod_platform_k_igm_leg_6_SZ_IW 0
-#define six_rod_platform_k_igm_leg_6_SZ_W 672
+#define six_rod_platform_k_igm_leg_6_SZ_W 613
 int six_rod_platform_k_tip_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_1_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_1_SZ_RES 2
 #define six_rod_platform_k_tip_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_leg_1_SZ_W 325
+#define six_rod_platform_k_tip_leg_1_SZ_W 319
 int six_rod_platform_k_tip_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_2_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_2_SZ_RES 2
 #define six_rod_platform_k_tip_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_leg_2_SZ_W 325
+#define six_rod_platform_k_tip_leg_2_SZ_W 319
 int six_rod_platform_k_tip_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_3_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_3_SZ_RES 2
 #define six_rod_platform_k_tip_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_leg_3_SZ_W 325
+#define six_rod_platform_k_tip_leg_3_SZ_W 319
 int six_rod_platform_k_tip_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_4_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_4_SZ_RES 2
 #define six_rod_platform_k_tip_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_leg_4_SZ_W 325
+#define six_rod_platform_k_tip_leg_4_SZ_W 319
 int six_rod_platform_k_tip_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_5_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_5_SZ_RES 2
 #define six_rod_platform_k_tip_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_leg_5_SZ_W 325
+#define six_rod_platform_k_tip_leg_5_SZ_W 319
 int six_rod_platform_k_tip_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_leg_6_SZ_ARG 2
 #define six_rod_platform_k_tip_leg_6_SZ_RES 2
 #define six_rod_platform_k_tip_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_leg_6_SZ_W 325
+#define six_rod_platform_k_tip_leg_6_SZ_W 319
 int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1083
 int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1083
 int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1083
 int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1083
 int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1083
 int six_rod_platform_k_tip_jacobian_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1099
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1083
 int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_1_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_1_SZ_RES 2
 #define six_rod_platform_k_shape_leg_1_SZ_IW 0
-#define six_rod_platform_k_shape_leg_1_SZ_W 449
+#define six_rod_platform_k_shape_leg_1_SZ_W 437
 int six_rod_platform_k_shape_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_2_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_2_SZ_RES 2
 #define six_rod_platform_k_shape_leg_2_SZ_IW 0
-#define six_rod_platform_k_shape_leg_2_SZ_W 449
+#define six_rod_platform_k_shape_leg_2_SZ_W 437
 int six_rod_platform_k_shape_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_3_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_3_SZ_RES 2
 #define six_rod_platform_k_shape_leg_3_SZ_IW 0
-#define six_rod_platform_k_shape_leg_3_SZ_W 449
+#define six_rod_platform_k_shape_leg_3_SZ_W 437
 int six_rod_platform_k_shape_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_4_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_4_SZ_RES 2
 #define six_rod_platform_k_shape_leg_4_SZ_IW 0
-#define six_rod_platform_k_shape_leg_4_SZ_W 449
+#define six_rod_platform_k_shape_leg_4_SZ_W 437
 int six_rod_platform_k_shape_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_5_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_5_SZ_RES 2
 #define six_rod_platform_k_shape_leg_5_SZ_IW 0
-#define six_rod_platform_k_shape_leg_5_SZ_W 449
+#define six_rod_platform_k_shape_leg_5_SZ_W 437
 int six_rod_platform_k_shape_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_6_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_6_SZ_RES 2
 #define six_rod_platform_k_shape_leg_6_SZ_IW 0
-#define six_rod_platform_k_shape_leg_6_SZ_W 449
+#define six_rod_platform_k_shape_leg_6_SZ_W 437
 int six_rod_platform_k_body_platform(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_body_platform_SZ_ARG 2
 #define six_rod_platform_k_body_platform_SZ_RES 2

@@ -72,15 +72,16 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The end of a solve in view of the tendons: their paths have length left where the rods were followed to. */
-static solver_status with_paths(solver_status end, const real *x, const real *inputs, workspace *work) {
-  real stretches[4];
-  ARGUMENTS(tendon_robot_k_path_stretch, x, inputs);
-  RESULTS(stretches);
+/* The end of a solve in view of the strains: paths of tendons have length left, and materials are within their laws. */
+static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
+  real margins[4];
+  ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
+  RESULTS(margins);
   if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
-  CALL(tendon_robot_k_path_stretch);
+  CALL(tendon_robot_k_strain_margins);
+  /* Those of paths come first. */
   for (int i = 0; i < 4; i++) {
-    if (stretches[i] <= (real)0.001) return SOLVER_PATH_VANISHED;
+    if (margins[i] <= (real)0.001) return i < 4 ? SOLVER_PATH_VANISHED : SOLVER_BEYOND_MATERIAL;
   }
   return end;
 }
@@ -273,6 +274,8 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
       return "The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew.";
     case TENDON_ROBOT_PATH_VANISHED:
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
+    case TENDON_ROBOT_BEYOND_MATERIAL:
+      return "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains.";
   }
   return "No such status.";
 }
@@ -297,6 +300,8 @@ const char *tendon_robot_status_label(tendon_robot_status status) {
       return "lost_track";
     case TENDON_ROBOT_PATH_VANISHED:
       return "path_vanished";
+    case TENDON_ROBOT_BEYOND_MATERIAL:
+      return "beyond_material";
   }
   return "unknown";
 }

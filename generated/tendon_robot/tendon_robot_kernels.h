@@ -32,11 +32,11 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
 #define tendon_robot_k_resolution_index_SZ_W 0
-int tendon_robot_k_path_stretch(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_path_stretch_SZ_ARG 2
-#define tendon_robot_k_path_stretch_SZ_RES 1
-#define tendon_robot_k_path_stretch_SZ_IW 0
-#define tendon_robot_k_path_stretch_SZ_W 0
+int tendon_robot_k_strain_margins(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_strain_margins_SZ_ARG 2
+#define tendon_robot_k_strain_margins_SZ_RES 1
+#define tendon_robot_k_strain_margins_SZ_IW 0
+#define tendon_robot_k_strain_margins_SZ_W 0
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1

@@ -713,6 +713,7 @@ def test_ranges_are_refused_and_nothing_is_written(command: str, wire: Path) -> 
         ("push.force.x=1:-1", "the lower end first"),
         ("push.force.x=0:inf", "no two finite numbers"),
         ("pull.force.x=0:1", "is not an input or a parameter"),
+        ("push.force.x=0:1:5", "counts values, and modes are chosen for a whole range (write push.force.x=0:1)"),
     ):
         refused = cosserat(*RANGED[command], "--range", text, cwd=wire)
         assert refused.returncode == 2, refused.stdout + refused.stderr

@@ -89,6 +89,22 @@ def test_line_of_a_command_is_how_its_help_begins(name: str) -> None:
     assert help_text.startswith(LINES[name])
 
 
+def test_help_says_all_of_its_text(capsys: pytest.CaptureFixture[str]) -> None:
+    """Brackets, as of [[bounds]], are no markup."""
+    for name in LINES:
+        assert cosserat(name, "--help") == 0
+        shown = capsys.readouterr().out.split()
+        missing = [word for word in load_command(name).help.split() if word not in shown]
+        assert not missing, f"{name} --help lacks {missing}"
+
+
+def test_a_bare_command_shows_its_help_and_no_error(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cosserat() == 2
+    shown = capsys.readouterr()
+    assert "Usage" in shown.out
+    assert not shown.err
+
+
 # cosserat examples
 
 

@@ -172,10 +172,10 @@ def test_a_motion_that_ended_early_is_written_with_exit_code_3(
     assert outcome.value.split(":")[0] in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_motion_that_was_not_started_has_no_animation(folder: Path, command: Callable[..., int]) -> None:
+def test_a_motion_that_was_not_started_has_no_picture(folder: Path, command: Callable[..., int]) -> None:
     files = ["--output", "m.csv", "--plot", "m.png", "--animation", "m.gif"]
     assert command("wire.toml", *files, simulate=lambda scene, **_: without_start()) == NOT_FOUND
-    assert new_files(folder) == ["m.csv", "m.png"]
+    assert new_files(folder) == ["m.csv"]
 
 
 def test_warnings_go_to_standard_error(

@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
 from tests.commands import cosserat
 from tests.conftest import ROOT
-from tests.equilibrium.test_vanished_paths import on_grid, pulled
+from tests.equilibrium.test_strain_limits import on_grid, pulled
 from tests.scenes import push, rod, scene
 
 CONVERGED, NOT_FINITE = 0, 2

@@ -11,7 +11,7 @@ import pytest
 from cosserat_casadi import Outcome, scene_from_dict, solve
 from tests.codegen.contact_libraries import exported_contact
 from tests.codegen.libraries import Exported, Recipe
-from tests.equilibrium.test_vanished_paths import described, pulled
+from tests.equilibrium.test_strain_limits import described, pulled
 
 ExportRecipe = Callable[[str, Recipe], Exported]
 
@@ -51,4 +51,4 @@ def test_rod_in_contact_vs_python(tmp_path: Path) -> None:
 
 def test_scene_without_tendons_looks_at_none(library: Callable[[str], Exported]) -> None:
     source = (library("planar").folder / "planar_kernels.c").read_text()
-    assert "path_stretch" not in source
+    assert "strain_margins" not in source

@@ -8,10 +8,11 @@ from pathlib import Path
 import casadi as ca
 import pytest
 
-from cosserat_casadi import build, read_scene
+from cosserat_casadi import build, parse_scene, read_scene
 from cosserat_casadi.cli.main import app, run
-from cosserat_casadi.model.operation_cost import price, prices_of_effects
+from cosserat_casadi.model.operation_cost import price, prices_of_effects, without_load
 from cosserat_casadi.model.operations import COUNTED_EXACTLY, Count, count, counts, most_operations, operations
+from tests.commands import WIRE
 
 LUMEN = """
 schema = 1
@@ -135,3 +136,20 @@ def test_compared_functions_are_counted_alike() -> None:
     assert str(Count(20_123_456, exact=False)) == "at most 21,000,000"
     assert str(Count(1234, exact=True)) == "1,234"
     assert str(Count(7, exact=False)) == "at most 7"
+
+
+def test_a_scene_without_a_load_has_nothing_that_is_of_it() -> None:
+    """Its inputs, ranges, bounds, parameters and motions go with it: the scene is as one that never had it."""
+    tendon = '[[actuators]]\nname = "{}"\nkind = "tendon"\nrod = "wire"\ntension = 1.0\noffset = [1e-3, 0.0]\n'
+    bound = '[[bounds]]\ninput = "{}.tension"\nlower = 0.0\n'
+    motion = '[[motions]]\ninput = "{}.tension"\namplitude = 0.1\nfrequency = 1.0\n'
+
+    def text(*names: str) -> str:
+        """A wire with tendons of these names."""
+        inputs = [f"{name}.tension" for name in names]
+        parameters = ["wire.length", *(f"{name}.offset.x" for name in names)]
+        ranges = "".join(f'"{entry}" = [0.0, 2.0]\n' for entry in inputs)
+        head = f"schema = 1\ninputs = {inputs}\nparameters = {parameters}\n[ranges]\n{ranges}"
+        return head + WIRE + "".join(table.format(name) for table in (tendon, bound, motion) for name in names)
+
+    assert without_load(parse_scene(text("east", "north")), "east") == parse_scene(text("north"))

@@ -491,6 +491,7 @@ def test_a_large_text_is_refused():
         ("push.force[1]='a'", "--set push.force[1]", "must be a number, got 'a'"),
         ("push.force[7]=1", "--set push.force[7]", "there is no '7' to set"),
         ("push.frame=body", "--set push.frame", "'body' is not a TOML value"),
+        ("push=3", "--set push", "is a whole table, not one of its values"),
         ("push.frame=", "--set push.frame", "'' is not a TOML value"),
         ("push.forze=[1, 0, 0]", "--set push.forze", "unknown key"),
         ("push.rod='toe'", "--set push.rod", "no rod is named 'toe'"),
@@ -508,7 +509,7 @@ def test_a_large_text_is_refused():
         ("title=" + "[" * 100_000, "--set title", "is not a TOML value"),
         ("title={" + "a." * 100_000 + "b=1}", "--set title", "is not a TOML value"),
     ],
-    ids=range(19),
+    ids=range(20),
 )
 def test_a_bad_override_is_refused_where_it_stands(override, where, piece):
     with pytest.raises(SceneError) as caught:
@@ -526,6 +527,9 @@ def test_a_bad_override_is_refused_where_it_stands(override, where, piece):
         ("push.force[3]=1", "its entries are [0] to [2]"),
         ("loads.pull.force=[1, 0, 0]", "there are push"),
         ("finger.length.x=1", ""),
+        ("push=3", "name one of push.rod, push.force"),
+        ("pusj.force=3", "did you mean 'push'?"),
+        ("zzz.another=3", "the scene has finger, push, and tables such as accuracy.tolerance"),
     ],
 )
 def test_an_override_of_what_is_not_there_is_told_what_is(override, remedy):

@@ -91,7 +91,7 @@ REFUSED = {
     "wier.length": ("no rod, load, actuator, body, joint or support is named 'wier'", "did you mean 'wire'?"),
     "wire.material.youngs_modulu": ("wire.material has no 'youngs_modulu'", "did you mean 'youngs_modulus'?"),
     "wire.material.shear_modulus": ("is not given in the scene", "give it a value: the parameter's default"),
-    "wire.material": ("is a table, not a number", "go on with one of its keys: density, poisson_ratio, "),
+    "wire.material": ("is a table, not a number", "go on with one of its keys: density, law, poisson_ratio, "),
     "wire": ("must name a number of an entry", "such as"),
     "wire.strain": ("is not a number", "parameters are numbers of the scene"),
     "wire.base.free": ("is not a number", ""),

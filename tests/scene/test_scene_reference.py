@@ -15,9 +15,10 @@ import pytest
 from cosserat_casadi import scene_from_dict
 from cosserat_casadi.scene import Scene, scene_reference
 from cosserat_casadi.scene.families import Family, contents_of
+from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.measurement_record import MeasurementRecord
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.rod_records import SectionRecord
+from cosserat_casadi.scene.rod_records import STRAINS, SectionRecord
 
 PAGE = scene_reference.reference_text()
 EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
@@ -144,6 +145,8 @@ def in_a_heading(record: type[Record], key: str) -> bool:
         return scene_reference.contents_by_key(Scene)[key] is not None
     if key == "quantity":
         return issubclass(record, MeasurementRecord)
+    if key == "law":
+        return issubclass(record, Material)
     return key == "kind" or (key == "shape" and issubclass(record, SectionRecord))
 
 
@@ -151,7 +154,10 @@ def test_every_number_has_a_unit_or_has_none_by_nature() -> None:
     without = [row[0] for row in lines() if row[2] == "–" and re.search("number|component", row[1])]
     in_another_unit = {"`amplitude`", "`lower`", "`mean`", "`shift`", "`sigma`", "`upper`", "`values`"}
     counts = {"`frames`", "`modes`", "`nodes`", "`starts`"}
-    assert set(without) == in_another_unit | counts | {"`quaternion`", "`span`"}
+    # The coefficient of a term has the unit of energy per length over its powers, which are counts.
+    powers = {f"`{name}`" for name in STRAINS}
+    entries = {"`coefficient`"}
+    assert set(without) == in_another_unit | counts | powers | entries | {"`quaternion`", "`span`"}
 
 
 def test_links_lead_to_headings() -> None:

@@ -30,7 +30,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str) -> str:
     before = sorted(file.name for file in folder.iterdir())
-    monkeypatch.setattr(sys, "argv", ["cosserat", "sweep", "scene.toml", "--over", "grid.toml", *words])
+    over = [] if "--range" in words else ["--over", "grid.toml"]
+    monkeypatch.setattr(sys, "argv", ["cosserat", "sweep", "scene.toml", *over, *words])
     assert run(app) == REFUSED
     assert sorted(file.name for file in folder.iterdir()) == before
     return capsys.readouterr().err
@@ -44,6 +45,25 @@ def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
         (("--output", "a.csv", "--cores", "0"), ["--cores"]),
         (("--output", "a.csv", "--cores", "1", "--scheduler", "tcp://127.0.0.1:1"), ["--cores: are those of this"]),
         (("--output", "no/a.csv", "--colour", "rod.x"), ["the folder no does not exist", "--colour: is for a figure"]),
+        (
+            ("--output", "a.csv", "--range", "push.force.x=0:1"),
+            ["does not say how many values (write push.force.x=0:1:21"],
+        ),
+        (("--output", "a.csv", "--range", "push.force.x=0:1:many"), ["has no whole number of values"]),
+        (("--output", "a.csv", "--range", "push.force.x=0:1:1"), ["has one value between two ends"]),
+        (
+            ("--output", "a.csv", "--range", "push.force.x=0:1:10000", "--range", "push.force.z=0:1:10000"),
+            ["asks for 100,000,000 rows"],
+        ),
+        (("--output", "a.csv", "--range", "push.force.x=0:1:2", "--range", "push.force.x=0:1:2"), ["has two ranges"]),
+        (
+            ("--output", "a.csv", "--over", "grid.toml", "--range", "push.force.x=0:1:2"),
+            ["'push.force.x' is a column of grid.toml too"],
+        ),
+        (
+            ("--output", "a.csv", "--sobol", "i.json", "--range", "push.force.x=0:1:2"),
+            ["--sobol: is of random columns, and --over is missing"],
+        ),
         (("--output", "no/a.csv", "--plot", "a.bmp", "--over", "b.csv"), ["folder no", "--plot", "b.csv: cannot be"]),
     ],
 )

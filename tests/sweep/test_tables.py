@@ -14,7 +14,8 @@ from cosserat_casadi.sweeps.grid_file import grid
 from cosserat_casadi.sweeps.outcome_file import write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.sampling import representative_rows
-from cosserat_casadi.sweeps.table import read_table, table_of
+from cosserat_casadi.sweeps.scratch import Scratch
+from cosserat_casadi.sweeps.table import crossed, range_table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
 from tests.scenes import push, rod, scene
 from tests.sweep.conftest import PLANAR
@@ -94,6 +95,24 @@ def test_every_fault_of_a_grid_is_told_at_once() -> None:
     said = refusals("samples = -1\na.b = []\nc.d = { from = 1 }\ne.f = 'x'")
     for words in ("samples", "grid.toml, a.b", "grid.toml, c.d", "grid.toml, e.f"):
         assert words in said
+
+
+def test_ranges_are_a_grid() -> None:
+    table = range_table(["a.b=-1:1:3", "c.d=5:7:2"])
+    assert table.columns == ("a.b", "c.d")
+    assert_allclose(table.values, [[-1, 5], [-1, 7], [0, 5], [0, 7], [1, 5], [1, 7]], rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("on_disc", [False, True])
+def test_ranges_stand_beside_every_row_of_a_file(tmp_path: Path, on_disc: bool) -> None:
+    file = tmp_path / "rows.csv"
+    file.write_text("e.f,g.h\n1,2\n\n3,4\n")
+    rows = read_table(file, scratch=Scratch(tmp_path if on_disc else None))
+    table = crossed(rows, range_table(["a.b=0:1:2"]))
+    assert table.columns == ("e.f", "g.h", "a.b")
+    assert_allclose(table.values, [[1, 2, 0], [1, 2, 1], [3, 4, 0], [3, 4, 1]], rtol=0, atol=0)
+    # A refusal names the line of the file that the row comes from.
+    assert [table.where_of(row) for row in range(4)] == [f"{file}, line {line}" for line in (2, 2, 4, 4)]
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:

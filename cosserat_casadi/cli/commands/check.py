@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,8 +12,9 @@ from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_outputs
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.codegen.compiler import find_compiler
@@ -32,6 +34,10 @@ def check(
     scene: SceneFile,
     ranges: Ranges = None,
     settings: Settings = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(help="Draw stress against strain of materials that are not linear here: .png, .pdf or .svg."),
+    ] = None,
     timed: Annotated[
         bool,
         typer.Option("--time", help="Price each effect in compiled microseconds too; and a motion, not compiled."),
@@ -39,7 +45,9 @@ def check(
 ) -> None:
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     overrides = tuple(settings or ())
+    check_outputs(None, plot)
     checked_scene = read_scene(scene, overrides)
+    check_inputs_stay({"--plot": plot}, scene, settings)
     if checked_scene.tubes:
         if ranges:
             raise SceneError(Problem("--range", "is of rods, and the scene has tubes", "leave it out"))
@@ -68,6 +76,8 @@ def check(
     print_check(Console(), model, varying, cost, of_effects)
     print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
+    if plot is not None:
+        _draw(checked_scene, plot)
     if timed:
         _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
@@ -80,6 +90,14 @@ def _locking(model: Model) -> str:
         return ""
     solution = solve(model, estimate_error=False)
     return locking_note(solution) if solution.converged else NOT_KNOWN
+
+
+def _draw(scene: Scene, file: Path) -> None:
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.material_plot import save_material_plot
+
+    save_material_plot(scene, file)
+    print_written(Console(), [file])
 
 
 def _print_times(scene: Scene) -> None:

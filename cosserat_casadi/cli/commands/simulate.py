@@ -78,14 +78,14 @@ def simulate(
         print_motion(Console(), motion, given_files(output))
         raise StoppedError
     # A motion that was not started has no picture.
-    drawn = None
-    if animation is not None and len(motion.times):
-        drawn = animation
+    if not len(motion.times):
+        plot = None
+        animation = None
     if plot is not None:
         motion.write(plot)
-    if drawn is not None:
-        _animate(motion, drawn, speed)
-    print_motion(Console(), motion, given_files(output, plot, drawn))
+    if animation is not None:
+        _animate(motion, animation, speed)
+    print_motion(Console(), motion, given_files(output, plot, animation))
     print_motion_warnings(Console(stderr=True), motion)
     if not motion.converged:
         raise typer.Exit(NOT_FOUND)

@@ -33,15 +33,25 @@ from cosserat_casadi.sweeps.run import SAMPLES, Plan, merge_shards, output_probl
 from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.sobol import sobol_indices
-from cosserat_casadi.sweeps.table import Table, read_table
+from cosserat_casadi.sweeps.table import Table, crossed, range_table, read_table
 
 
 def sweep(
     scene: SceneFile,
-    over: Annotated[Path, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")],
     output: Annotated[
         Path, typer.Option(help="Write a row for each solve here: .csv, .parquet, or .dataset, a folder of parts.")
     ],
+    over: Annotated[
+        Path | None, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")
+    ] = None,
+    ranges: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--range",
+            metavar="COLUMN=FROM:TO:COUNT",
+            help="Values of an input or a parameter to solve for; several make a grid, beside the rows of --over too.",
+        ),
+    ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
     ] = None,
@@ -91,7 +101,9 @@ def sweep(
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     part = _check_shard(shard, merge, plot, problems)
     asked = {"stability": stability, "estimate_errors": estimate_errors}
-    plan = _check_table(scene, tuple(settings or ()), over, output, samples, asked, sobol is not None, problems)
+    plan = _check_table(
+        scene, tuple(settings or ()), over, ranges or [], output, samples, asked, sobol is not None, problems
+    )
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -141,7 +153,8 @@ def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: li
 def _check_table(
     scene_file: Path,
     settings: tuple[str, ...],
-    over: Path,
+    over: Path | None,
+    ranges: list[str],
     output: Path,
     samples: int,
     asked: dict[str, bool],
@@ -154,7 +167,7 @@ def _check_table(
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
     with collect_problems(problems):
-        table = read_table(over, sobol=sobol, scratch=Scratch.beside(output))
+        table = _asked_table(over, ranges, output, sobol=sobol)
     if scene is None or table is None:
         # Without them the output is all that can still be looked at.
         problems.extend(output_problems(output, None))
@@ -162,6 +175,32 @@ def _check_table(
     with collect_problems(problems):
         return plan_sweep(scene, table, output, samples, **asked)
     return None
+
+
+def _asked_table(over: Path | None, ranges: list[str], output: Path, *, sobol: bool) -> Table:
+    """The rows of a file, of ranges, or of both.
+
+    Raises:
+        SceneError: with every fault of them; or neither is asked for.
+    """
+    if over is None and not ranges:
+        remedy = "give a file, or ranges such as --range push.force.x=-1:1:21"
+        raise SceneError(Problem("--over", "and --range are missing: there is nothing to solve for", remedy))
+    if over is None and sobol:
+        raise SceneError(Problem("--sobol", "is of random columns, and --over is missing", "name a grid that has some"))
+    scratch = Scratch.beside(output)
+    if over is None:
+        return range_table(ranges, scratch)
+    problems: list[Problem] = []
+    rows: Table | None = None
+    grid: Table | None = None
+    with collect_problems(problems):
+        rows = read_table(over, sobol=sobol, scratch=scratch)
+    with collect_problems(problems):
+        grid = range_table(ranges) if ranges else None
+    if problems or rows is None:
+        raise SceneError(*problems)
+    return rows if grid is None else crossed(rows, grid)
 
 
 def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, problems: list[Problem]) -> None:

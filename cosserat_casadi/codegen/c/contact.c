@@ -35,7 +35,7 @@ static void move_inputs(const real *from, const real *to, const contact_options 
   real done = 0;
   real step = 1;
   real *inputs = work->path_inputs;
-  real index[2] = {0, 1}; /* of resolution; the least stretch of a tendon's path */
+  real index[3] = {0, 1, 1}; /* of resolution; the least margins of paths of tendons and of materials */
   {
     const arrangement *at = ARRANGEMENT + work->solved[0].arrangement;
     call(at->nodes, work->solved[0].z, from, work->nodes_before, index, work);
@@ -61,6 +61,7 @@ static void move_inputs(const real *from, const real *to, const contact_options 
       /* Nodes or modes too few for so bent a rod give equations whose solution is not one of the rod. */
       info->status = index[0] <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
       if (info->status == CONTACT_CONVERGED && index[1] <= VANISHED) info->status = CONTACT_PATH_VANISHED;
+      if (info->status == CONTACT_CONVERGED && index[2] <= VANISHED) info->status = CONTACT_BEYOND_MATERIAL;
       return;
     }
     step *= 2;

@@ -203,7 +203,7 @@ static void after_rate(row *own) {
 static void after_resolution(row *own) {
   if (!(own->resolution <= 1)) own->info.status = SOLVER_UNRESOLVED;
   memcpy(own->x, own->now.point->x, N * sizeof *own->x);
-  own->info.status = with_paths(own->info.status, own->x, own->inputs, own->work);
+  own->info.status = within_limits(own->info.status, own->x, own->inputs, own->work);
 #ifdef SOLVER_MISSING
   if (own->info.status == SOLVER_CONVERGED) {
     own->info.error_estimate = estimated_error(own->x, own->inputs, own->work);

@@ -23,7 +23,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.model_functions import resolution_index
-from cosserat_casadi.model.path_stretch import path_stretches
+from cosserat_casadi.model.strain_margins import strain_margins
 from cosserat_casadi.model.system import System
 
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
@@ -119,12 +119,17 @@ class ArrangementKernels:
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
-        """Index of resolution, and the least stretch of a tendon's path; one where there is none."""
+        """Index of resolution, and the least margins of paths and of materials; one where there is none."""
         system = self._written.system
         symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
         index = resolution_index(Expressions(system.discrete, "", symbols))
-        least: Matrix = ca.mmin(ca.vertcat(1, *path_stretches(system).values()))
-        return ca.vertcat(index, least)
+        margins = strain_margins(system)
+        least = []
+        for kind in ("path", "material"):
+            own = [value for margin, value in margins.items() if margin.kind == kind]
+            least.append(ca.mmin(ca.vertcat(1, *own)))
+        indices: Matrix = ca.vertcat(index, *least)
+        return indices
 
     def _tips(self) -> Matrix:
         """Position and quaternion of the tip of every rod, stacked."""

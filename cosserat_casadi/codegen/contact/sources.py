@@ -30,7 +30,7 @@ from cosserat_casadi.equilibrium.contact import (
 )
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
-from cosserat_casadi.model.path_stretch import VANISHED
+from cosserat_casadi.model.strain_margins import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
 

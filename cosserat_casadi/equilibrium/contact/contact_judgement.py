@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along
 from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
-from cosserat_casadi.equilibrium.vanished_paths import with_paths
+from cosserat_casadi.equilibrium.strain_limits import within_limits
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
@@ -52,7 +52,7 @@ def judged(found: ContactEquilibrium, *, holds: bool, iterations: int, tolerance
         outcome = Outcome.MAX_ITERATIONS
     elif holds and float(found.placed.model.resolution_index(found.x, inputs)) > 1.0:
         outcome = Outcome.UNRESOLVED
-    outcome, message = with_paths(found.placed.model, found.x, inputs, outcome)
+    outcome, message = within_limits(found.placed.model, found.x, inputs, outcome)
     solution = replace(
         found.solution,
         outcome=outcome,

@@ -135,7 +135,7 @@ def test_paths_that_no_strain_changes_cost_nothing() -> None:
     table = described("planar", 1.0)
     table["actuators"][0]["offset"] = [0.0, 0.0]
     central = scene_from_dict(table)
-    assert build(central, discretise(central, 2, 6)).path_stretch is None
+    assert build(central, discretise(central, 2, 6)).strain_margins is None
     table["actuators"] = []
     without = scene_from_dict(table)
-    assert build(without, discretise(without, 2, 6)).path_stretch is None
+    assert build(without, discretise(without, 2, 6)).strain_margins is None

@@ -1,0 +1,76 @@
+"""States that no rod can be in: tendons whose paths have no length left, materials beyond their laws."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.strain_margins import VANISHED, StrainMargin, margins_of
+from cosserat_casadi.numerics.outcome import Outcome
+
+JUDGED = (Outcome.CONVERGED, Outcome.LOAD_STALLED)
+"""Ends that a limit of the strains explains, or makes worthless."""
+
+
+class BeyondLimit(NamedTuple):
+    """The first of several states in which strains are beyond a limit.
+
+    Attributes:
+        state: its number.
+        margin: which limit that is.
+    """
+
+    state: int
+    margin: StrainMargin
+
+    @property
+    def word(self) -> str:
+        """The name of an outcome: those of solves, paths and motions have it alike."""
+        return "PATH_VANISHED" if self.margin.kind == "path" else "BEYOND_MATERIAL"
+
+    @property
+    def whose(self) -> str:
+        """Whose limit it is, as the beginning of a sentence."""
+        if self.margin.kind == "path":
+            return f"It is the path of '{self.margin.name}'"
+        return f"It is the material of '{self.margin.name}'"
+
+
+def first_beyond(model: Model, x: FloatArray, inputs: FloatArray) -> BeyondLimit | None:
+    """The first state in which strains are beyond a limit; None where they are within all in every state.
+
+    Args:
+        model: the discrete scene.
+        x: unknowns, shape (k, model.size).
+        inputs: stacked inputs, shape (k, model.inputs.size).
+    """
+    if model.strain_margins is None or not len(x):
+        return None
+    margins = model.strain_margins.map(len(x))(x.T, inputs.T).full()
+    beyond = np.flatnonzero(np.min(margins, axis=0) <= VANISHED)
+    if not len(beyond):
+        return None
+    state = int(beyond[0])
+    first = int(np.argmax(margins[:, state] <= VANISHED))
+    return BeyondLimit(state, margins_of(model.discrete)[first])
+
+
+def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outcome) -> tuple[Outcome, str]:
+    """Outcome of a solve and its sentence, after a look at the limits of its strains.
+
+    Args:
+        model: the solved model.
+        x: where the method stopped, shape (model.size,).
+        inputs: stacked inputs, shape (model.inputs.size,).
+        outcome: how it has ended but for the limits.
+    """
+    if outcome not in JUDGED:
+        return outcome, outcome.value
+    beyond = first_beyond(model, x[None, :], inputs[None, :])
+    if beyond is None:
+        return outcome, outcome.value
+    told = Outcome[beyond.word]
+    return told, f"{told.value} {beyond.whose}."

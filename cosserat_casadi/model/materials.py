@@ -1,0 +1,437 @@
+"""Laws of materials: the energy of a section beyond that of its Hooke tensor, from the record of the material.
+
+A member is one class: it gives :meth:`Law.beyond_hooke`. Residual, Jacobian, stability, motion and C follow from the
+energy. The Hooke tensor stays that of Young's modulus; it scales the equations. See docs/theory.md, section 6.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, TypeVar, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.hermite import HermiteCurve, monotone_curve
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, column, is_symbolic, repeated, side_by_side
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.sections import SHAPES, sizes_along, sizes_of
+from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field
+from cosserat_casadi.scene import material_records as records
+from cosserat_casadi.scene.families import Kind, Kinds, register
+
+RecordType = TypeVar("RecordType", bound=records.Material)
+
+BENDING = (0, 1)
+"""Indices of the two curvatures."""
+
+FIBRE_STRAINS = (0, 1, 5)
+"""Indices of the strains that stretch fibres along the rod: the two curvatures and extension."""
+
+ROUNDED = 0.1
+"""Share of a plateau's length, and of what lies before it, on each side of a corner that is rounded."""
+
+SMALLEST_BENDING = 1e-9
+"""Curvature, relative to the first point of a curve, below which its direction does not matter."""
+
+
+@dataclass(frozen=True)
+class LawOfRod:
+    """The rod that a law of a material is of.
+
+    Attributes:
+        rod: the record of the rod, whose numbers may be expressions of parameters.
+        hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6).
+    """
+
+    rod: scenes.Rod
+    hooke: Field
+
+    @property
+    def admitted(self) -> tuple[int, ...]:
+        """Indices of the strains that the rod admits."""
+        return self.rod.admitted
+
+    def columns(self, numbers: Sequence[Scalar], fields: Sequence[Callable[[Numbers], Numbers]] = ()) -> Field:
+        """Data of a density: numbers that are the same all along the rod, then fields, shape (k, d)."""
+
+        def data(X: Numbers) -> Numbers:
+            count = X.shape[0]
+            constant = [_everywhere(number, count) for number in numbers]
+            return side_by_side([*constant, *(field(X) for field in fields)])
+
+        return data
+
+    def hooke_of(self, component: int) -> Callable[[Numbers], Numbers]:
+        """Stiffness of one strain along the rod."""
+
+        def stiffness(X: Numbers) -> Numbers:
+            # One row may stand for all abscissae.
+            return repeated(column(self.hooke(X), component), X.shape[0])
+
+        return stiffness
+
+    def size_of(self, key: str) -> Callable[[Numbers], Numbers]:
+        """One size of the section along the rod."""
+        section = self.rod.section
+        assert section is not None, "a material stands beside a section"
+        return lambda X: sizes_along(section, X)[key]
+
+
+def _everywhere(number: Any, count: int) -> Numbers:
+    """A number, or an expression, at every abscissa."""
+    if is_symbolic(number):
+        return ca.repmat(number, count, 1)
+    return np.full(count, float(number))
+
+
+class Law(Kind, ABC, Generic[RecordType]):
+    """One law of materials."""
+
+    record: ClassVar[type[records.Material]]
+    family = records.MATERIALS
+    kinds = Kinds(records.MATERIALS)
+
+    @abstractmethod
+    def beyond_hooke(self, material: RecordType, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+        """Energy beyond that of the Hooke tensor; None of a linear rod.
+
+        Raises:
+            SceneError: the law does not fit the section of the rod.
+        """
+
+
+LAWS = Law.kinds
+"""Laws by the words of the scene format."""
+
+
+@final
+@register
+class LinearLaw(Law[records.LinearMaterial]):
+    """Stress in proportion to strain."""
+
+    record = records.LinearMaterial
+
+    def beyond_hooke(self, material: records.LinearMaterial, of_rod: LawOfRod) -> None:
+        """None."""
+        return
+
+
+@final
+@register
+class PolynomialLaw(Law[records.PolynomialMaterial]):
+    """Polynomials of the strains."""
+
+    record = records.PolynomialMaterial
+
+    def beyond_hooke(self, material: records.PolynomialMaterial, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+        """Σ c Π Δξ^p; a term with a strain that the rod does not admit is zero."""
+        admitted = set(of_rod.admitted)
+        terms = [term for term in material.terms if {c for c, power in enumerate(term.powers) if power} <= admitted]
+        if not terms:
+            return None
+
+        def density(change: Matrix, data: Matrix) -> Matrix:
+            products = []
+            for i, term in enumerate(terms):
+                product = data[i]
+                for c, power in enumerate(term.powers):
+                    if power:
+                        product = product * _power(change[c], power)
+                products.append(product)
+            return _sum(products)
+
+        return EnergyBeyondHooke(density, of_rod.columns([term.coefficient for term in terms]))
+
+
+def _sum(terms: Sequence[Matrix]) -> Matrix:
+    """Sum of terms, of which there is at least one."""
+    return sum(terms[1:], terms[0])
+
+
+def _power(value: Matrix, exponent: int) -> Matrix:
+    """A power by products, whose derivatives at zero are numbers."""
+    result = value
+    for _ in range(exponent - 1):
+        result = result * value
+    return result
+
+
+@final
+@register
+class TabulatedLaw(Law[records.TabulatedMaterial]):
+    """Measured curves, monotone cubics between their points: docs/theory.md, section 6."""
+
+    record = records.TabulatedMaterial
+
+    def beyond_hooke(self, material: records.TabulatedMaterial, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+        """Energy of every curve less that of the Hooke tensor."""
+        if material.table.bending is not None:
+            _refuse_unless_round(of_rod.rod, "table.bending")
+        curves = {}
+        for component, name in enumerate(STRAINS):
+            points = getattr(material.table, name)
+            if points is not None and component in of_rod.admitted:
+                curves[component] = _curve(points)
+        radial = None if material.table.bending is None else _curve(material.table.bending)
+        bent = [c for c in BENDING if c in of_rod.admitted and radial is not None]
+        stiff = [*curves, *bent[:1]]
+        if not stiff:
+            return None
+
+        def density(change: Matrix, data: Matrix) -> Matrix:
+            energies = []
+            for i, (component, curve) in enumerate(curves.items()):
+                linear = data[i] / 2 * change[component] ** 2
+                energies.append(curve.integral(change[component]) - linear)
+            if bent:
+                assert radial is not None
+                size = _size_of_bending(change, bent, SMALLEST_BENDING * radial.ends[1])
+                energies.append(radial.integral(size) - data[len(curves)] / 2 * size**2)
+            return _sum(energies)
+
+        def margin(change: Matrix, data: Matrix) -> Matrix:
+            shares = [curve.share_left(change[component]) for component, curve in curves.items()]
+            if bent:
+                assert radial is not None
+                shares.append(radial.share_left(_size_of_bending(change, bent, 0.0)))
+            least: Matrix = ca.mmin(ca.vertcat(*shares))
+            return least
+
+        return EnergyBeyondHooke(density, of_rod.columns([], [of_rod.hooke_of(c) for c in stiff]), margin)
+
+
+def _curve(points: Sequence[Sequence[float]]) -> HermiteCurve:
+    """The curve through measured points; one without negative strains is odd, and begins at zero."""
+    table = np.array(points, dtype=float)
+    if table[0, 0] < 0.0:
+        return monotone_curve(table[:, 0], table[:, 1])
+    positive = table[table[:, 0] > 0.0]
+    strains = np.concatenate([-positive[::-1, 0], [0.0], positive[:, 0]])
+    stresses = np.concatenate([-positive[::-1, 1], [0.0], positive[:, 1]])
+    return monotone_curve(strains, stresses)
+
+
+def _size_of_bending(change: Matrix, bent: Sequence[int], smallest: float) -> Matrix:
+    """Size of the change of curvature; ``smallest`` keeps its derivatives finite at none."""
+    squares = _sum([change[component] ** 2 for component in bent])
+    size: Matrix = ca.sqrt(squares + smallest**2)
+    return size
+
+
+@final
+@register
+class SuperelasticLaw(Law[records.Superelastic]):
+    """Moment against curvature in three straight pieces with rounded corners."""
+
+    record = records.Superelastic
+
+    def beyond_hooke(self, material: records.Superelastic, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+        """Energy of the changes of slope at the two corners of the curve."""
+        radius_key = _refuse_unless_round(of_rod.rod, "law")
+        bent = [c for c in BENDING if c in of_rod.admitted]
+        if not bent:
+            return None
+        start: Scalar = material.plateau_start
+        if material.unloading_start is not None:
+            start = material.unloading_start
+        end_modulus = material.youngs_modulus if material.end_modulus is None else material.end_modulus
+        slopes = [modulus / material.youngs_modulus for modulus in (material.plateau_modulus, end_modulus)]
+        numbers = [start, material.plateau_end, *slopes]
+        data = of_rod.columns(numbers, [of_rod.size_of(radius_key), of_rod.hooke_of(bent[0])])
+
+        def density(change: Matrix, data: Matrix) -> Matrix:
+            begin, end, plateau, beyond, radius, stiffness = ca.vertsplit(data)
+            # Corners lie off zero: the root is not evaluated near it.
+            first_rounded = ROUNDED * ca.fmin(begin, end - begin)
+            second_rounded = ROUNDED * (end - begin)
+            strain = _fibre_strain(change, bent, radius, begin - first_rounded)
+            first = _corner_energy(strain - begin, first_rounded)
+            second = _corner_energy(strain - end, second_rounded)
+            per_strain = stiffness / radius**2
+            energy: Matrix = per_strain * ((plateau - 1) * first + (beyond - plateau) * second)
+            return energy
+
+        return EnergyBeyondHooke(density, data)
+
+
+def _fibre_strain(change: Matrix, bent: Sequence[int], radius: Matrix, least: Matrix) -> Matrix:
+    """Strain of the outermost fibre of a round section; never below ``least``, so that its root has derivatives."""
+    squared = _sum([(radius * change[component]) ** 2 for component in bent])
+    strain: Matrix = ca.sqrt(ca.if_else(squared > least**2, squared, least**2))
+    return strain
+
+
+def _corner_energy(beyond: Matrix, rounded: Matrix) -> Matrix:
+    """Second integral of a slope that rises from 0 to 1, linearly from −rounded to rounded."""
+    inside = (beyond + rounded) ** 3 / (12 * rounded)
+    straight = beyond**2 / 2 + rounded**2 / 6
+    energy: Matrix = ca.if_else(beyond < -rounded, 0, ca.if_else(beyond < rounded, inside, straight))
+    return energy
+
+
+class RubberLaw(Law[RecordType], ABC):
+    """Fibres along the rod that stretch by the uniaxial law of an incompressible material.
+
+    The energy is summed over points of the section; torsion and shear are linear.
+    """
+
+    @abstractmethod
+    def coefficients(self, material: RecordType) -> list[Scalar]:
+        """Numbers of the law, the small-strain modulus of the law as it is written last."""
+
+    @abstractmethod
+    def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
+        """W of a fibre, J/m³, for its stretch λ: the material keeps its volume, and is free across."""
+
+    def beyond_hooke(self, material: RecordType, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+        """∫ W(λ) − E ε²/2 dA, with the strain ε = λ − 1 of each fibre."""
+        stretched = [c for c in FIBRE_STRAINS if c in of_rod.admitted]
+        if not stretched:
+            return None
+        section = of_rod.rod.section
+        assert section is not None
+        shape = SHAPES[section.shape]
+        keys = list(sizes_of(section))
+        if shape.fibres(dict.fromkeys(keys, ca.SX(1.0))) is None:
+            problem = f"law = {self.kind!r} sums over fibres, and a section of shape {section.shape!r} says of none"
+            raise SceneError(Problem(f"{of_rod.rod.name}.section", problem, "give its class a method fibres"))
+        coefficients = self.coefficients(material)
+        numbers = [material.youngs_modulus, *coefficients]
+        data = of_rod.columns(numbers, [of_rod.size_of(key) for key in keys])
+
+        def fibres(change: Matrix, data: Matrix) -> tuple[list[Matrix], list[Matrix]]:
+            sizes = dict(zip(keys, ca.vertsplit(data[len(numbers) :]), strict=True))
+            strains = []
+            areas = []
+            for x, y, area in shape.fibres(sizes):
+                levers = dict(zip(FIBRE_STRAINS, (y, -x, 1.0), strict=True))
+                strains.append(_sum([levers[component] * change[component] for component in stretched]))
+                areas.append(area)
+            return strains, areas
+
+        def density(change: Matrix, data: Matrix) -> Matrix:
+            modulus = data[0]
+            law = data[1 : len(numbers)]
+            # Young's modulus is the size of the law, and its coefficients are the shape.
+            scale = modulus / law[-1]
+            energies = []
+            for strain, area in zip(*fibres(change, data), strict=True):
+                beyond = scale * self.energy(1 + strain, law) - modulus / 2 * strain**2
+                energies.append(area * beyond)
+            return _sum(energies)
+
+        def margin(change: Matrix, data: Matrix) -> Matrix:
+            strains, _ = fibres(change, data)
+            least: Matrix = ca.mmin(ca.vertcat(*strains))
+            return 1 + least
+
+        return EnergyBeyondHooke(density, data, margin)
+
+
+@final
+@register
+class NeoHookeanLaw(RubberLaw[records.NeoHookean]):
+    """W = μ/2 (λ² + 2/λ − 3)."""
+
+    record = records.NeoHookean
+
+    def coefficients(self, material: records.NeoHookean) -> list[Scalar]:
+        """E alone."""
+        return [material.youngs_modulus]
+
+    def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
+        """With μ = E/3."""
+        return coefficients[0] / 6 * _first_invariant(stretch)
+
+
+@final
+@register
+class MooneyRivlinLaw(RubberLaw[records.MooneyRivlin]):
+    """W = c10 (λ² + 2/λ − 3) + c01 (2 λ + 1/λ² − 3)."""
+
+    record = records.MooneyRivlin
+
+    def coefficients(self, material: records.MooneyRivlin) -> list[Scalar]:
+        """c10, c01 and 6 (c10 + c01)."""
+        return [material.c10, material.c01, 6 * (material.c10 + material.c01)]
+
+    def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
+        """The sum over both invariants."""
+        second = 2 * stretch + 1 / stretch**2 - 3
+        return coefficients[0] * _first_invariant(stretch) + coefficients[1] * second
+
+
+@final
+@register
+class YeohLaw(RubberLaw[records.Yeoh]):
+    """W = c1 (I₁ − 3) + c2 (I₁ − 3)² + c3 (I₁ − 3)³."""
+
+    record = records.Yeoh
+
+    def coefficients(self, material: records.Yeoh) -> list[Scalar]:
+        """c1, c2, c3 and 6 c1."""
+        return [material.c1, material.c2, material.c3, 6 * material.c1]
+
+    def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
+        """A polynomial of the first invariant."""
+        invariant = _first_invariant(stretch)
+        return invariant * (coefficients[0] + invariant * (coefficients[1] + invariant * coefficients[2]))
+
+
+@final
+@register
+class OgdenLaw(RubberLaw[records.Ogden]):
+    """W = Σ μ/α (λ^α + 2 λ^(−α/2) − 3)."""
+
+    record = records.Ogden
+
+    def coefficients(self, material: records.Ogden) -> list[Scalar]:
+        """The pairs of μ and α, and 3/2 Σ μ α."""
+        pairs = [number for pair in material.ogden for number in pair]
+        return [*pairs, 1.5 * sum(modulus * exponent for modulus, exponent in material.ogden)]
+
+    def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
+        """The sum over the pairs."""
+        energies = []
+        for pair in range((coefficients.shape[0] - 1) // 2):
+            modulus = coefficients[2 * pair]
+            exponent = coefficients[2 * pair + 1]
+            powers = stretch**exponent + 2 * stretch ** (-exponent / 2) - 3
+            energies.append(modulus / exponent * powers)
+        return _sum(energies)
+
+
+def _first_invariant(stretch: Matrix) -> Matrix:
+    """I₁ − 3 of a fibre that keeps its volume."""
+    return stretch**2 + 2 / stretch - 3
+
+
+def _refuse_unless_round(rod: scenes.Rod, key: str) -> str:
+    """The key of the radius of a round section.
+
+    Raises:
+        SceneError: the section is not round.
+    """
+    section = rod.section
+    if section is None or section.radius_key is None:
+        problem = f"its bending is the same in every direction, and the section of {rod.name!r} is not round"
+        raise SceneError(Problem(f"{rod.name}.material.{key}", problem, "give a curve for bending_x and bending_y"))
+    return section.radius_key
+
+
+def coupled_stiffness(matrix: Sequence[Sequence[Scalar]], of_rod: LawOfRod) -> EnergyBeyondHooke | None:
+    """Energy of the entries of a stiffness matrix off its diagonal: its diagonal is the Hooke tensor."""
+    pairs = [(i, j) for i in of_rod.admitted for j in of_rod.admitted if i < j]
+    coupled = [(i, j) for i, j in pairs if any_symbolic([matrix[i][j]]) or matrix[i][j] != 0.0]
+    if not coupled:
+        return None
+
+    def density(change: Matrix, data: Matrix) -> Matrix:
+        return _sum([data[number] * change[i] * change[j] for number, (i, j) in enumerate(coupled)])
+
+    return EnergyBeyondHooke(density, of_rod.columns([matrix[i][j] for i, j in coupled]))

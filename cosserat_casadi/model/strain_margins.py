@@ -1,0 +1,64 @@
+"""How far strains are from what a rod cannot be: paths of tendons without length, materials beyond their laws.
+
+A path at D(X) in the sections has the tangent T = Γ + K × D + D'/ℓ. With plane, rigid sections the determinant of the
+deformation gradient is T_z there: where it vanishes matter is pressed to nothing, and beyond it is turned inside out.
+A cable has no length along the rod there, which the equations, that know |T| alone, do not see.
+
+A material that is not linear has a law for some strains, and is stable where every further strain costs energy: where
+the pivots of its tangent stiffness are positive.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.material_functions import material_margin
+
+VANISHED = 1e-3
+"""Margin that counts as none: a path that is followed to zero ends short of it by a last step."""
+
+
+class StrainMargin(NamedTuple):
+    """The tendon or the rod that has a margin.
+
+    Attributes:
+        kind: the path of a tendon, or the material of a rod.
+        name: name of the tendon, or of the rod.
+    """
+
+    kind: Literal["path", "material"]
+    name: str
+
+
+def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
+    """Margins where they are least, 1×1 each: first those of paths, then those of materials.
+
+    Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a material the least
+    pivot of its tangent stiffness relative to its Hooke tensor, or how far the strain is from the ends of its law.
+    """
+    margins: dict[StrainMargin, Matrix] = {}
+    for actuator in system.discrete.scene.actuators:
+        _, conjugate = system.actuators.conjugate(actuator.name)
+        if not isinstance(conjugate, RoutedCable):
+            continue
+        along = conjugate.stretch_along
+        if along is not None and not along.is_constant():
+            margins[StrainMargin("path", actuator.name)] = ca.mmin(along)
+    for rod, shape in system.shapes.items():
+        margin = material_margin(shape)
+        if margin is not None:
+            # A law ends where its margin is zero; what has one of paths' ends a little earlier.
+            margins[StrainMargin("material", rod)] = margin + VANISHED
+    return margins
+
+
+def margins_of(discrete: DiscreteScene) -> list[StrainMargin]:
+    """Tendons and rods with margins, in the order of the margins."""
+    arguments = Arguments(ca.MX.sym("x", discrete.size), ca.MX.sym("inputs", discrete.layout.size))
+    return list(strain_margins(System(discrete, arguments)))

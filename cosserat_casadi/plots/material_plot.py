@@ -1,0 +1,152 @@
+"""The figure of materials: stress of the section at each rod's base against each strain that is not linear.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.plots.colours import CATEGORIES, PLAIN_TEXT
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.rod.material_functions import section_margins, stress_beyond_hooke
+from cosserat_casadi.rod.properties import RodProperties
+
+COLUMNS = 3
+"""Panels in a row."""
+
+POINTS = 241
+"""Points of a curve."""
+
+FIBRE_STRAIN = 0.15
+"""Strain of the outermost fibre, and of extension, up to which curves are drawn."""
+
+AXES = (
+    *(("bending_x", "curvature $K_x$, 1/m", "moment, N m"), ("bending_y", "curvature $K_y$, 1/m", "moment, N m")),
+    *(("torsion", "twist $K_z$, 1/m", "moment, N m"), ("shear_x", "shear $\\Gamma_x$", "force, N")),
+    *(("shear_y", "shear $\\Gamma_y$", "force, N"), ("extension", "stretch $\\Gamma_z - 1$", "force, N")),
+)
+"""Names of the strains with the labels of their panels."""
+
+
+class StressCurve(NamedTuple):
+    """Stress against the change of one strain, the others unchanged.
+
+    Attributes:
+        component: index of the strain.
+        change: of it, shape (k,).
+        stress: shape (k,), N m or N.
+        linear: stress by the Hooke tensor, shape (k,).
+        inside: where the law of the material holds, shape (k,).
+    """
+
+    component: int
+    change: FloatArray
+    stress: FloatArray
+    linear: FloatArray
+    inside: npt.NDArray[np.bool_]
+
+
+def save_material_plot(scene: scenes.Scene, file: str | Path) -> None:
+    """Draw the materials of a scene into a file, whole or not at all.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`, or all rods are linear.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_materials(scene), file)
+
+
+def plot_materials(scene: scenes.Scene) -> Any:
+    """Figure of the materials of a scene: a panel for each strain of each rod that is not linear.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        SceneError: all rods are linear.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    curves = [(rod.name, curve) for rod in scene.baked().rods for curve in stress_curves(rod_properties(rod))]
+    if not curves:
+        raise SceneError(
+            Problem("--plot", "draws materials that are not linear, and the scene has none", "leave it out")
+        )
+    columns = min(COLUMNS, len(curves))
+    rows = ceil(len(curves) / columns)
+    figure = figure_class()(figsize=(1.0 + 3.6 * columns, 0.8 + 3.0 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for panel, (rod, curve) in zip(panels, curves, strict=False):
+        _draw(panel, rod, curve)
+    for panel in panels[len(curves) :]:
+        panel.set_visible(False)
+    labels: dict[str, Any] = {}
+    for panel in panels[: len(curves)]:
+        lines, words = panel.get_legend_handles_labels()
+        labels |= dict(zip(words, lines, strict=True))
+    panels[0].legend(labels.values(), labels, fontsize=8, frameon=False, loc="upper left")
+    add_title(figure, scene.title)
+    return figure
+
+
+def stress_curves(rod: RodProperties) -> list[StressCurve]:
+    """Curves of the section at the base of a rod for each admitted strain that is not linear."""
+    law = rod.beyond_hooke
+    if law is None:
+        return []
+    base = np.zeros(1)
+    data = known(law.data(base)).T
+    hooke = known(rod.hooke(base))[0]
+    stress_of = stress_beyond_hooke(law, len(data)).map(POINTS)
+    margin_of = section_margins(law, rod.admitted, len(data)).map(POINTS)
+    curves = []
+    for component in rod.admitted:
+        change = np.zeros((6, POINTS))
+        change[component] = np.linspace(-1, 1, POINTS) * _largest_change(rod, component)
+        everywhere = np.repeat(data, POINTS, axis=1)
+        beyond = stress_of(change, everywhere).full()[component]
+        linear = hooke[component] * change[component]
+        if np.allclose(beyond, 0.0, rtol=0, atol=1e-9 * np.abs(linear).max()):
+            continue
+        stiffness = np.repeat(hooke[list(rod.admitted), None], POINTS, axis=1)
+        inside = margin_of(change, everywhere, stiffness).full()[0] > 0.0
+        curves.append(StressCurve(component, change[component], linear + beyond, linear, inside))
+    return curves
+
+
+def _largest_change(rod: RodProperties, component: int) -> float:
+    """Change of a strain up to which it is drawn."""
+    if component >= 3:
+        return FIBRE_STRAIN
+    # The radius of gyration of the section, by its stiffnesses: EI = EA r²/4 of a circle.
+    hooke = known(rod.hooke(np.zeros(1)))[0]
+    if np.isfinite(hooke[5]):
+        return float(FIBRE_STRAIN / (2 * np.sqrt(hooke[component] / hooke[5])))
+    return float(2 * np.pi / rod.length)
+
+
+def _draw(panel: Any, rod: str, curve: StressCurve) -> None:
+    """One panel: the law, where it holds; the linear rod beside it."""
+    name, abscissa, ordinate = AXES[curve.component]
+    panel.plot(curve.change, curve.linear, color=PLAIN_TEXT, linewidth=1.0, linestyle="--", label="small strains")
+    law = np.where(curve.inside, curve.stress, np.nan)
+    panel.plot(curve.change, law, color=CATEGORIES[0], linewidth=2.0, label="material")
+    if not np.all(curve.inside):
+        beyond = np.where(curve.inside, np.nan, curve.stress)
+        panel.plot(curve.change, beyond, color=CATEGORIES[4], linewidth=1.5, linestyle=":", label="beyond its law")
+    largest = 1.1 * np.abs(curve.stress).max()
+    panel.set_ylim(-largest, largest)
+    panel.set_xlabel(abscissa)
+    panel.set_ylabel(ordinate)
+    panel.set_title(f"{rod}: {name.replace('_', ' ')}", fontsize=10)
+    panel.grid(alpha=0.3)

@@ -1,0 +1,74 @@
+"""Values that are read once stand where they are read, in parentheses where the order of rounding asks for them."""
+
+from __future__ import annotations
+
+import random
+
+import casadi as ca
+import pytest
+
+from cosserat_casadi.codegen.listing import BINARY, Constant, Listing, Read
+from cosserat_casadi.codegen.statements import LONGEST_LINE, SINGLE, Block, Statement, computations
+
+SYMBOLS = 4
+VALUES = [0.1, 0.7, -1.3, 3.1]
+
+
+def lines_of(expressions: list[ca.SX], symbols: ca.SX) -> list[str]:
+    """Lines of C that store these expressions in r0, r1, …, of symbols called x0, x1, …"""
+    listing = Listing(ca.Function("f", [symbols], [ca.vertcat(*expressions)]))
+    block = Block("casadi_real", "a", computations(listing, SINGLE))
+    for entry, number in listing.outputs[0].items():
+        block.statements.append(Statement(f"r{entry} = {{0}};", [number]))
+
+    def text(number: int) -> str | None:
+        value = listing.values[number]
+        if isinstance(value, Constant):
+            return SINGLE.number(value.value)
+        return f"x{value.entry}" if isinstance(value, Read) else None
+
+    return [line.strip() for line in block.lines(text)]
+
+
+def in_python(lines: list[str]) -> dict[str, float]:
+    """The numbers that lines compute: sums and products bind in Python as in C."""
+    numbers = {f"x{i}": value for i, value in enumerate(VALUES)}
+    for line in lines:
+        if not line.startswith("casadi_real"):
+            exec(line.rstrip(";"), {}, numbers)
+    return numbers
+
+
+def test_parentheses_stand_where_c_would_group_otherwise() -> None:
+    symbols = ca.SX.sym("x", SYMBOLS)
+    x, y, z, u = ca.vertsplit(symbols)
+    in_c = {
+        "x0 - (x1 + x2)": x - (y + z),
+        "x0 - x1 + x2": (x - y) + z,
+        "x0 / (x1 * x2)": x / (y * z),
+        "x0 / x1 * x2": (x / y) * z,
+        "x0 * (x1 + x2)": x * (y + z),
+        "x0 * x1 * x2": (x * y) * z,
+        "x0 * (x1 * x2)": x * (y * z),
+        "x0 + x1 * x3": x + y * u,
+        "(-1.0) * (x0 + x1)": -(x + y),
+        "sin(x0 + x1) - x2": ca.sin(x + y) - z,
+        "(x0 + x1) < x2": x + y < z,
+    }
+    for text, expression in in_c.items():
+        assert lines_of([expression], symbols) == [f"r0 = {text};"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_nested_expressions_are_rounded_as_casadi_rounds(seed: int) -> None:
+    draw = random.Random(seed)
+    symbols = ca.SX.sym("x", SYMBOLS)
+    pool = ca.vertsplit(symbols)
+    for _ in range(60):
+        left, right = draw.sample(pool[-12:], 2)
+        pool.append(ca.SX.binary(draw.choice(list(BINARY)), left, right))
+    lines = lines_of(pool[-6:], symbols)
+    expected = ca.Function("f", [symbols], [ca.vertcat(*pool[-6:])])(VALUES).nonzeros()
+    numbers = in_python(lines)
+    assert [numbers[f"r{i}"] for i in range(6)] == expected
+    assert max(map(len, lines)) <= LONGEST_LINE + len("a00 = ;")
