@@ -71,6 +71,9 @@ static void MADE({name})(casadi_real *w) {{
 """
 """The same, one entry at a time: not all its operations have a form in fours."""
 
+WORTH_STRIDES = 2
+"""How many entries a number must stand for where runs of equal stride replace a table of all places."""
+
 UNUSED = -1
 """Place of an entry that has none yet."""
 
@@ -276,9 +279,9 @@ class _Writing:
             for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
                 moves.append(f"program_move({to} + {start}, w + {places[start]}, {length});")
             return "{ " + " ".join(moves) + " }"
-        if lengths[0] > 1 and np.all(lengths == lengths[0]):
-            table = self.tables.of_places(places[starts])
-            return f"program_runs({to}, w, {table}, {len(starts)}, {lengths[0]});"
+        strides = _strides(places)
+        if WORTH_STRIDES * strides.size <= len(places):
+            return f"program_strides({to}, w, {self.tables.of_places(strides.ravel())}, {len(strides)});"
         return f"program_gather({to}, w, {self.tables.of_places(places)}, {len(places)});"
 
     def _pointer(self, numbers: Numbers) -> str:
@@ -379,10 +382,15 @@ class _Writing:
         arithmetic = FOURS if in_fours else SINGLE
         variables = ("FOUR", "b") if in_fours else ("casadi_real", "a")
         block = Block(*variables, computations(listing, arithmetic))
-        store = "STORE(w + {place} + i, {{0}});" if in_fours else "w[{place} + i] = {{0}};"
         for numbers, number in zip(kept, listing.outputs[0].values(), strict=True):
             place = self._place_things(k, numbers)
-            block.statements.append(Statement(store.format(place=place), [number]))
+            if not in_fours:
+                store = f"w[{place} + i] = {{0}};"
+            elif isinstance(listing.values[number], Constant):
+                store = f"FILL(w + {place} + i, {{0}});"
+            else:
+                store = f"STORE(w + {place} + i, {{0}});"
+            block.statements.append(Statement(store, [number]))
         operands = [self._operand_of_loop(numbers, in_fours) for numbers in operands_read]
 
         def text(number: int) -> str | None:
@@ -411,7 +419,7 @@ class _Writing:
         """The entry of an operand that turn i of a loop reads."""
         if len(numbers) == 1:
             number = f"w[{self.place[numbers[0]]}]"
-            return f"EACH({number})" if in_fours else number
+            return f"SPREAD({number})" if in_fours else number
         pointer = f"{self._pointer(numbers)} + i"
         return f"LOAD({pointer})" if in_fours else f"*({pointer})"
 
@@ -652,6 +660,21 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
     if isinstance(value, Read):
         return f"w[{read[value.entry]}]"
     return None
+
+
+def _strides(places: Numbers) -> Numbers:
+    """First place, stride and length of each run of places that are equally far apart, shape (runs, 3)."""
+    listed = places.tolist()
+    runs = []
+    first = 0
+    while first < len(listed):
+        last = min(first + 1, len(listed) - 1)
+        stride = listed[last] - listed[first]
+        while last + 1 < len(listed) and listed[last + 1] - listed[last] == stride:
+            last += 1
+        runs.append((listed[first], stride, last + 1 - first))
+        first = last + 1
+    return np.array(runs, dtype=np.int64)
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:

@@ -32,21 +32,16 @@ int follower_reissner_k_resolution_index(const casadi_real** arg, casadi_real** 
 #define follower_reissner_k_resolution_index_SZ_RES 1
 #define follower_reissner_k_resolution_index_SZ_IW 0
 #define follower_reissner_k_resolution_index_SZ_W 0
-int follower_reissner_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define follower_reissner_k_richer_lack_SZ_ARG 2
-#define follower_reissner_k_richer_lack_SZ_RES 1
-#define follower_reissner_k_richer_lack_SZ_IW 0
-#define follower_reissner_k_richer_lack_SZ_W 724
 int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1
 #define follower_reissner_k_richer_balance_SZ_IW 0
-#define follower_reissner_k_richer_balance_SZ_W 929
-int follower_reissner_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define follower_reissner_k_watched_SZ_ARG 2
-#define follower_reissner_k_watched_SZ_RES 1
-#define follower_reissner_k_watched_SZ_IW 0
-#define follower_reissner_k_watched_SZ_W 163
+#define follower_reissner_k_richer_balance_SZ_W 1384
+int follower_reissner_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define follower_reissner_k_richer_changes_SZ_ARG 4
+#define follower_reissner_k_richer_changes_SZ_RES 1
+#define follower_reissner_k_richer_changes_SZ_IW 0
+#define follower_reissner_k_richer_changes_SZ_W 714
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3
