@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
+from unittest.mock import patch
 
 import typer
 from doc_tables import put, table
@@ -26,12 +27,12 @@ SCENES = (("branching_rod", COARSE),)
 
 def as_a_whole(model: Model, *, side_by_side: bool) -> RowLibrary:
     """Rows of an assembly whose Jacobian is eliminated as that of one rod."""
-    of_lanes, of_rows = lanes.assembled, rows.assembled
-    lanes.assembled = rows.assembled = lambda *_: None
-    try:
+
+    def not_assembled(*_: object) -> None:
+        """No form rod by rod."""
+
+    with patch.object(lanes, "assembled", not_assembled), patch.object(rows, "assembled", not_assembled):
         return row_library(model, lanes=side_by_side)
-    finally:
-        lanes.assembled, rows.assembled = of_lanes, of_rows
 
 
 def main(

@@ -22,6 +22,7 @@ from scipy.optimize import nnls
 
 from cosserat_casadi import build
 from cosserat_casadi.accuracy.cost import (
+    MOST_IN_COLUMNS,
     PLANAR,
     Operations,
     Terms,
@@ -34,7 +35,7 @@ from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.codegen.kernels import MOST_IN_COLUMNS, dense
+from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -233,7 +234,7 @@ def factors(terms: np.ndarray, measured: np.ndarray) -> np.ndarray:
     """Factors that are not negative, with the least squares of relative errors."""
     found: np.ndarray = nnls(terms / measured[:, None], np.ones(len(measured)))[0]
     # What is foreseen is compared: it is to be too large as often as too small.
-    centre = np.exp(np.mean(np.log(measured / (terms @ found))))
+    centre = float(np.exp(np.mean(np.log(measured / (terms @ found)))))
     return centre * found
 
 

@@ -59,13 +59,15 @@ class Results:
         """Foreseen time of the pick over that of the cheapest."""
         rows = _at(self.cheapest, tolerance)
         ratio = _numbers(rows, "cost") / _numbers(rows, "cheapest")
-        return ratio[np.isfinite(ratio)]
+        finite: np.ndarray = ratio[np.isfinite(ratio)]
+        return finite
 
     def excess(self, tolerance: str | None = None) -> np.ndarray:
         """True error over tolerance."""
         rows = _at(self.judged, tolerance)
         excess = _numbers(rows, "error") / _numbers(rows, "tolerance")
-        return excess[np.isfinite(excess)]
+        finite: np.ndarray = excess[np.isfinite(excess)]
+        return finite
 
     def _line(self, tolerance: str | None) -> list[str]:
         rows = _at(self.judged, tolerance)

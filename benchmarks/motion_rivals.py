@@ -334,11 +334,12 @@ def soromox_run(order: int, solver: str, step: float) -> Run:
     size = robot.num_coordinates
     method = diffrax.Tsit5() if solver == "Tsit5" else SemiImplicitEuler(robot)
 
-    @jax.jit
-    def simulated(state: Any) -> Any:
+    def moved(state: Any) -> Any:
         begin = SystemState(t=jnp.array(0.0), y=state)
         motion = robot.rollout_to(begin, t1=DURATION, solver_dt=step, save_ts=jnp.asarray(TIMES), solver=method)
         return jax.vmap(lambda q: robot.forward_kinematics(q, jnp.array(LENGTH)))(motion.y[:, :size])
+
+    simulated = jax.jit(moved)
 
     def run() -> Paths:
         poses = np.asarray(simulated(jnp.zeros(2 * size)))

@@ -21,6 +21,12 @@ C_FLAGS = "COSSERAT_CASADI_TEST_C_FLAGS"
 
 UNOPTIMISED = "-O0"
 
+NEW_OBJECTS = 100_000
+"""Objects that are made between two collections of garbage, far more than Python's own number: little is garbage."""
+
+PYTHON_OWN = gc.get_threshold()
+"""The numbers of objects that Python itself begins with."""
+
 
 def c_flags() -> list[str]:
     """How C is optimised in these tests: not at all, since optimising takes the compiler far longer than it saves."""
@@ -72,6 +78,14 @@ def quick_compiler(workshop: Path) -> Iterator[None]:
 
 
 @pytest.fixture
+def usual_garbage() -> Iterator[None]:
+    """Garbage is collected as often as users have it collected: for tests that measure memory."""
+    gc.set_threshold(*PYTHON_OWN)
+    yield
+    gc.set_threshold(NEW_OBJECTS)
+
+
+@pytest.fixture
 def quick_gcc(workshop: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Lines of pages that call gcc find the compiler of the tests by this name: it does not optimise."""
     folder = workshop / "named"
@@ -81,17 +95,16 @@ def quick_gcc(workshop: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _write_compiler(path: Path) -> None:
-    """A script that has the last word on optimisation, and compiles single sources with the quickest compiler.
+    """A script that has the last word on optimisation, and calls the quickest compiler.
 
-    Threads are those of gcc: clang needs a library for them that may not be installed.
+    Threads and sanitisers are those of gcc: clang needs libraries for them that may not be installed.
     """
     gcc = shutil.which("gcc")
     lines = [
         "#!/bin/sh",
         'case " $* " in',
-        f'*openmp*) exec {gcc} "$@" {" ".join(c_flags())};;',
-        f'*" -c "*) exec {quickest_compiler()} "$@" {" ".join(c_flags())};;',
-        f'*) exec {gcc} "$@" {" ".join(c_flags())};;',
+        f'*openmp*|*sanitize*) exec {gcc} "$@" {" ".join(c_flags())};;',
+        f'*) exec {quickest_compiler()} "$@" {" ".join(c_flags())};;',
         "esac",
     ]
     path.write_text("\n".join(lines) + "\n")
@@ -102,6 +115,7 @@ def pytest_collection_finish() -> None:
     """Thousands of tests live until the end: the garbage collector need not look at them again and again."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(NEW_OBJECTS)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -29,7 +29,8 @@ SAMPLES = 16
 """Random corners that are solved, and random points too; as many fresh points are tried in the end."""
 
 SAMPLES_IN_CONTACT = 2
-"""The same in exact contact, where a solve takes seconds. Which contacts are closed is found anew at each point."""
+"""The same in exact contact, where a solve takes seconds: which contacts are closed is found anew at each point. There
+neither the ends of each range alone are tried, nor does the worst point climb."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +99,8 @@ def choose(
             parameter; for all else see :func:`cosserat_casadi.accuracy.ranges.input_ranges`.
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many points are solved.
-        samples: random corners that are tried, and as many random points, beside the ends of each range; by default 16,
-            and 2 in exact contact.
+        samples: random corners that are tried, and as many random points, beside the ends of each range alone and of
+            all; by default 16. In exact contact by default 2, and the ends of each range alone are left out.
         cases: inputs and parameters by name, at least one case, in place of ranges; what a case does not name keeps the
             scene's value.
 
@@ -170,17 +171,24 @@ class _Search:
         return LoadCase(self._bare, inputs, parameters or None)
 
     def begin(self, samples: int) -> None:
-        """Add the scene's own case, the ends of each range, random corners and random points."""
+        """Add the scene's own case, random corners, the ends of each range alone and of all, and random points."""
         self.add([self._own_point])
         if self.ranges.moving.size:
             self.samples = samples
             # Corners, where errors are largest as a rule, come first.
-            self.add([*self._corners(), *self._ends(), *self._inner()])
+            ends = [] if self._is_slow else self._ends()
+            self.add([*self._corners(), *ends, self.ranges.lower, self.ranges.upper, *self._inner()])
 
     def more(self, answers: Answers) -> Iterator[list[int]]:
         """Points to which the worst one climbs; then fresh random ones."""
-        yield self._climbed(answers)
+        if not self._is_slow:
+            yield self._climbed(answers)
         yield self.add(self._inner())
+
+    @property
+    def _is_slow(self) -> bool:
+        """Whether a solve takes seconds, so that no point is tried for each entry: in exact contact."""
+        return self.scene.touches_exactly
 
     @property
     def _own_point(self) -> FloatArray:
@@ -188,14 +196,12 @@ class _Search:
         return np.clip(self.ranges.layout.default, self.ranges.lower, self.ranges.upper)
 
     def _ends(self) -> Iterable[FloatArray]:
-        """Cases in which one entry is at an end; then all of them at the lower ends, and at the upper ones."""
+        """Cases in which one entry is at an end."""
         for k in self.ranges.moving:
             for end in (self.ranges.lower, self.ranges.upper):
                 case = self._own_point
                 case[k] = end[k]
                 yield case
-        yield self.ranges.lower
-        yield self.ranges.upper
 
     def _corners(self) -> Iterable[FloatArray]:
         """Random corners."""

@@ -22,11 +22,14 @@ from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_fo
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 
-LEVELS = (5, 7, 9, 11, 13, 16, 20, 24)
+LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
 """Modes per strain and element that are tried."""
 
 FINER_MODES = 3
 """Modes that are added to those of the user to estimate their error."""
+
+MOST_FAILURES = 1
+"""Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
 
 
 def solve_contact_scene(
@@ -47,12 +50,17 @@ def solve_contact_scene(
     """
     tolerance = scene.accuracy.tolerance
     coarse: Solution | None = None
+    failures = 0
     for modes, nodes in _levels(scene):
         turn = 0.0 if coarse is None else largest_turn(coarse)
         chosen = discretise(scene, modes, max(nodes, nodes_for_turn(_most(modes), turn)), transport)
         if report is not None:
             report(f"{modes} modes")
-        fine = solve_contact(scene, Grids(chosen), values, start=coarse, progress=progress)
+        start = coarse if coarse is not None and coarse.converged else None
+        fine = solve_contact(scene, Grids(chosen), values, start=start, progress=progress)
+        failures += not fine.converged
+        if failures > MOST_FAILURES:
+            return fine
         if coarse is None:
             coarse = fine
             if not fine.converged and scene.accuracy.fixed:

@@ -18,8 +18,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
-STRAIGHT = 25_000
-"""Instructions up to which a kernel is straight-line code: a third faster than loops, but compilers choke on more.
+STRAIGHT = 3_000
+"""Instructions up to which a kernel is straight-line code: longer ones are as quick in loops, and a fraction as long.
 
 Functions of one interval are called: each call is one instruction.
 """

@@ -17,9 +17,9 @@ from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
 from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
     SAFETY,
-    balance_lacks,
     believed_correction,
-    largest_change,
+    change_with_following,
+    richer_balance,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -32,7 +32,7 @@ MODES_SHARE = 0.6
 GRID_SHARE = 0.25
 """Share of the tolerance that the grid may leave."""
 
-MOST_ADDED = ((100.0, 4), (10.0, 2))
+MOST_ADDED = ((100.0, 3), (10.0, 2))
 """Errors over the tolerance, and the modes that a strain may gain in one step beyond each; one below them.
 
 The nearer an answer is, the better is known which modes it lacks, and the more a mode to spare would weigh.
@@ -135,10 +135,8 @@ class _Lack:
     def _change(self, missing: FloatArray) -> float:
         """Change of what is watched by missing modes, which the unknowns of the answer follow, and by a finer grid."""
         none = np.zeros(self.solution.model.size)
-        _, _, residual = balance_lacks(self.solution, none, missing)
-        follow = -self._inverse @ residual
-        change = largest_change(self.solution, follow, missing)
-        return change if np.isfinite(change) else np.inf
+        balance = richer_balance(self.solution, none, missing)
+        return change_with_following(self.solution, balance, -self._inverse @ balance.residual)
 
     @cached_property
     def _inverse(self) -> FloatArray:

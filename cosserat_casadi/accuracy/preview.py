@@ -21,13 +21,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom, motion, residual_by_inputs
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.model.watched import SAMPLES, section_poses, watched
+from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, section_poses, watched, watched_cables
 from cosserat_casadi.numerics.neutral import regular, regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -43,34 +42,6 @@ AMPLE_FREEDOM = 24
 
 CORRECTIONS = 2
 """Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
-
-
-@dataclass(frozen=True)
-class WatchedNumbers:
-    """What is watched of an equilibrium, in numbers.
-
-    Attributes:
-        positions: of sections and bodies over lengths, shape (k, 3).
-        quaternions: world_Q_section, shape (k, 4).
-        cables: lengths of cables over those of their rods, shape (c,).
-    """
-
-    positions: FloatArray
-    quaternions: FloatArray
-    cables: FloatArray
-
-    @classmethod
-    def of(cls, positions: Matrix, quaternions: Matrix, cables: Matrix) -> WatchedNumbers:
-        """From positions 3×k, quaternions 4×k and lengths 1×c of CasADi."""
-        return cls(_numbers(positions).T, _numbers(quaternions).T, _numbers(cables).reshape(-1))
-
-    def change_from(self, before: WatchedNumbers) -> FloatArray:
-        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.maths.pose_change`."""
-        displacements = self.positions - before.positions
-        rotations = rotation_vectors(before.quaternions, self.quaternions)
-        lengthening = np.zeros((len(self.cables), 3))
-        lengthening[:, 0] = self.cables - before.cables
-        return np.concatenate([displacements, rotations, lengthening])
 
 
 @dataclass(frozen=True)
@@ -281,7 +252,8 @@ class Preview:
 
     def _tips(self, x: FloatArray) -> WatchedNumbers:
         """What is watched, on the reference's grid, by the model's functions."""
-        return WatchedNumbers.of(*self.model.watched(x, self._inputs))
+        poses = _column(self.model.watched(x, self._inputs))
+        return WatchedNumbers.of_column(poses, len(watched_cables(self.model.discrete)))
 
     @cached_property
     def _shapes(self) -> WatchedNumbers:
@@ -303,13 +275,12 @@ def _shapes_of(system: System) -> WatchedNumbers:
         rod_positions, rod_quaternions = section_poses(system, name, SAMPLES)
         positions.append(rod_positions / discrete_rod.properties.length)
         quaternions.append(rod_quaternions)
-    return WatchedNumbers.of(ca.horzcat(*positions), ca.horzcat(*quaternions), ca.DM(1, 0))
+    return WatchedNumbers(_numbers(ca.horzcat(*positions)).T, _numbers(ca.horzcat(*quaternions)).T, np.zeros(0))
 
 
 def _tips_of(system: System) -> WatchedNumbers:
     """What is watched of a system that has numbers for its arguments."""
-    tips = watched(system)
-    return WatchedNumbers.of(tips.positions, tips.quaternions, tips.cables)
+    return WatchedNumbers.of_column(_column(watched(system).column), len(watched_cables(system.discrete)))
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:

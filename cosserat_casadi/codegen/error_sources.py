@@ -6,17 +6,26 @@ from cosserat_casadi.codegen.block_sources import Words, numbers
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.equilibrium import answer_error
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.watched import watched_owners
+from cosserat_casadi.model.watched import POSE_SIZE, watched_cables, watched_owners
 
 ERROR_FILES = ("solver_error.c",)
 
-KERNEL = "richer_balance"
-"""The kernel that a library has which estimates errors."""
+STEPS_OF_ESTIMATE = 1
+"""Steps that the estimate takes into the updates of the Jacobian that Newton has left."""
+
+FOLLOWED = 0.5
+"""Length of the second step over that of the first, up to which the Jacobian that Newton has left is believed."""
+
+LACK = "richer_lack"
+BALANCE = "richer_balance"
+WATCHED = "watched"
+KERNELS = (LACK, BALANCE, WATCHED)
+"""The kernels that a library has which estimates errors."""
 
 
 def estimates_errors(names: Names) -> bool:
     """Whether a library estimates the errors of its answers."""
-    return any(spec.name == KERNEL for spec in names.functions)
+    return any(spec.name == BALANCE for spec in names.functions)
 
 
 def error_words(model: Model, names: Names) -> Words:
@@ -31,20 +40,24 @@ def error_words(model: Model, names: Names) -> Words:
     richer = model.discrete.richer
     tolerance = model.scene.accuracy.tolerance
     watched_count = len(watched_owners(model.discrete))
+    cable_count = len(watched_cables(model.discrete))
     return {
         "estimates_errors": True,
         "missing": richer.missing_size,
         "watched": watched_count,
+        "watched_poses": (watched_count - cable_count) // POSE_SIZE,
+        "watched_cables": cable_count,
         "richer_size": richer.discrete.size,
         "is_among_last": numbers(richer.is_among_last.astype(int).tolist()),
         "scene_tolerance": f"{tolerance:g}",
         "error_sweeps": answer_error.MOST_SWEEPS,
         "error_safety": answer_error.SAFETY,
         "error_settled": answer_error.SETTLED,
+        "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,
         "error_enough": answer_error.enough_for(tolerance),
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,
         "error_floor": answer_error.ROUNDING,
-        "error_reals": 3 * model.size + 3 * richer.missing_size + watched_count,
+        "error_reals": 3 * (model.size + richer.missing_size + watched_count),
     }

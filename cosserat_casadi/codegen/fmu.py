@@ -84,8 +84,9 @@ def write_fmu(
 
     Its inputs are the scene's; its outputs are poses and velocities of tips and bodies, efforts of actuators and what
     these do work on. It begins at rest, in the equilibrium of its inputs, or in the unloaded shape where the scene
-    starts there or has a free base. Loads are held over a communication step; bases and lengths move to the value that
-    is set, with rates that do not jump. Its parameters are the scene's, and the longest step of the integrator.
+    starts there or has a free base. Over a communication step loads move in a straight line to the value that is
+    set, bases and lengths with rates that do not jump. Its parameters are the scene's, and the longest step of the
+    integrator.
 
     Args:
         model: a model that was built with its motion.

@@ -7,6 +7,7 @@ from contextlib import suppress
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
+from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
@@ -23,18 +24,11 @@ from cosserat_casadi.model.watched import watched_owners
 PARTED = ("path_residual", "path_jacobian")
 """Functions of which an assembly has parts instead, one for each rod."""
 
-BALANCE = "richer_balance"
-"""A function of an assembly with entries for each unknown twice, and for each missing coordinate in between."""
-
-JUDGING = (BALANCE, "richer_changes")
-"""Functions that the error of an answer is judged by."""
-
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
-STRAIGHT_BESIDE = {"tip_jacobian": 6000, "shape": 6000}
-"""Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a
-tip's Jacobian from there on, and compilers take half as long for them; for a section, they take a tenth."""
+STRAIGHT_IN_SHARES = 25_000
+"""Instructions up to which functions of each rod are straight-line code, which rods that compute alike share."""
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
@@ -49,10 +43,10 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]
-        if kind in JUDGING:
+        if kind in error_sources.KERNELS:
             every.append(_judging(model, entries[0], parts))
             continue
-        plain = [kernel(model, entry.function, entry.kernel) for entry in entries]
+        plain = [kernel(model, entry.function, entry.kernel, STRAIGHT_IN_SHARES) for entry in entries]
         if not all(function.is_a("SXFunction") for function in plain):
             every += plain
         elif kind == RATE:
@@ -66,13 +60,16 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
-    if entry.spec.name == BALANCE:
-        missing = [numbers[rod] for rod in discrete.richer.missing_rods]
-        owners = [*parts.blocks.owners, *missing, *parts.blocks.owners]
-    else:
-        owners = [numbers[owner] for owner in watched_owners(discrete)]
+    unknowns = parts.blocks.owners
+    missing = [numbers[rod] for rod in discrete.richer.missing_rods]
+    watched = [numbers[owner] for owner in watched_owners(discrete)]
+    owners = {
+        error_sources.LACK: [*unknowns, *missing],
+        error_sources.BALANCE: [*unknowns, *missing, *unknowns, *watched],
+        error_sources.WATCHED: watched,
+    }[entry.spec.name]
     straight = scalar(entry.function, entry.kernel)
-    if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT:
+    if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT_IN_SHARES:
         return dense(entry.function, entry.kernel)
     return in_one(entry.function, owners, entry.kernel)
 
@@ -82,7 +79,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     if not model.parameters.size:
         return []
     name = names.kernel("parameter_rate")
-    plain = kernel(model, parameter_rate(model, name), name)
+    plain = kernel(model, parameter_rate(model, name), name, STRAIGHT_IN_SHARES)
     if parts is None or not plain.is_a("SXFunction"):
         return [plain]
     return [in_one(parameter_rate(model, name), parts.blocks.owners, name)]
@@ -90,7 +87,6 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 
 def _written(model: Model, entry: FunctionInC) -> Kernel:
     """One function of a scene that has no parts; in fours where it can be."""
-    straight_within = STRAIGHT_BESIDE.get(entry.spec.name, STRAIGHT)
     if entry.spec.name == "path_jacobian":
         columned = by_columns(on_path(model), entry.function, entry.kernel)
         if columned is not None:
@@ -98,10 +94,10 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
     elif not _literal(model):
         straight = scalar(entry.function, entry.kernel)
         # Without calls of intervals there is nothing to make together.
-        if straight.find_functions(0) and straight.n_instructions() <= straight_within:
+        if straight.find_functions(0) and straight.n_instructions() <= STRAIGHT:
             with suppress(UnknownOperationError):
                 return scalars_in_c(straight, dense(entry.function, entry.kernel))
-    return kernel(model, entry.function, entry.kernel, straight_within)
+    return kernel(model, entry.function, entry.kernel)
 
 
 def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:

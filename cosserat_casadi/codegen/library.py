@@ -15,7 +15,7 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
-from cosserat_casadi.codegen.error_sources import ERROR_FILES, error_words, estimates_errors
+from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
 from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
@@ -284,6 +284,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
         "max_reuses": newton.MAX_REUSES,
+        "kept_steps": newton.MAX_REUSES + STEPS_OF_ESTIMATE,
         "stack_kb": f"{np.ceil(stack_bytes(generated, without_workspace) / 500) / 2:g}",
     }
 
@@ -291,7 +292,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
     own = (in_motion.get("motion_reals", 0), in_motion.get("motion_integers", 0))
     room = (sizes["kernel_reals"] + own[0], sizes["kernel_integers"] + own[1])
-    counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
+    counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["kept_steps"])
     extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
 

@@ -13,7 +13,7 @@ BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
 
 SUMS = {ca.OP_ADD, ca.OP_SUB}
-"""Those that bind less tightly than products."""
+"""Operators that bind less tightly than products."""
 
 FUNCTIONS = {
     ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",

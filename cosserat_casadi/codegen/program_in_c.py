@@ -71,6 +71,9 @@ static void MADE({name})(casadi_real *w) {{
 """
 """The same, one entry at a time: not all its operations have a form in fours."""
 
+WORTH_STRIDES = 2
+"""How many entries a number must stand for where runs of equal stride replace a table of all places."""
+
 UNUSED = -1
 """Place of an entry that has none yet."""
 
@@ -149,11 +152,11 @@ class ConstantTables:
         self._names: dict[ConstantTable, str] = {}
 
     def of_places(self, places: Numbers) -> str:
-        """What a table of whole numbers is called in C."""
+        """The name of a table of whole numbers in C."""
         return self._named(ConstantTable("int", tuple(map(str, places.tolist()))))
 
     def of_numbers(self, values: Sequence[float]) -> str:
-        """What a table of numbers is called in C."""
+        """The name of a table of numbers in C."""
         return self._named(ConstantTable("casadi_real", tuple("0" if value == 0 else repr(value) for value in values)))
 
     def _named(self, table: ConstantTable) -> str:
@@ -276,9 +279,9 @@ class _Writing:
             for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
                 moves.append(f"program_move({to} + {start}, w + {places[start]}, {length});")
             return "{ " + " ".join(moves) + " }"
-        if lengths[0] > 1 and np.all(lengths == lengths[0]):
-            table = self.tables.of_places(places[starts])
-            return f"program_runs({to}, w, {table}, {len(starts)}, {lengths[0]});"
+        strides = _strides(places)
+        if WORTH_STRIDES * strides.size <= len(places):
+            return f"program_strides({to}, w, {self.tables.of_places(strides.ravel())}, {len(strides)});"
         return f"program_gather({to}, w, {self.tables.of_places(places)}, {len(places)});"
 
     def _pointer(self, numbers: Numbers) -> str:
@@ -379,10 +382,15 @@ class _Writing:
         arithmetic = FOURS if in_fours else SINGLE
         variables = ("FOUR", "b") if in_fours else ("casadi_real", "a")
         block = Block(*variables, computations(listing, arithmetic))
-        store = "STORE(w + {place} + i, {{0}});" if in_fours else "w[{place} + i] = {{0}};"
         for numbers, number in zip(kept, listing.outputs[0].values(), strict=True):
             place = self._place_things(k, numbers)
-            block.statements.append(Statement(store.format(place=place), [number]))
+            if not in_fours:
+                store = f"w[{place} + i] = {{0}};"
+            elif isinstance(listing.values[number], Constant):
+                store = f"FILL(w + {place} + i, {{0}});"
+            else:
+                store = f"STORE(w + {place} + i, {{0}});"
+            block.statements.append(Statement(store, [number]))
         operands = [self._operand_of_loop(numbers, in_fours) for numbers in operands_read]
 
         def text(number: int) -> str | None:
@@ -408,10 +416,10 @@ class _Writing:
         return ca.SX(values.pop()) if len(values) == 1 else None
 
     def _operand_of_loop(self, numbers: Numbers, in_fours: bool) -> str:
-        """What turn i of a loop reads of an operand."""
+        """The entry of an operand that turn i of a loop reads."""
         if len(numbers) == 1:
             number = f"w[{self.place[numbers[0]]}]"
-            return f"EACH({number})" if in_fours else number
+            return f"SPREAD({number})" if in_fours else number
         pointer = f"{self._pointer(numbers)} + i"
         return f"LOAD({pointer})" if in_fours else f"*({pointer})"
 
@@ -557,7 +565,7 @@ class _Writing:
 
 
 def _units(program: Program) -> list[Unit]:
-    """Units in an order in which each comes behind those that it waits for."""
+    """Units in an order in which each comes behind the units that it waits for."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     made_by: dict[int, tuple[int, _Key]] = {}
     units: dict[tuple[int, _Key], Unit] = {}
@@ -577,7 +585,7 @@ def _units(program: Program) -> list[Unit]:
 
 
 _Key = tuple[UnitKind, int]
-"""What steps share that one unit may hold: the kind of unit, and its turns, its function or its step."""
+"""A key that steps share which one unit may hold: the kind of unit, and its turns, its function or its step."""
 
 
 def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:
@@ -652,6 +660,21 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
     if isinstance(value, Read):
         return f"w[{read[value.entry]}]"
     return None
+
+
+def _strides(places: Numbers) -> Numbers:
+    """First place, stride and length of each run of places that are equally far apart, shape (runs, 3)."""
+    listed = places.tolist()
+    runs = []
+    first = 0
+    while first < len(listed):
+        last = min(first + 1, len(listed) - 1)
+        stride = listed[last] - listed[first]
+        while last + 1 < len(listed) and listed[last + 1] - listed[last] == stride:
+            last += 1
+        runs.append((listed[first], stride, last + 1 - first))
+        first = last + 1
+    return np.array(runs, dtype=np.int64)
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:

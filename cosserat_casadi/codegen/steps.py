@@ -2,7 +2,7 @@
 
 * What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
   into order when a step asks for them.
-* Of a constant matrix times a constant matrix times what is computed, the two constants are multiplied beforehand where
+* Of a constant matrix times a constant matrix times a computed one, the two constants are multiplied beforehand where
   that leaves fewer products: matrices that fold and unfold symmetric ones are worth it without loops alone.
 * A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
   routine of products.py runs along them without looking anything up.

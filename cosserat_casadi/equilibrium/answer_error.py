@@ -16,11 +16,11 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.pose_change import rotation_angles
+from cosserat_casadi.maths.pose_change import change_size, rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.unknowns import BlockKind
-from cosserat_casadi.model.watched import SAMPLES
+from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.strain import DiscreteRod
 
@@ -95,6 +95,23 @@ class Correction:
     change: float
     contracts: bool = True
     settled: bool = False
+
+
+@dataclass(frozen=True)
+class RicherBalance:
+    """The balance of the richer model at a corrected answer.
+
+    Attributes:
+        step: elastic step of the unknowns of the answer, shape (n,).
+        missing_step: elastic step of the coordinates of the missing modes, shape (missing,).
+        residual: in the unknowns, shape (n,).
+        poses: the watched numbers.
+    """
+
+    step: FloatArray
+    missing_step: FloatArray
+    residual: FloatArray
+    poses: WatchedNumbers
 
 
 def with_error_estimate(solution: Solution) -> Solution:
@@ -226,17 +243,44 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     missing = np.zeros(model.discrete.richer.missing_size)
     before = None
     for _ in range(MOST_SWEEPS):
-        step, missing_step, _ = balance_lacks(solution, known, missing)
-        if before is not None and not _contracts(before, missing_step):
-            return
+        if before is None:
+            step, missing_step = _first_steps(solution)
+        else:
+            lacking = richer_balance(solution, known, missing)
+            step, missing_step = lacking.step, lacking.missing_step
+            if not _contracts(before, missing_step):
+                return
         known = known + step
         missing = missing + missing_step
-        _, next_step, residual = balance_lacks(solution, known, missing)
-        known = known - inverse @ residual
+        balance = richer_balance(solution, known, missing)
+        following = _following(solution, inverse, balance.residual)
+        known = known + following
         # What the missing modes would do next tells of the first step whether they bounce.
-        contracts = before is not None or _contracts(missing_step, next_step)
-        yield _corrected(solution, known, missing, contracts=contracts)
+        contracts = before is not None or _contracts(missing_step, balance.missing_step)
+        yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
         before = missing_step
+
+
+def _first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
+    """Elastic steps of the unknowns and of the missing coordinates at the answer itself."""
+    model = solution.model
+    steps = column(model.richer_lack(solution.x, solution.inputs))
+    return steps[: model.size], steps[model.size :]
+
+
+def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:
+    """How the unknowns of an answer follow missing modes: by two steps, the second from the answer's own equations.
+
+    In C the Jacobian is that which the solver has left, and the second step makes up for its age.
+
+    Args:
+        solution: the answer.
+        inverse: of its Jacobian.
+        residual: that the missing modes leave.
+    """
+    first = -inverse @ residual
+    left = residual + column(solution.model.path_residual(solution.x + first, solution.inputs, 1.0))
+    return first - inverse @ left
 
 
 def _contracts(before: FloatArray, step: FloatArray) -> bool:
@@ -245,14 +289,38 @@ def _contracts(before: FloatArray, step: FloatArray) -> bool:
     return bool(np.linalg.norm(step) <= longest)
 
 
-def balance_lacks(
-    solution: Solution, known: FloatArray, missing: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Elastic steps of the unknowns and of the missing coordinates, and the residual in the unknowns."""
+def richer_balance(solution: Solution, known: FloatArray, missing: FloatArray) -> RicherBalance:
+    """The balance of the richer model at an answer with a correction of its unknowns, and missing coordinates."""
     model = solution.model
     balance = column(model.richer_balance(solution.x, known, missing, solution.inputs))
-    step, missing_step, residual = np.split(balance, [model.size, model.size + len(missing)])
-    return step, missing_step, residual
+    ends = np.cumsum([model.size, len(missing), model.size])
+    step, missing_step, residual, poses = np.split(balance, ends)
+    return RicherBalance(step, missing_step, residual, _watched_numbers(solution, poses))
+
+
+def _watched_numbers(solution: Solution, poses: FloatArray) -> WatchedNumbers:
+    """The watched poses, from their column."""
+    return WatchedNumbers.of_column(poses, len(watched_cables(solution.model.discrete)))
+
+
+def _watched_at(solution: Solution, x: FloatArray) -> WatchedNumbers:
+    """The watched poses at some unknowns of the answer's model."""
+    return _watched_numbers(solution, column(solution.model.watched(x, solution.inputs)))
+
+
+def change_with_following(solution: Solution, balance: RicherBalance, following: FloatArray) -> float:
+    """Largest change of a watched pose or length by a correction whose last part is a step of the unknowns.
+
+    What the step moves is taken on the answer's own modes and grid: the difference to richer ones is of second order.
+
+    Args:
+        solution: the answer.
+        balance: of the richer model before the step.
+        following: the step.
+    """
+    before = _watched_at(solution, solution.x)
+    after = _watched_at(solution, solution.x + following)
+    return change_size(balance.poses.moved(before, after).change_from(before))
 
 
 def _newton_steps(solution: Solution) -> Iterator[Correction]:
@@ -275,14 +343,11 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
         before = missing_step
 
 
-def largest_change(solution: Solution, known: FloatArray, missing: FloatArray) -> float:
-    """Largest change of a watched pose or length by a correction; not a number where one of the changes is none."""
-    changes = column(solution.model.richer_changes(solution.x, known, missing, solution.inputs))
-    return float(np.max(changes))
-
-
 def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
-    return Correction(known, missing, largest_change(solution, known, missing), contracts)
+    """A correction with the largest change of a watched pose or length; infinite where one of them is not finite."""
+    poses = richer_balance(solution, known, missing).poses
+    change = change_size(poses.change_from(_watched_at(solution, solution.x)))
+    return Correction(known, missing, change, contracts)
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
@@ -295,8 +360,9 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
         return 0.0
     richer = solution.model.discrete.richer
     without_last = np.where(richer.is_among_last, 0.0, correction.missing)
+    whole = _corrected(solution, correction.known, correction.missing)
     fewer = _corrected(solution, correction.known, without_last)
-    last = abs(correction.change - fewer.change)
+    last = abs(whole.change - fewer.change)
     ratio = float(np.clip(last / correction.change, FASTEST, SLOWEST))
     return last * ratio / (1 - ratio)
 

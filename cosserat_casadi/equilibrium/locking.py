@@ -90,13 +90,8 @@ def residual_by_inputs(model: Model, x: FloatArray, inputs: FloatArray) -> Float
 def motion(model: Model, x: FloatArray, inputs: FloatArray, step: FloatArray) -> float:
     """How far a step of the unknowns moves the watched poses, to first order: over the length, or in quaternions."""
     share = STEP / max(float(np.abs(step).max(initial=0.0)), STEP)
-    change = _watched(model, x + share * step, inputs) - _watched(model, x, inputs)
+    change = column(model.watched(x + share * step, inputs)) - column(model.watched(x, inputs))
     return float(np.abs(change).max(initial=0.0)) / share
-
-
-def _watched(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
-    """Positions over lengths, quaternions and lengths of cables, stacked."""
-    return np.concatenate([part.full().ravel() for part in model.watched(x, inputs)])
 
 
 NOT_KNOWN = (

@@ -292,7 +292,10 @@ class DiscreteScene:
         """The same scene with modes and intervals added, on which the error of an answer shows."""
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
-        discretisation = {name: enriched(rod.discretisation, modes) for name, rod in self.rods.items()}
+        discretisation = {
+            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles))
+            for name, rod in self.rods.items()
+        }
         discrete = discrete_scene(nominal.scene, self.layout, discretisation)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)

@@ -21,20 +21,23 @@ DEFAULT_TRANSPORT = "magnus6"
 """Integration method of the rotation where neither the scene nor the caller gives one."""
 
 
-ADDED_MODES = 4
+ADDED_MODES = 3
 """Modes that are added to every strain: more than one step of an error that falls by every other mode alone."""
-
-LEAST_MODES = 6
-"""Modes that every strain has at least: one that nothing excited when modes were chosen may have a single one."""
 
 ADDED_NODES = 4
 """Intervals that are added to every element at least."""
 
-NODES_ABOVE_MODES = 6
+NODES_ABOVE_MODES = 3
 """Intervals beyond the modes of a strain on which the balance of these modes is exact enough for an error."""
+
+NODES_ABOVE_MODES_IN_CONTACT = 8
+"""The same where obstacles press on a few nodes: forces that act on so short a part of a rod need more of them."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
+
+ENOUGH_GROWTH = 1.4
+"""Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
 
 
 def discretise(
@@ -111,14 +114,18 @@ def nodes_for(modes: int) -> int:
     return 2 * modes + 2
 
 
-def enriched(discretisation: Discretisation, signal_modes: int) -> Discretisation:
+def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
         signal_modes: modes below which a rod is blind to what the scene puts along it.
+        meets_obstacles: whether the scene has obstacles.
     """
-    modes = tuple(max(count + ADDED_MODES, LEAST_MODES, signal_modes) for count in discretisation.modes)
-    nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + NODES_ABOVE_MODES)
-    transport = NEXT_ORDER.get(discretisation.transport, discretisation.transport)
+    modes = tuple(max(count + ADDED_MODES, signal_modes) for count in discretisation.modes)
+    nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
+    nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
+    transport = discretisation.transport
+    if nodes < ENOUGH_GROWTH * discretisation.nodes:
+        transport = NEXT_ORDER.get(transport, transport)
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)

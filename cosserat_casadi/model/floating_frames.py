@@ -19,11 +19,17 @@ from cosserat_casadi.constraints.held_directions import FLAT, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
-from cosserat_casadi.maths.rotation import matrix_to_quaternion
+from cosserat_casadi.maths.rotation import matrix_to_quaternion, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
+
+MOST_CORRECTIONS = 20
+"""Corrections of a body's pose before its joints count as ones that no pose closes."""
+
+CLOSED = 1e-12
+"""Gap of a joint, without unit, up to which it counts as closed."""
 
 
 class FrameName(NamedTuple):
@@ -54,6 +60,21 @@ class FloatingFrame:
 
     SIZE = POSE_SIZE
     """Number of unknowns."""
+
+
+@dataclass(frozen=True)
+class JointGap:
+    """Gap of a joint, without unit.
+
+    Attributes:
+        rows: displacements over the length along held directions, and sines of turns about them, shape (k,).
+        derivatives: by a turn of the body about its origin and its displacement over the length, world axes, (k, 6).
+        agrees: whether the axes that it holds point the same way.
+    """
+
+    rows: FloatArray
+    derivatives: FloatArray
+    agrees: bool
 
 
 @dataclass(frozen=True)
@@ -172,8 +193,60 @@ class UnloadedScene:
         rods = [self.rods[joint.rod] for joint in joints]
         unit = max(rod.energy_unit for rod in rods)
         length = max(rod.properties.length for rod in rods)
-        start = self._mean_pose(joints, length)
+        start = self._closed(joints, length, self._mean_pose(joints, length))
         return FloatingFrame(body, unit, length, start)
+
+    def _closed(self, joints: list[scenes.Joint], length: float, mean: NumericPose) -> NumericPose:
+        """Pose of a body next to a mean one in which all its joints are closed; the mean where there is none.
+
+        What a joint leaves free, as the turn about its axis, is not asked to agree with the tip. Newton's method with
+        the smallest change of the pose that closes the linearised joints.
+
+        Args:
+            joints: those of the body.
+            length: of the longest of their rods, m.
+            mean: pose to begin with.
+        """
+        pose = mean
+        for _ in range(MOST_CORRECTIONS):
+            gaps = [self._gap(joint, pose, length) for joint in joints]
+            largest = max(float(np.abs(gap.rows).max(initial=0.0)) for gap in gaps)
+            if largest <= CLOSED:
+                return pose if all(gap.agrees for gap in gaps) else mean
+            rows = np.concatenate([gap.rows for gap in gaps])
+            derivatives = np.vstack([gap.derivatives for gap in gaps])
+            change, *_ = np.linalg.lstsq(derivatives, -rows, rcond=FLAT)
+            position = pose.position + length * change[3:]
+            pose = NumericPose(position, quaternion_product(_quaternion(change[:3]), pose.quaternion))
+        return mean
+
+    def _gap(self, joint: scenes.Joint, pose: NumericPose, length: float) -> JointGap:
+        """Gap of a joint where its body has a pose.
+
+        Args:
+            joint: the joint.
+            pose: of the body.
+            length: that displacements are divided by, m.
+        """
+        held = JOINT_KINDS[joint.kind].directions(joint)
+        place = place_of(joint)
+        tip = self.section(joint.rod, 1.0)
+        arm = pose.rotation @ place.position
+        to_tip = tip.rotation.T
+        shift = to_tip @ (pose.position + arm - tip.position) / length
+        # The pose that the body wants of the tip, in the axes of the tip: the identity where nothing is turned.
+        turned = to_tip @ pose.rotation @ place.rotation
+        by_turn = [_axial(cross @ turned + turned.T @ cross) / 2.0 for cross in map(_cross, np.eye(3))]
+        of_position = np.hstack([to_tip @ _cross(-arm) / length, to_tip])
+        of_rotation = np.hstack([np.column_stack(by_turn) @ to_tip, np.zeros((3, 3))])
+        # The sine of half a turn vanishes as well: what is held to agree has to point the same way.
+        count = held.rotations.shape[1]
+        weights = count * np.eye(3) - 2.0 * held.rotations @ held.rotations.T
+        return JointGap(
+            rows=np.concatenate([held.positions.T @ shift, held.rotations.T @ _axial(turned - turned.T) / 2.0]),
+            derivatives=np.vstack([held.positions.T @ of_position, held.rotations.T @ of_rotation]),
+            agrees=bool(abs(np.trace(weights @ turned) - np.trace(weights)) <= FLAT),
+        )
 
     def _mean_pose(self, joints: list[scenes.Joint], length: float) -> NumericPose:
         """Pose of a body between those in which each tip alone would close its joint.
@@ -213,6 +286,23 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
         return True
     sine = float(np.linalg.norm(np.cross(normal, second.rotation[:, 1])))
     return sine <= FLAT
+
+
+def _cross(vector: FloatArray) -> FloatArray:
+    """The matrix of the cross product with a vector, 3×3."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _axial(matrix: FloatArray) -> FloatArray:
+    """The vector of which an antisymmetric matrix is the cross product, shape (3,)."""
+    return np.array([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
+
+
+def _quaternion(turn: FloatArray) -> FloatArray:
+    """Quaternion of a rotation vector, rad."""
+    angle = float(np.linalg.norm(turn))
+    return np.concatenate([[np.cos(angle / 2.0)], np.sinc(angle / (2.0 * np.pi)) / 2.0 * turn])
 
 
 def _nearest_rotation(matrix: FloatArray) -> FloatArray:

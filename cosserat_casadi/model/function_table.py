@@ -137,6 +137,7 @@ class FunctionSpec:
         kernel_outputs: number of the outputs that the kernel has; None for all.
         header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
+        judges_answers: whether its kernel serves the estimate of an answer's error alone.
         doc: the function in one sentence.
     """
 
@@ -149,6 +150,7 @@ class FunctionSpec:
     kernel_outputs: int | None = None
     header: str = ""
     differentiable: bool = False
+    judges_answers: bool = False
     doc: str = ""
 
     def __reduce__(self) -> tuple[Callable[..., FunctionSpec], tuple[str, str]]:
@@ -171,11 +173,6 @@ class FunctionSpec:
     def public(self) -> bool:
         """Whether it is a function of the header in C."""
         return bool(self.header)
-
-    @property
-    def judges_answers(self) -> bool:
-        """Whether modes enter it that the model lacks."""
-        return "missing" in self.arguments
 
     @property
     def of_motion(self) -> bool:
@@ -302,6 +299,7 @@ def scene_function(
     kernel: str = "",
     header: str = "",
     differentiable: bool = False,
+    judges_answers: bool = False,
 ) -> Callable[[Write], NamedFunction]:
     """Make a method one named function of the scene.
 
@@ -311,6 +309,7 @@ def scene_function(
         kernel: name of its kernel in C; empty where it stays in Python.
         header: sentence of the header in C; empty where the kernel is the solver's alone.
         differentiable: whether a loaded folder gives it with derivatives.
+        judges_answers: whether its kernel serves the estimate of an answer's error alone.
     """
     options = {
         "owner": Owner.SCENE,
@@ -319,6 +318,7 @@ def scene_function(
         "kernel": kernel,
         "header": header,
         "differentiable": differentiable,
+        "judges_answers": judges_answers,
     }
     return lambda write: NamedFunction(options, write)
 

@@ -158,35 +158,34 @@ class ModelFunctions:
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
-    @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance")
-    def richer_balance(self, written: Expressions) -> list[Matrix]:
-        """(x, correction, missing, inputs) ↦ what the balance with modes and intervals added lacks at an answer.
+    @scene_function(Output("steps"), kernel="richer_lack", judges_answers=True)
+    def richer_lack(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ what the balance with modes and intervals added lacks at an answer; docs/theory.md, section 10.
 
-        Elastic steps of the unknowns and of the coordinates of the missing modes, and the residual in the unknowns, one
-        below the other, at x + correction and the missing coordinates; docs/theory.md, section 10.
+        Elastic steps of the unknowns and of the coordinates of the missing modes, one below the other.
         """
-        richer, system = _enriched(written)
-        residual, lacking = richer.split(SceneEquations(system).residual)
-        step, missing_step = richer.split(richer.elastic_step(lacking))
-        return [ca.densify(ca.vertcat(step, missing_step, residual))]
+        none = ca.DM.zeros(written.discrete.richer.missing_size, 1)
+        richer, system = _enriched(written, written["x"], none)
+        return [ca.densify(ca.vertcat(*_elastic_steps(richer, system)))]
 
-    @scene_function(Output("positions"), Output("quaternions"), Output("cables"))
+    @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
+    def richer_balance(self, written: Expressions) -> list[Matrix]:
+        """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
+
+        One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
+        unknowns, and the watched numbers, as the next function gives them.
+        """
+        richer, system = _enriched(written, written["x"] + written["correction"], written["missing"])
+        residual, _ = richer.split(SceneEquations(system).residual)
+        return [ca.densify(ca.vertcat(*_elastic_steps(richer, system), residual, watched(system).column))]
+
+    @scene_function(Output("poses"), kernel="watched", judges_answers=True)
     def watched(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ what must be right to the tolerance: positions over lengths, quaternions, relative lengths.
 
-        Of sections and bodies, 3×k and 4×k, and of cables, 1×c; see model/watched.py.
+        Of sections and bodies, and of cables, in one column; see model/watched.py.
         """
-        poses = watched(written.system)
-        return [ca.densify(ca.MX(poses.positions)), ca.densify(ca.MX(poses.quaternions)), poses.cables]
-
-    @scene_function(Output("changes"), arguments=CORRECTED, kernel="richer_changes")
-    def richer_changes(self, written: Expressions) -> list[Matrix]:
-        """(x, correction, missing, inputs) ↦ changes of watched poses and lengths by a correction on the richer model.
-
-        Displacements over the length, rotation angles (rad), and lengthenings of cables over the length, one column.
-        """
-        _, system = _enriched(written)
-        return [watched(system).changes_from(watched(written.system))]
+        return [watched(written.system).column]
 
     @owned_functions(
         Owner.ROD,
@@ -340,11 +339,16 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _enriched(written: Expressions) -> tuple[Richer, System]:
-    """The scene with modes and intervals added, and its equations at the corrected answer."""
+def _enriched(written: Expressions, known: Matrix, missing: Matrix) -> tuple[Richer, System]:
+    """The scene with modes and intervals added, and its equations at these unknowns and missing coordinates."""
     richer = written.discrete.richer
-    unknowns = richer.joined(written["x"] + written["correction"], written["missing"])
-    return richer, System(richer.discrete, Arguments(unknowns, written["inputs"]))
+    return richer, System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
+
+
+def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:
+    """Steps of unknowns and missing coordinates by which elasticity alone would take up the lacking balance."""
+    _, lacking = richer.split(SceneEquations(system).residual)
+    return richer.split(richer.elastic_step(lacking))
 
 
 def resolution_index(written: Expressions) -> Matrix:

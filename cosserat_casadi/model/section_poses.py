@@ -51,7 +51,7 @@ class SectionPoses:
         """World positions, 3×k, m."""
         base = self.system.base(self.rod)
         base_positions = ca.repmat(base.position, 1, self.count)
-        own_positions = self.system.shapes[self.rod].position @ self.weights
+        own_positions = self.system.shapes[self.rod].mean_positions(self.weights)
         return base_positions + quaternion_to_matrix(base.quaternion) @ own_positions
 
     @cached_property

@@ -12,7 +12,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.pose_change import rotation_vectors
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.registry import EFFECTS
@@ -24,6 +25,9 @@ BETWEEN = (0.25, 0.5, 0.75, 1.0)
 
 SAMPLES = (1 - np.cos(np.pi * np.arange(257) / 256)) / 2
 """Sections at which a whole shape is compared: several for each wave of the error of 60 modes."""
+
+POSE_SIZE = 7
+"""Numbers of a position and a quaternion."""
 
 EVERY = 4
 """Of these sections every so many are watched where the whole shape must be right."""
@@ -43,17 +47,48 @@ class Watched:
     quaternions: Matrix
     cables: Matrix
 
-    def changes_from(self, before: Watched) -> Matrix:
-        """Sizes of all displacements, rotation angles (rad) and lengthenings, (2k + c)×1; 0 where nothing moves."""
+    @property
+    def column(self) -> Matrix:
+        """All entries of the positions, then of the quaternions, one section after the other, then the lengths."""
+        return ca.densify(ca.MX(ca.vertcat(ca.vec(self.positions), ca.vec(self.quaternions), self.cables.T)))
+
+
+@dataclass(frozen=True)
+class WatchedNumbers:
+    """The same in numbers.
+
+    Attributes:
+        positions: of sections and bodies over lengths, shape (k, 3).
+        quaternions: world_Q_section, shape (k, 4).
+        cables: lengths of cables over those of their rods, shape (c,).
+    """
+
+    positions: FloatArray
+    quaternions: FloatArray
+    cables: FloatArray
+
+    @classmethod
+    def of_column(cls, column: FloatArray, cables: int) -> WatchedNumbers:
+        """From a column of so many cables as :attr:`Watched.column`."""
+        posed = (len(column) - cables) // POSE_SIZE
+        positions, quaternions, lengths = np.split(column, [3 * posed, POSE_SIZE * posed])
+        return cls(positions.reshape(-1, 3), quaternions.reshape(-1, 4), lengths)
+
+    def moved(self, before: WatchedNumbers, after: WatchedNumbers) -> WatchedNumbers:
+        """Moved as far as leads from one to the other, to first order: quaternions are not of unit length then."""
+        return WatchedNumbers(
+            self.positions + (after.positions - before.positions),
+            self.quaternions + (after.quaternions - before.quaternions),
+            self.cables + (after.cables - before.cables),
+        )
+
+    def change_from(self, before: WatchedNumbers) -> FloatArray:
+        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.maths.pose_change`."""
         displacements = self.positions - before.positions
-        distances = ca.sqrt(ca.sum1(displacements * displacements))
-        relative = quaternion_product(quaternion_conjugate(before.quaternions), self.quaternions)
-        axes = relative[1:, :]
-        sines = ca.sqrt(ca.sum1(axes * axes))
-        # Q and −Q are one rotation; the arc tangent is exact near 0 and near π.
-        angles = 2 * ca.atan2(sines, ca.fabs(relative[0, :]))
-        lengthenings = ca.fabs(self.cables - before.cables)
-        return ca.densify(ca.horzcat(distances, angles, lengthenings).T)
+        rotations = rotation_vectors(before.quaternions, self.quaternions)
+        lengthening = np.zeros((len(self.cables), 3))
+        lengthening[:, 0] = self.cables - before.cables
+        return np.concatenate([displacements, rotations, lengthening])
 
 
 def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
@@ -68,11 +103,13 @@ def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
 
 
 def watched_owners(discrete: DiscreteScene) -> list[str]:
-    """The rod, or the body, of each entry of :meth:`Watched.changes_from`; of a cable the rod that it runs along."""
+    """The rod, or the body, of each entry of :attr:`Watched.column`; of a cable the rod that it runs along."""
     posed = [name for name in discrete.rods for _ in watched_sections(discrete.scene, name)]
     posed += list(discrete.bodies)
     rods = {actuator.name: actuator.rod for actuator in discrete.scene.actuators}
-    return [*posed, *posed, *(rods[cable] for cable in watched_cables(discrete))]
+    of_positions = [name for name in posed for _ in range(3)]
+    of_quaternions = [name for name in posed for _ in range(4)]
+    return [*of_positions, *of_quaternions, *(rods[cable] for cable in watched_cables(discrete))]
 
 
 def watched_cables(discrete: DiscreteScene) -> dict[str, float]:

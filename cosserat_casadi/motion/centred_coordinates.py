@@ -53,7 +53,8 @@ class CentredCoordinates:
         self._pose = np.arange(entries.start, entries.stop)
         self._strains = np.delete(np.arange(model.size), self._pose)
         functions = _Functions(model)
-        self._base = RepeatedCall(functions.base)
+        self._base = RepeatedCall(functions.base.expand())
+        self._position = functions.position.expand()
         self._derivatives = functions.derivatives
         self._centred = RepeatedCall(functions.centred)
 
@@ -65,6 +66,12 @@ class CentredCoordinates:
             part[self._pose] = of_base
         x, v, a = parts
         return Instant(instant.time, x, v, a)
+
+    def positions_of_model(self, positions: FloatArray) -> FloatArray:
+        """Unknowns of the model at T times, from those in these coordinates, shape (T, size) each."""
+        x = positions.copy()
+        x[:, self._pose] = self._position.map(len(positions))(positions.T).full().T
+        return x
 
     def from_model(self, instant: Instant) -> Instant:
         """Positions and velocities in these coordinates, from those of the model; accelerations are zero."""
@@ -147,6 +154,13 @@ class _Functions:
         """(y, v, a) ↦ unknowns of the base, their rates and accelerations beneath each other, 21×1."""
         orders = self._kernels.base(*self._states)
         return ca.Function("base", self._symbols, [ca.densify(ca.vertcat(*orders))])
+
+    @cached_property
+    def position(self) -> ca.Function:
+        """Unknowns of the base alone, 7×1, from y."""
+        y, *rates = self._symbols
+        at_rest = ca.substitute([self.base(*self._symbols)[:POSE_SIZE]], rates, [ca.MX(*y.shape)] * len(rates))
+        return ca.Function("position", [y], at_rest)
 
     @cached_property
     def derivatives(self) -> ca.Function:

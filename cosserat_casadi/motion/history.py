@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import TimeStep
+from cosserat_casadi.numerics.step import TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -54,7 +54,7 @@ def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> Mot
         piece: of its inputs.
         p: stacked parameters; those of a model that has some.
     """
-    inverse_dynamics = RepeatedCall(model.inverse_dynamics)
+    inverse_dynamics = RepeatedCall(model.inverse_dynamics_in_scalars)
     parameters = [] if p is None else [p]
     # Every iteration of a step asks for the inputs at the same stages.
     inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
@@ -68,7 +68,7 @@ def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> Mot
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
         return stiffness.full(), damping.full(), mass.full()
 
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, kinks=piece.kinks)
 
 
 @dataclass(frozen=True)
@@ -202,10 +202,29 @@ class History:
 
         Between the ends of steps constraints are open there by less than the error of the motion.
         """
-        places = [self.locate(float(time)) for time in times]
-        x = np.array([instant.x for _, instant in places])
-        inputs = np.array([leg.piece.at(instant.time).value for leg, instant in places])
+        if not self.steps:
+            leg = self.legs[0]
+            x = np.tile(self.of_model(leg.start.instant).x, (len(times), 1))
+            return x, np.tile(leg.piece.at(leg.start.instant.time).value, (len(times), 1))
+        x = np.zeros((len(times), self.model.size))
+        inputs = np.zeros((len(times), self.model.inputs.size))
+        numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
+        first = 0
+        for leg in self.legs:
+            steps = leg.integration.steps
+            held = (first <= numbers) & (numbers < first + len(steps))
+            if np.any(held):
+                of_steps = positions_at(steps, numbers[held] - first, times[held])
+                x[held] = self._positions_of_model(of_steps)
+                inputs[held] = leg.piece.values_at(times[held])
+            first += len(steps)
         return x, inputs
+
+    def _positions_of_model(self, positions: FloatArray) -> FloatArray:
+        """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
+        if self.coordinates is None:
+            return positions[:, : self.model.size]
+        return self.coordinates.positions_of_model(positions)
 
     @cached_property
     def contacts(self) -> ContactRecord | None:
@@ -293,7 +312,7 @@ def _switched(
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
-            interval = DIFFERENTIATED * (piece.end - piece.start)
+            interval = DIFFERENTIATED * piece.smooth
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
@@ -352,7 +371,8 @@ def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> N
         what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
         problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
     elif start.position_error > CONSISTENT:
-        what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
+        open_by = f"{start.position_error:.2g} (of the length, or rad)"
+        what = f"supports or joints are open by {open_by} where the motion starts"
         problems.append(Problem("simulation.start", what, "start from an equilibrium"))
     if start.velocity_error * duration > CONSISTENT:
         what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"

@@ -88,6 +88,8 @@ class ResolvedMotion:
         paths: paths of tips and bodies, which are compared with the paths of the next motion.
         rung: place of the modes on the ladder.
         distance: of the paths from those of the level before; infinite for the first.
+        unseen: displacement over the length by the last coefficients of strains that have no more modes than on the
+            level before: the distance tells nothing of modes that they lack.
     """
 
     simulator: Simulator
@@ -95,6 +97,7 @@ class ResolvedMotion:
     paths: Paths
     rung: int = 0
     distance: float = float("inf")
+    unseen: float = 0.0
 
 
 @dataclass
@@ -139,11 +142,14 @@ class _Search:
 
     @property
     def space_error(self) -> float:
-        """Error of the paths that the modes of the last level leave: the rest of a geometric series."""
+        """Error of the paths that the modes of the last level leave: the rest of a geometric series.
+
+        Of strains that keep their modes the last coefficients bound the rest.
+        """
         if len(self.levels) < 2:
             return float("inf")
         left = self.ratio ** (self.last.rung - self.levels[-2].rung)
-        return SAFETY * self.last.distance * left / (1.0 - left)
+        return max(SAFETY * self.last.distance * left / (1.0 - left), self.last.unseen)
 
     def climb(self, last: int) -> int | None:
         """The next rung: as far up as seems to be needed; None where the last one would not do.
@@ -247,7 +253,7 @@ def _with_tolerance(search: _Search) -> Motion:
     without_start = 0
     while rung is not None:
         modes = ladder[rung]
-        chosen = _next_modes(search, modes) if search.levels else _uniform(search.scene, modes)
+        chosen, unseen = _next_modes(search, modes) if search.levels else (_uniform(search.scene, modes), 0.0)
         model = build(search.scene, chosen, moving=True)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
@@ -269,7 +275,7 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(ResolvedMotion(simulator, history, found, rung, distance))
+        search.levels.append(ResolvedMotion(simulator, history, found, rung, distance, unseen))
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)
@@ -368,9 +374,14 @@ def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
     return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
 
 
-def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
-    """Modes of the next level: as many as it has, but of strains that do not need them."""
+def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation], float]:
+    """Modes of the next level: as many as it has, but of strains that do not need them.
+
+    Returns:
+        the modes, and what the last coefficients of strains without further modes move, over the length.
+    """
     chosen = {}
+    unseen = 0.0
     felt = _felt(search.last, search.simulation.duration)
     for name, discretisation in _uniform(search.scene, modes).items():
         counts = []
@@ -382,12 +393,14 @@ def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
             last = moved[-max(1, len(moved) // LAST) :]
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
+                unseen = max(unseen, float(moved.max()))
             elif last.max() < FELT * search.tolerance:
                 counts.append(kept)
+                unseen = max(unseen, float(last.max()))
             else:
                 counts.append(count)
         chosen[name] = replace(discretisation, modes=tuple(counts))
-    return chosen
+    return chosen, unseen
 
 
 def _felt(level: ResolvedMotion, duration: float) -> dict[str, list[FloatArray]]:

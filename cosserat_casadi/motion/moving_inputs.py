@@ -7,6 +7,7 @@ waves are added to that.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -21,6 +22,10 @@ from cosserat_casadi.scene.motion_records import InputMotion
 
 SAME_TIME = 1e-12
 """Distance of two times, relative to the duration, at which they are one: pieces are longer."""
+
+MOST_CUTS = 50
+"""Kinks of a table up to which steps end at each of them; a table with more is a record, and steps have their own pace.
+"""
 
 
 class InputState(NamedTuple):
@@ -54,17 +59,24 @@ class Break:
 
 @dataclass(frozen=True)
 class Piece:
-    """A span of time in which all inputs are smooth.
+    """A span of time in which all inputs are smooth, but for weak kinks that steps may reach over.
 
     Attributes:
         start: s.
         end: s.
+        kinks: times of weak kinks inside, ascending, s: see :attr:`_Path.weak`.
     """
 
     start: float
     end: float
+    kinks: tuple[float, ...]
     _constant: FloatArray
     _paths: tuple[tuple[slice, _Path], ...]
+
+    @property
+    def smooth(self) -> float:
+        """Shortest time between kinks and ends, s."""
+        return float(np.diff([self.start, *self.kinks, self.end]).min())
 
     def at(self, t: float) -> InputState:
         """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
@@ -77,6 +89,13 @@ class Piece:
             rate[span] += contribution.rate
             acceleration[span] += contribution.acceleration
         return InputState(value, rate, acceleration)
+
+    def values_at(self, times: FloatArray) -> FloatArray:
+        """The values alone at T times, shape (T, inputs)."""
+        values = np.tile(self._constant, (len(times), 1))
+        for span, path in self._paths:
+            values[:, span] += path.values_at(times)
+        return values
 
 
 class MovingInputs:
@@ -113,14 +132,24 @@ class MovingInputs:
     def pieces(self, duration: float) -> list[Piece]:
         """Spans of time in which all inputs are smooth, one after the other from 0 to the duration (s)."""
         slack = SAME_TIME * duration
+        weak_of_paths = [path.weak for path in self._paths]
+        strong = []
+        for path, of_path in zip(self._paths, weak_of_paths, strict=True):
+            strong += [time for time, _ in path.breaks if time not in of_path]
+        strong.sort()
+        weak = sorted(frozenset().union(*weak_of_paths))
         cuts = [0.0]
-        times = sorted(time for path in self._paths for time, _ in path.breaks)
-        for time in times:
+        for time in strong:
             # Equal times of two tables may differ by rounding.
             if cuts[-1] + 2 * slack < time < duration - 2 * slack:
                 cuts.append(time)
         ends = [*cuts[1:], duration]
-        return [self._piece(start, end, slack) for start, end in zip(cuts, ends, strict=True)]
+        pieces = []
+        for start, end in zip(cuts, ends, strict=True):
+            first = bisect_right(weak, start + 2 * slack)
+            last = bisect_left(weak, end - 2 * slack)
+            pieces.append(replace(self._piece(start, end, slack), kinks=tuple(weak[first:last])))
+        return pieces
 
     def breaks(self, duration: float) -> list[Break]:
         """Breaks of the inputs from 0 to the duration (s), in the order of time: the inputs rest before 0."""
@@ -150,7 +179,7 @@ class MovingInputs:
         for motion, path in zip(self._motions, self._paths, strict=True):
             span = self._slices[motion.input]
             paths.append((span, path.within(start + slack, end - slack)))
-        return Piece(start, end, self._constant, tuple(paths))
+        return Piece(start, end, (), self._constant, tuple(paths))
 
 
 def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None:
@@ -178,6 +207,11 @@ class _Path(ABC):
     def breaks(self) -> tuple[tuple[float, int], ...]:
         """Times at which it is not smooth (s), each with the order of the first derivative that jumps."""
 
+    @property
+    def weak(self) -> frozenset[float]:
+        """Breaks at which no step has to end, s."""
+        return frozenset()
+
     @abstractmethod
     def within(self, start: float, end: float) -> _Path:
         """The path with its limits from within at both ends of a span of time without break inside."""
@@ -185,6 +219,10 @@ class _Path(ABC):
     @abstractmethod
     def at(self, t: float) -> InputState:
         """Value, rate and acceleration at a time, each of shape (entries,)."""
+
+    @abstractmethod
+    def values_at(self, times: FloatArray) -> FloatArray:
+        """Values at T times, shape (T, entries)."""
 
 
 @dataclass(frozen=True)
@@ -219,6 +257,11 @@ class _Wave(_Path):
         rate = self.amplitude * omega * cosine
         return InputState(value, rate, -self.amplitude * omega**2 * sine)
 
+    def values_at(self, times: FloatArray) -> FloatArray:
+        angles = self.angular_frequency * times + self.phase
+        course = 1.0 - np.cos(angles) if self.begins_at_rest else np.sin(angles)
+        return np.outer(course, self.amplitude)
+
 
 @dataclass(frozen=True)
 class _Table(_Path):
@@ -248,6 +291,13 @@ class _Table(_Path):
     def breaks(self) -> tuple[tuple[float, int], ...]:
         return self.breaks_at
 
+    @property
+    def weak(self) -> frozenset[float]:
+        """Where the acceleration has a kink, and kinks of the path itself if they are many; never a jump."""
+        kinks = [time for time, order in self.breaks_at if order == 1]
+        records = kinks if len(kinks) > MOST_CUTS else []
+        return frozenset([*records, *(time for time, order in self.breaks_at if order > 2)])
+
     def within(self, start: float, end: float) -> _Table:
         first = int(np.searchsorted(self.knots, start, side="right"))
         last = int(np.searchsorted(self.knots, end, side="left"))
@@ -263,6 +313,12 @@ class _Table(_Path):
         rate = linear + s * (2 * quadratic + 3 * s * cubic)
         acceleration = 2 * quadratic + 6 * s * cubic
         return InputState(value, rate, acceleration)
+
+    def values_at(self, times: FloatArray) -> FloatArray:
+        segments = np.clip(np.searchsorted(self.knots, times, side="right"), self.first, self.last)
+        s = (times - self.origins[segments])[:, None]
+        constant, linear, quadratic, cubic = np.moveaxis(self.coefficients[segments], 1, 0)
+        return np.asarray(constant + s * (linear + s * (quadratic + s * cubic)))
 
 
 def _path_of(motion: InputMotion) -> _Path:

@@ -395,6 +395,8 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
     times = wanted[wanted <= history.end.time]
     states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
+    begin = history.of_model(history.legs[0].start.instant)
+    duration = simulator.simulation.duration
     return Motion(
         model=model,
         outcome=outcome,
@@ -409,7 +411,7 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         statistics=history.statistics,
         start=simulator.start.sentence,
         interpolant=history.at,
-        warnings=tuple(warnings(model, simulator.start, simulator.moving, simulator.simulation.duration)),
+        warnings=tuple(warnings(model, simulator.start, simulator.moving, duration, begin.a)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=history.events,
     )

@@ -79,6 +79,12 @@ class Collocation:
         powers = shares[:, None] ** np.arange(self.stages)
         return np.asarray(powers @ self.polynomials)
 
+    def double_integrals_at_stages(self, shares: FloatArray) -> FloatArray:
+        """Integrals of their integrals, ∫₀^θ ∫₀^σ ℓ_j, at several shares θ of the step, shape (len(shares), s)."""
+        exponents = np.arange(2, self.stages + 2)
+        powers = shares[:, None] ** exponents / (exponents * (exponents - 1))
+        return np.asarray(powers @ self.polynomials)
+
 
 def radau(stages: int) -> Collocation:
     """Radau IIA: order 2s − 1, L-stable, its last stage is the end of the step.

@@ -186,8 +186,11 @@ def follow(
             if renewed:
                 break
             # The Jacobian that an inexact correction has left may foresee wrongly however short the step is.
-            current = _renewed(path, current, limits)
-            iterations += current.correction.iterations
+            exact = newton(path.at(current.t), current.x, limits.newton)
+            iterations += exact.iterations
+            if not _stays(path, current, exact):
+                break
+            current = _point(path, replace(exact, last_jacobian=None), current.t)
             renewed = True
             step = remaining
             continue
@@ -267,10 +270,19 @@ def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
     return _Point(t, tangent, correction)
 
 
-def _renewed(path: Path, current: _Point, limits: ContinuationSettings) -> _Point:
-    """The same point corrected exactly, with a new Jacobian."""
-    exact = newton(path.at(current.t), current.x, limits.newton)
-    return _point(path, replace(exact, last_jacobian=None), current.t)
+def _stays(path: Path, current: _Point, exact: NewtonResult) -> bool:
+    """Whether a point that is corrected exactly lies on the path where it did: near a fold Newton's method may stray.
+
+    Args:
+        path: the equations.
+        current: the point, corrected inexactly.
+        exact: Newton's method from there, at the same t.
+    """
+    if exact.outcome is not Outcome.CONVERGED:
+        return False
+    if not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
+        return False
+    return path.admits is None or path.admits((current.x, current.t), (exact.x, current.t))
 
 
 def _target(current: _Point, step: float) -> float:
@@ -337,8 +349,10 @@ def _is_small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool
 
 def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
     """The last point, which was corrected inexactly, as near to equilibrium as Newton brings it."""
-    equations = path.at(last.t)
-    end = newton(equations, last.x, limits.newton)
+    end = newton(path.at(last.t), last.x, limits.newton)
+    if not _stays(path, last, end):
+        # What Newton's method leads to is not the end of this path.
+        end = replace(last.correction, iterations=end.iterations)
     return ContinuationResult(
         x=end.x,
         outcome=Outcome.LOAD_STALLED,

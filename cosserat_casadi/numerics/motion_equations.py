@@ -65,6 +65,7 @@ class MotionEquations:
             is as quick.
         rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
             rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
+        kinks: ascending times at which F has a kink in t that steps may reach over, s.
     """
 
     differential: npt.NDArray[np.bool_]
@@ -72,6 +73,7 @@ class MotionEquations:
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
     rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
+    kinks: tuple[float, ...] = ()
 
     @property
     def size(self) -> int:

@@ -8,6 +8,7 @@ Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -152,6 +153,40 @@ def motion_at(
     v = np.where(differential, velocity, 0.0)
     a = np.where(differential, values, 0.0)
     return Instant(time, x, v, a)
+
+
+def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> FloatArray:
+    """Positions and algebraic entries at T times by the polynomials of the steps that hold them, shape (T, n).
+
+    They are those of :meth:`TimeStep.at`, all at once.
+
+    Args:
+        steps: of one method and the same n unknowns.
+        numbers: which of the steps holds each time, shape (T,).
+        times: shape (T,), s.
+    """
+    method = steps[0].method
+    differential = steps[0].differential
+    of_step = {
+        "begin": np.array([step.start.time for step in steps]),
+        "size": np.array([step.size for step in steps]),
+        "end": np.array([step.end.time for step in steps]),
+        "x": np.array([step.start.x for step in steps]),
+        "v": np.array([step.start.v for step in steps]),
+        "arrived": np.array([step.end.x for step in steps]),
+        "unknowns": np.array([step.unknowns for step in steps]),
+    }
+    of_time = {name: values[numbers] for name, values in of_step.items()}
+    sizes = of_time["size"]
+    shares = (times - of_time["begin"]) / sizes
+    accelerations = np.where(differential, of_time["unknowns"], 0.0)
+    values = np.einsum("ts,tsn->tn", method.values_at_stages(shares), of_time["unknowns"])
+    moved = np.einsum("ts,tsn->tn", method.double_integrals_at_stages(shares), accelerations)
+    displacement = (shares * sizes)[:, None] * of_time["v"] + sizes[:, None] ** 2 * moved
+    x = np.where(differential, of_time["x"] + displacement, values)
+    # The end of a step may have been put right.
+    at_end = times == of_time["end"]
+    return np.where(at_end[:, None], of_time["arrived"], x)
 
 
 def extrapolated(step: TimeStep, size: float) -> FloatArray:

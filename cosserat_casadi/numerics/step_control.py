@@ -9,12 +9,13 @@ Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Spring
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds
 from cosserat_casadi.numerics.step_matrices import Deviation, StepMatrices
 
@@ -80,6 +81,52 @@ def estimated_error(
         filtered = matrices.filtered(filtered)
         error = _size(filtered, matrices.step, bounds)
     return error
+
+
+def overlooked_error(
+    equations: MotionEquations,
+    matrices: StepMatrices,
+    begin: float,
+    middle: Instant,
+    kinks: Sequence[float],
+    bounds: NewtonBounds,
+    pace: float,
+) -> float:
+    """Error over tolerance by what a step does not see of the equations between its stages.
+
+    At one state F depends on the time alone. Its difference from the polynomial through its values at the stages is
+    a force that the step leaves out; it is taken to be linear between the kinks. With its integral I₀ over the step and
+    the moment I₁ about its end, the velocities at the end miss h M⁻¹ I₀ and the positions h² M⁻¹ I₁. The dynamic
+    stiffness at the real eigenvalue γ stands for M/(γh)², so that stiff directions answer as they do. A missed velocity
+    moves on after the step: it counts for a time in which the motion changes.
+
+    Args:
+        equations: the equations.
+        matrices: of the step.
+        begin: time at which the step begins, s.
+        middle: the state in its middle.
+        kinks: times inside the step, ascending, s.
+        bounds: weights of the entries.
+        pace: a time in which the motion changes, not below h, s.
+    """
+    method = matrices.method
+    size = matrices.step
+    times = np.array([begin, *kinks, begin + size])
+    shares = (times - begin) / size
+
+    def forces(at: FloatArray) -> FloatArray:
+        rows = [equations.residual(float(time), middle.x, middle.v, middle.a) for time in at]
+        return np.array(rows)
+
+    seen = method.values_at_stages(shares) @ forces(begin + method.nodes * size)
+    missed = forces(times) - seen
+    to_end = (1.0 - shares)[:, None]
+    impulse = np.asarray(np.trapezoid(missed, shares, axis=0))
+    moment = np.asarray(np.trapezoid(to_end * missed, shares, axis=0))
+    inertia = float(method.eigenvalues[0].real) ** -2
+    moved = inertia * matrices.answer(moment)
+    moving_on = inertia * pace / size * matrices.answer(impulse)
+    return max(bounds.length(moved), bounds.length(moving_on))
 
 
 def _size(deviation: Deviation, step: float, bounds: NewtonBounds) -> float:

@@ -76,6 +76,10 @@ class StepMatrices:
         changes = self.method.from_eigenvectors @ (self.shares * solutions)
         return np.asarray(-changes.real)
 
+    def answer(self, rows: FloatArray) -> FloatArray:
+        """Changes of the unknowns by rows of F, shape (n,), by the dynamic stiffness at the first eigenvalue."""
+        return np.asarray(_product(self.inverses[0], rows).real)
+
     def filtered(self, deviation: Deviation) -> Deviation:
         """(1 − hμJ)⁻¹ applied to a deviation, J the Jacobian of the equations as a system of first order.
 

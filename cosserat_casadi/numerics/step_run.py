@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from cosserat_casadi.numerics.integration import Integration, IntegrationCost, S
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
 from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at, restricted
-from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
+from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error, overlooked_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
 RESOLVED_TIME = 16.0 * float(np.finfo(np.float64).eps)
@@ -62,6 +63,7 @@ class StepRun:
         iterations: Newton iterations.
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
+        longest: step taken so far, s.
         guards: values that have to stay at zero or above; None where there are none.
         settled: instant to go on from, in place of the end of the last step; None for the end of that step.
         guard: number of the guard that came to zero; None where none did.
@@ -84,6 +86,7 @@ class StepRun:
     iterations: int = 0
     jacobians: int = 0
     factorisations: int = 0
+    longest: float = 0.0
 
     def __post_init__(self) -> None:
         differential = self.equations.differential
@@ -184,7 +187,19 @@ class StepRun:
         """Estimated error over tolerance of the step that was solved last."""
         if self.matrices is None:
             return float("nan")
-        return estimated_error(self.matrices, self.now, solution.unknowns, self.bounds, after_a_jump)
+        error = estimated_error(self.matrices, self.now, solution.unknowns, self.bounds, after_a_jump)
+        return max(error, self._overlooked(solution, self.matrices))
+
+    def _overlooked(self, solution: StageSolution, matrices: StepMatrices) -> float:
+        """Error over tolerance by what the stages do not see of the equations between them, at their kinks in time."""
+        end = self.now.time + self.size
+        kinks = self.equations.kinks
+        inside = kinks[bisect_right(kinks, self.now.time) : bisect_left(kinks, end)]
+        if not inside:
+            return 0.0
+        middle = self._middle(solution.unknowns)
+        pace = max(self.size, self.longest)
+        return overlooked_error(self.equations, matrices, self.now.time, middle, inside, self.bounds, pace)
 
     def accept(self, solution: StageSolution, end: float, error: float) -> None:
         """Take a step, and decide whether its Jacobian serves the next one."""
@@ -206,6 +221,7 @@ class StepRun:
         if self.settled is not None:
             step = replace(step, end=self.settled(step))
         self.steps.append(step)
+        self.longest = max(self.longest, self.size)
         self.fresh = False
         if solution.iterations > FEW_ITERATIONS:
             self.renew_jacobian()

@@ -163,7 +163,7 @@ class InverseGeometricModel:
                 parts.append(ca.DM.zeros(rod.size_of(c), 1))
                 continue
             along_director = dot(self.shape.directors[c - 3], covector)
-            per_coordinate = rod.node_matrix(c) * (-rod.length / rod.energy_unit)
+            per_coordinate = rod.node_matrices[c] * (-rod.length / rod.energy_unit)
             parts.append(per_coordinate.T @ along_director.T)
         return ca.vertcat(*parts)
 

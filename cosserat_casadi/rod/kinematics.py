@@ -90,6 +90,16 @@ class Shape:
         weights = ca.DM(self.rod.grid.integration_matrix[node])
         return self.tangent @ weights
 
+    def mean_positions(self, weights: Matrix) -> Matrix:
+        """Weighted means of the positions at the nodes, 3×k, in metres.
+
+        Args:
+            weights: of the nodes, M×k.
+        """
+        # One product with the tangents: positions of all nodes would take another with the whole matrix.
+        of_tangents = ca.DM(self.rod.grid.integration_matrix).T @ weights
+        return self.tangent @ of_tangents
+
     @staticmethod
     def scale(vectors: Matrix, row: Matrix) -> Matrix:
         """Each column of 3×M vectors times the entry of a 1×M row."""

@@ -227,11 +227,14 @@ class DiscreteRod:
         per_reference = self.shape_functions(component, self.grid.in_coordinate(X, element), element)
         return known(each_times(per_reference, reciprocal(self.grid.rates_in(element))))
 
-    def node_matrix(self, component: int) -> FoldedMatrix:
-        """Φ_c at the nodes, M×n_c: modes meet sums or differences of mirrored nodes."""
+    @cached_property
+    def node_matrices(self) -> dict[int, FoldedMatrix]:
+        """Φ_c at the nodes, M×n_c for each admitted component c: modes meet sums or differences of mirrored nodes."""
         signs = np.ones(self.grid.size)
-        parities = self.parities(component)
-        return folded(self.at_nodes[component], self.grid.mirrored_nodes, signs, parities)
+        matrices = {}
+        for c, values in self.at_nodes.items():
+            matrices[c] = folded(values, self.grid.mirrored_nodes, signs, self.parities(c))
+        return matrices
 
     @cached_property
     def stiffness(self) -> Numbers:
@@ -293,7 +296,7 @@ class DiscreteRod:
         """The share of the coordinates in a row of :meth:`strain_rows`, 1×M; None of a strain that is not admitted."""
         if component not in self.columns:
             return None
-        return (self.node_matrix(component) @ q[self.columns[component]]).T
+        return (self.node_matrices[component] @ q[self.columns[component]]).T
 
     @cached_property
     def magnus_order(self) -> int:

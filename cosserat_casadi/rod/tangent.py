@@ -433,7 +433,7 @@ class Tangent:
         """−ℓ Φᵀ of the products of vectors at the nodes, 3×M, with each column of a variation of the nodes, 3M×k."""
         rows = [ca.diag(row) for row in ca.vertsplit(vectors)]
         work = ca.horzcat(*rows) @ variation
-        per_coordinate = self.rod.node_matrix(component) * (-self.rod.length / self.rod.energy_unit)
+        per_coordinate = self.rod.node_matrices[component] * (-self.rod.length / self.rod.energy_unit)
         return per_coordinate.T @ work
 
     def _pose_stiffness(self) -> Matrix | None:

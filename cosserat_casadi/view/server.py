@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
 from importlib import resources
-from threading import BoundedSemaphore, Lock
+from threading import Lock
 from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
@@ -170,7 +170,7 @@ class RobotServer(ThreadingHTTPServer):
         self._secret = secrets.token_urlsafe(SECRET_BYTES)
         self._ticket = secrets.token_urlsafe(SECRET_BYTES)
         self._ticket_lock = Lock()
-        self._free = BoundedSemaphore(CONNECTIONS)
+        self._open: set[Any] = set()
         super().__init__((HOST, port), _Handler)
 
     @property
@@ -200,21 +200,19 @@ class RobotServer(ThreadingHTTPServer):
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in a new thread, or close it where there are too many."""
-        if not self._free.acquire(blocking=False):
+        if len(self._open) >= CONNECTIONS:
             self.shutdown_request(request)
             return
-        try:
-            super().process_request(request, client_address)
-        except BaseException:
-            self._free.release()
-            raise
+        self._open.add(request)
+        super().process_request(request, client_address)
 
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection until it is closed."""
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self._free.release()
+    def shutdown_request(self, request: Any) -> None:
+        """Close a connection, which makes room for another.
+
+        Both threads may come to it where a signal interrupts the start of the one that serves.
+        """
+        self._open.discard(request)
+        super().shutdown_request(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing where a page that has been closed, or that sleeps, does not take its answer."""

@@ -128,8 +128,8 @@ typedef struct {
 
 typedef struct {
   follower_reissner_jacobian_factors factors;
-  follower_reissner_real steps[12][FOLLOWER_REISSNER_UNKNOWNS];
-  follower_reissner_real squares[12];
+  follower_reissner_real steps[13][FOLLOWER_REISSNER_UNKNOWNS];
+  follower_reissner_real squares[13];
   int count;
 } follower_reissner_updated_jacobian;
 
@@ -157,10 +157,11 @@ typedef struct {
   follower_reissner_real d_x_d_inputs[FOLLOWER_REISSNER_UNKNOWNS * 6];
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real known_correction[FOLLOWER_REISSNER_UNKNOWNS];
-  follower_reissner_real missing[27];
-  follower_reissner_real changes[2];
-  follower_reissner_real fewer[27];
-  follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 27];
+  follower_reissner_real missing[18];
+  follower_reissner_real fewer[18];
+  follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 18 + 7];
+  follower_reissner_real watched[7];
+  follower_reissner_real watched_after[7];
   follower_reissner_real kernel_reals[1576];
   int kernel_integers[1];
 } follower_reissner_workspace;
@@ -258,7 +259,7 @@ void follower_reissner_input_jacobian(const follower_reissner_real *x, const fol
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of follower_reissner_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 40 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 31 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 follower_reissner_status follower_reissner_error_estimate(const follower_reissner_real *inputs, const follower_reissner_real *x, follower_reissner_real *error_estimate,
                                       follower_reissner_workspace *workspace);

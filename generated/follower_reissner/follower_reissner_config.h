@@ -64,11 +64,13 @@ static const follower_reissner_real MAX_CURVATURE_SHARE = (follower_reissner_rea
 static const follower_reissner_real FIRST_STEP = (follower_reissner_real)1.0;
 static const follower_reissner_real SAME_BRANCH = (follower_reissner_real)0.5;
 #define solver_error_estimate follower_reissner_error_estimate
-#define SOLVER_MISSING 27
-#define SOLVER_WATCHED 2
+#define SOLVER_MISSING 18
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const follower_reissner_real ERROR_SAFETY = (follower_reissner_real)1.1;
 static const follower_reissner_real ERROR_SETTLED = (follower_reissner_real)0.2;
+static const follower_reissner_real ERROR_FOLLOWED = (follower_reissner_real)0.5;
 static const follower_reissner_real ERROR_CONTRACTING = (follower_reissner_real)0.5;
 static const follower_reissner_real ERROR_ENOUGH = (follower_reissner_real)9.09090909090909e-05;
 static const follower_reissner_real ERROR_FASTEST = (follower_reissner_real)0.02;

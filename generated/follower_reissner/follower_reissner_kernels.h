@@ -36,12 +36,12 @@ int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** re
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1
 #define follower_reissner_k_richer_balance_SZ_IW 0
-#define follower_reissner_k_richer_balance_SZ_W 1566
+#define follower_reissner_k_richer_balance_SZ_W 1384
 int follower_reissner_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_richer_changes_SZ_ARG 4
 #define follower_reissner_k_richer_changes_SZ_RES 1
 #define follower_reissner_k_richer_changes_SZ_IW 0
-#define follower_reissner_k_richer_changes_SZ_W 935
+#define follower_reissner_k_richer_changes_SZ_W 714
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3

@@ -363,6 +363,19 @@ static void MADE(follower_reissner_kernels_pulls_5)(const casadi_real *given, ca
     EVERY_LANE(MADE(follower_reissner_kernels_pulls_5_turn)(given + lane, made + lane))
 }
 
+static void MADE(follower_reissner_kernels_chain_turn)(const casadi_real *given, casadi_real *made) {
+  made[0] = given[0] * given[4] - given[1] * given[5] - given[2] * given[6] - given[3] * given[7];
+  made[1] = given[0] * given[5] + given[1] * given[4] + given[2] * given[7] - given[3] * given[6];
+  made[2] = given[0] * given[6] - given[1] * given[7] + given[2] * given[4] + given[3] * given[5];
+  made[3] = given[0] * given[7] + given[1] * given[6] - given[2] * given[5] + given[3] * given[4];
+}
+
+static void MADE(follower_reissner_kernels_chain)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 8, made += 4)
+    MADE(follower_reissner_kernels_chain_turn)(given, made);
+}
+
 static void MADE(follower_reissner_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
@@ -1745,4 +1758,282 @@ static int MADE(follower_reissner_k_jacobian)(const casadi_real **arg, casadi_re
   MADE(follower_reissner_k_jacobian_part_2)(arg, res, w);
   MADE(follower_reissner_k_jacobian_part_3)(arg, res, w);
   return 0;
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_0_turn)(casadi_real *w, int i) {
+  STORE(w + 62 + i, LOAD(w + 1 + i) + LOAD(w + 14 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_0)(casadi_real *w) {
+  const int last = 13 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_0_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_0_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_1_turn)(casadi_real *w, int i) {
+  STORE(w + 75 + i, LOAD(follower_reissner_kernels_table_2 + i) * LOAD(w + 115 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_1)(casadi_real *w) {
+  const int last = 40 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_1_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_1_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_2_turn)(casadi_real *w, int i) {
+  STORE(w + 296 + i, EACH(0.25) * LOAD(w + 121 + i));
+  STORE(w + 311 + i, EACH(0.25) * LOAD(w + 136 + i));
+  STORE(w + 326 + i, EACH(0.25) * (EACH(1.0) + LOAD(w + 281 + i)));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_2)(casadi_real *w) {
+  const int last = 15 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_2_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_2_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_3_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11;
+  b0 = EACH(2.0) * LOAD(w + 764 + i);
+  b1 = b0 * LOAD(w + 764 + i);
+  b2 = EACH(2.0) * LOAD(w + 779 + i) * LOAD(w + 779 + i);
+  b3 = EACH(1.0) - b1 - b2;
+  b4 = EACH(2.0) * LOAD(w + 794 + i);
+  b5 = b4 * LOAD(w + 764 + i);
+  b6 = EACH(2.0) * LOAD(w + 809 + i);
+  b7 = b6 * LOAD(w + 779 + i);
+  b8 = b5 + b7;
+  b9 = b4 * LOAD(w + 779 + i);
+  b10 = b6 * LOAD(w + 764 + i);
+  b11 = b9 - b10;
+  b7 = b5 - b7;
+  b4 = EACH(1.0) - b4 * LOAD(w + 794 + i);
+  b2 = b4 - b2;
+  b0 = b0 * LOAD(w + 779 + i);
+  b6 = b6 * LOAD(w + 794 + i);
+  b5 = b0 + b6;
+  b10 = b9 + b10;
+  b6 = b0 - b6;
+  b1 = b4 - b1;
+  STORE(w + 341 + i, b3);
+  STORE(w + 356 + i, b8);
+  STORE(w + 371 + i, b11);
+  STORE(w + 386 + i, b7);
+  STORE(w + 401 + i, b2);
+  STORE(w + 416 + i, b5);
+  STORE(w + 584 + i, b10);
+  STORE(w + 599 + i, b6);
+  STORE(w + 614 + i, b1);
+  STORE(w + 629 + i, b3 * LOAD(w + 296 + i));
+  STORE(w + 644 + i, b8 * LOAD(w + 296 + i));
+  STORE(w + 659 + i, b11 * LOAD(w + 296 + i));
+  STORE(w + 674 + i, b7 * LOAD(w + 311 + i));
+  STORE(w + 689 + i, b2 * LOAD(w + 311 + i));
+  STORE(w + 704 + i, b5 * LOAD(w + 311 + i));
+  STORE(w + 719 + i, b10 * LOAD(w + 326 + i));
+  STORE(w + 734 + i, b6 * LOAD(w + 326 + i));
+  STORE(w + 749 + i, b1 * LOAD(w + 326 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_3)(casadi_real *w) {
+  const int last = 15 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_3_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_3_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_4_turn)(casadi_real *w, int i) {
+  STORE(w + 281 + i, LOAD(w + 629 + i) + LOAD(w + 674 + i) + LOAD(w + 719 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_4)(casadi_real *w) {
+  const int last = 45 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_4_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_4_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_6_turn)(casadi_real *w, int i) {
+  STORE(w + 115 + i, LOAD(w + 296 + i) * LOAD(w + 704 + i) - LOAD(w + 311 + i) * LOAD(w + 689 + i));
+  STORE(w + 130 + i, LOAD(w + 311 + i) * LOAD(w + 674 + i) - LOAD(w + 281 + i) * LOAD(w + 704 + i));
+  STORE(w + 326 + i, LOAD(w + 281 + i) * LOAD(w + 689 + i) - LOAD(w + 296 + i) * LOAD(w + 674 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_6)(casadi_real *w) {
+  const int last = 15 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_6_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_6_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_7_turn)(casadi_real *w, int i) {
+  STORE(w + 281 + i, LOAD(w + 341 + i) * LOAD(w + 674 + i));
+  STORE(w + 719 + i, LOAD(w + 386 + i) * LOAD(w + 674 + i));
+  STORE(w + 764 + i, LOAD(w + 584 + i) * LOAD(w + 674 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_7)(casadi_real *w) {
+  const int last = 45 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_7_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_7_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_9_turn)(casadi_real *w, int i) {
+  STORE(w + 121 + i, LOAD(w + 75 + i) + LOAD(w + 161 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_9)(casadi_real *w) {
+  const int last = 40 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_9_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_9_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_10_turn)(casadi_real *w, int i) {
+  STORE(w + 62 + i, LOAD(w + 121 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_10)(casadi_real *w) {
+  const int last = 27 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_10_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_10_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_balance_loop_11_turn)(casadi_real *w, int i) {
+  STORE(w + 62 + i, EACH((-1.0)) * LOAD(w + 89 + i));
+}
+static void MADE(follower_reissner_k_richer_balance_loop_11)(casadi_real *w) {
+  const int last = 27 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_11_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_balance_loop_11_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_0_turn)(casadi_real *w, int i) {
+  STORE(w + 64 + i, LOAD(w + 1 + i) + LOAD(w + 14 + i));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_0)(casadi_real *w) {
+  const int last = 13 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_0_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_0_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_2_turn)(casadi_real *w, int i) {
+  STORE(w + 64 + i, EACH(0.25) * LOAD(w + 107 + i));
+  STORE(w + 70 + i, EACH(0.25) * LOAD(w + 113 + i));
+  STORE(w + 76 + i, EACH(0.25) * (EACH(1.0) + LOAD(w + 119 + i)));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_2)(casadi_real *w) {
+  const int last = 6 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_2_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_2_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_3_turn)(casadi_real *w, int i) {
+  STORE(w + 82 + i, EACH(0.25) * LOAD(w + 131 + i));
+  STORE(w + 97 + i, EACH(0.25) * LOAD(w + 146 + i));
+  STORE(w + 112 + i, EACH(0.25) * (EACH(1.0) + LOAD(w + 291 + i)));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_3)(casadi_real *w) {
+  const int last = 15 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_3_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_3_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_4_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+  b0 = EACH(2.0) * LOAD(w + 223 + i);
+  b1 = b0 * LOAD(w + 223 + i);
+  b2 = EACH(2.0) * LOAD(w + 229 + i) * LOAD(w + 229 + i);
+  b3 = EACH(2.0) * LOAD(w + 235 + i);
+  b4 = b3 * LOAD(w + 223 + i);
+  b5 = EACH(2.0) * LOAD(w + 241 + i);
+  b6 = b5 * LOAD(w + 229 + i);
+  b7 = b3 * LOAD(w + 229 + i);
+  b8 = b5 * LOAD(w + 223 + i);
+  b3 = EACH(1.0) - b3 * LOAD(w + 235 + i);
+  b0 = b0 * LOAD(w + 229 + i);
+  b5 = b5 * LOAD(w + 235 + i);
+  STORE(w + 127 + i, (EACH(1.0) - b1 - b2) * LOAD(w + 64 + i));
+  STORE(w + 175 + i, (b4 + b6) * LOAD(w + 64 + i));
+  STORE(w + 181 + i, (b7 - b8) * LOAD(w + 64 + i));
+  STORE(w + 187 + i, (b4 - b6) * LOAD(w + 70 + i));
+  STORE(w + 193 + i, (b3 - b2) * LOAD(w + 70 + i));
+  STORE(w + 199 + i, (b0 + b5) * LOAD(w + 70 + i));
+  STORE(w + 205 + i, (b7 + b8) * LOAD(w + 76 + i));
+  STORE(w + 211 + i, (b0 - b5) * LOAD(w + 76 + i));
+  STORE(w + 217 + i, (b3 - b1) * LOAD(w + 76 + i));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_4)(casadi_real *w) {
+  const int last = 6 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_4_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_4_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_5_turn)(casadi_real *w, int i) {
+  STORE(w + 223 + i, LOAD(w + 241 + i) + LOAD(w + 187 + i) + LOAD(w + 205 + i));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_5)(casadi_real *w) {
+  const int last = 18 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_5_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_5_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_7_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+  b0 = EACH(2.0) * LOAD(w + 318 + i);
+  b1 = b0 * LOAD(w + 318 + i);
+  b2 = EACH(2.0) * LOAD(w + 333 + i) * LOAD(w + 333 + i);
+  b3 = EACH(2.0) * LOAD(w + 348 + i);
+  b4 = b3 * LOAD(w + 318 + i);
+  b5 = EACH(2.0) * LOAD(w + 363 + i);
+  b6 = b5 * LOAD(w + 333 + i);
+  b7 = b3 * LOAD(w + 333 + i);
+  b8 = b5 * LOAD(w + 318 + i);
+  b3 = EACH(1.0) - b3 * LOAD(w + 348 + i);
+  b0 = b0 * LOAD(w + 333 + i);
+  b5 = b5 * LOAD(w + 348 + i);
+  STORE(w + 183 + i, (EACH(1.0) - b1 - b2) * LOAD(w + 82 + i));
+  STORE(w + 198 + i, (b4 + b6) * LOAD(w + 82 + i));
+  STORE(w + 213 + i, (b7 - b8) * LOAD(w + 82 + i));
+  STORE(w + 228 + i, (b4 - b6) * LOAD(w + 97 + i));
+  STORE(w + 243 + i, (b3 - b2) * LOAD(w + 97 + i));
+  STORE(w + 258 + i, (b0 + b5) * LOAD(w + 97 + i));
+  STORE(w + 273 + i, (b7 + b8) * LOAD(w + 112 + i));
+  STORE(w + 288 + i, (b0 - b5) * LOAD(w + 112 + i));
+  STORE(w + 303 + i, (b3 - b1) * LOAD(w + 112 + i));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_7)(casadi_real *w) {
+  const int last = 15 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_7_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_7_turn)(w, last + lane))
+}
+
+static void MADE(follower_reissner_k_richer_changes_loop_9_turn)(casadi_real *w, int i) {
+  STORE(w + 68 + i, LOAD(w + 183 + i) + LOAD(w + 228 + i) + LOAD(w + 273 + i));
+}
+static void MADE(follower_reissner_k_richer_changes_loop_9)(casadi_real *w) {
+  const int last = 45 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_9_turn)(w, i + lane))
+  EVERY_LANE(MADE(follower_reissner_k_richer_changes_loop_9_turn)(w, last + lane))
 }

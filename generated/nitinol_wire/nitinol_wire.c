@@ -80,9 +80,16 @@ static solver_status within_limits(solver_status end, const real *x, const real 
 }
 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */
-static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1};
+static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
 
-/* Elastic steps of unknowns and missing coordinates, and the residual in the unknowns, one behind the other. */
+/* Elastic steps of unknowns and missing coordinates at the answer itself, one behind the other. */
+static void richer_lack_at(const real *x, const real *inputs, real *steps, workspace *work) {
+  ARGUMENTS(nitinol_wire_k_richer_lack, x, inputs);
+  RESULTS(steps);
+  CALL(nitinol_wire_k_richer_lack);
+}
+
+/* The same at a corrected answer, the residual in the unknowns, and what is watched, one behind the other. */
 static void richer_balance_at(const real *x, const real *correction, const real *missing, const real *inputs, real *balance,
                               workspace *work) {
   ARGUMENTS(nitinol_wire_k_richer_balance, x, correction, missing, inputs);
@@ -90,19 +97,11 @@ static void richer_balance_at(const real *x, const real *correction, const real 
   CALL(nitinol_wire_k_richer_balance);
 }
 
-/* The largest change of what is watched. */
-static real richer_change_at(const real *x, const real *correction, const real *missing, const real *inputs,
-                             workspace *work) {
-  ARGUMENTS(nitinol_wire_k_richer_changes, x, correction, missing, inputs);
-  RESULTS(work->changes);
-  CALL(nitinol_wire_k_richer_changes);
-  real largest = 0;
-  for (int i = 0; i < SOLVER_WATCHED; i++) {
-    /* Written so that a change which is not a number is the largest. */
-    if (!(work->changes[i] <= largest)) largest = work->changes[i];
-    if (!isfinite(largest)) return largest;
-  }
-  return largest;
+/* What is watched: positions over lengths, then quaternions, then lengths of cables over those of their rods. */
+static void watched_at(const real *x, const real *inputs, real *watched, workspace *work) {
+  ARGUMENTS(nitinol_wire_k_watched, x, inputs);
+  RESULTS(watched);
+  CALL(nitinol_wire_k_watched);
 }
 
 #include "linear_dense.c"

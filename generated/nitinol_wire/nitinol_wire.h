@@ -125,8 +125,8 @@ typedef struct {
 
 typedef struct {
   nitinol_wire_jacobian_factors factors;
-  nitinol_wire_real steps[12][NITINOL_WIRE_UNKNOWNS];
-  nitinol_wire_real squares[12];
+  nitinol_wire_real steps[13][NITINOL_WIRE_UNKNOWNS];
+  nitinol_wire_real squares[13];
   int count;
 } nitinol_wire_updated_jacobian;
 
@@ -154,10 +154,11 @@ typedef struct {
   nitinol_wire_real d_x_d_inputs[NITINOL_WIRE_UNKNOWNS * 6];
   nitinol_wire_real d_pose_d_x[7 * NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real known_correction[NITINOL_WIRE_UNKNOWNS];
-  nitinol_wire_real missing[13];
-  nitinol_wire_real changes[2];
-  nitinol_wire_real fewer[13];
-  nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 13];
+  nitinol_wire_real missing[9];
+  nitinol_wire_real fewer[9];
+  nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 9 + 7];
+  nitinol_wire_real watched[7];
+  nitinol_wire_real watched_after[7];
   nitinol_wire_real kernel_reals[1336];
   int kernel_integers[1];
 } nitinol_wire_workspace;
@@ -255,7 +256,7 @@ void nitinol_wire_input_jacobian(const nitinol_wire_real *x, const nitinol_wire_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of nitinol_wire_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 20 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 16 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 nitinol_wire_status nitinol_wire_error_estimate(const nitinol_wire_real *inputs, const nitinol_wire_real *x, nitinol_wire_real *error_estimate,
                                       nitinol_wire_workspace *workspace);

@@ -64,11 +64,13 @@ static const nitinol_wire_real MAX_CURVATURE_SHARE = (nitinol_wire_real)0.5;
 static const nitinol_wire_real FIRST_STEP = (nitinol_wire_real)1.0;
 static const nitinol_wire_real SAME_BRANCH = (nitinol_wire_real)0.5;
 #define solver_error_estimate nitinol_wire_error_estimate
-#define SOLVER_MISSING 13
-#define SOLVER_WATCHED 2
+#define SOLVER_MISSING 9
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const nitinol_wire_real ERROR_SAFETY = (nitinol_wire_real)1.1;
 static const nitinol_wire_real ERROR_SETTLED = (nitinol_wire_real)0.2;
+static const nitinol_wire_real ERROR_FOLLOWED = (nitinol_wire_real)0.5;
 static const nitinol_wire_real ERROR_CONTRACTING = (nitinol_wire_real)0.5;
 static const nitinol_wire_real ERROR_ENOUGH = (nitinol_wire_real)9.09090909090909e-05;
 static const nitinol_wire_real ERROR_FASTEST = (nitinol_wire_real)0.02;

@@ -52,14 +52,18 @@ static real residual_left(const real *x, const real *inputs, workspace *work) {
   return norm_of(residual) / (1 + norm_of(x));
 }
 
-/* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
-static solver_status finish(const real *x, const real *inputs, solver_info *found, solver_info *info, workspace *work) {
+/* Nodes too few for so bent a rod give equations whose solution is not one of the rod. The Jacobian is the one that Newton
+   has left at x, or null. */
+static solver_status finish(const real *x, const real *inputs, updated_jacobian *jacobian, solver_info *found,
+                            solver_info *info, workspace *work) {
   if (found->status == SOLVER_CONVERGED && !(resolution_index(x, inputs, work) <= 1)) found->status = SOLVER_UNRESOLVED;
   found->status = within_limits(found->status, x, inputs, work);
   const int solved = found->status == SOLVER_CONVERGED || found->status == SOLVER_UNRESOLVED;
   if (!solved) found->residual_norm = residual_left(x, inputs, work);
 #ifdef SOLVER_MISSING
-  if (info && found->status == SOLVER_CONVERGED) found->error_estimate = estimated_error(x, inputs, work);
+  if (info && found->status == SOLVER_CONVERGED) found->error_estimate = estimated_error(x, inputs, jacobian, work);
+#else
+  (void)jacobian;
 #endif
   if (info) *info = *found;
   return found->status;
@@ -67,23 +71,29 @@ static solver_status finish(const real *x, const real *inputs, solver_info *foun
 
 solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
+  updated_jacobian *jacobian = 0;
   if (all_finite(inputs, INPUTS)) {
     const int warm = all_finite(x, N) && !is_zero(x);
-    if (!warm || !correct(&DAMPED_NEWTON, inputs, x, work, &found)) solve_from_unloaded(inputs, x, work, &found);
+    if (!warm || !correct(&DAMPED_NEWTON, inputs, x, work, &found)) {
+      jacobian = solve_from_unloaded(inputs, x, work, &found);
+    } else if (found.jacobians > 0) {
+      jacobian = work->updated_jacobians;
+    }
   }
-  return finish(x, inputs, &found, info, work);
+  return finish(x, inputs, jacobian, &found, info, work);
 }
 
 solver_status solver_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
+  updated_jacobian *jacobian = 0;
   const load_path path = {.grows_load = 0, .from = from, .to = inputs};
   if (all_finite(from, INPUTS) && all_finite(inputs, INPUTS) && all_finite(x, N)) {
     const newton_result start = start_path(&path, &DAMPED_NEWTON, x, work);
     count_work(&found, &start);
     found.status = start.status;
-    if (start.status == SOLVER_CONVERGED) follow_to_the_end(&path, 1, x, work, &found);
+    if (start.status == SOLVER_CONVERGED) jacobian = follow_to_the_end(&path, 1, x, work, &found);
   }
-  return finish(x, inputs, &found, info, work);
+  return finish(x, inputs, jacobian, &found, info, work);
 }
 
 void solver_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {

@@ -123,8 +123,8 @@ typedef struct {
 
 typedef struct {
   planar_strip_jacobian_factors factors;
-  planar_strip_real steps[12][PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real squares[12];
+  planar_strip_real steps[13][PLANAR_STRIP_UNKNOWNS];
+  planar_strip_real squares[13];
   int count;
 } planar_strip_updated_jacobian;
 
@@ -152,11 +152,12 @@ typedef struct {
   planar_strip_real d_x_d_inputs[PLANAR_STRIP_UNKNOWNS * 6];
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
   planar_strip_real known_correction[PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real missing[4];
-  planar_strip_real changes[2];
-  planar_strip_real fewer[4];
-  planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 4];
-  planar_strip_real kernel_reals[411];
+  planar_strip_real missing[3];
+  planar_strip_real fewer[3];
+  planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3 + 7];
+  planar_strip_real watched[7];
+  planar_strip_real watched_after[7];
+  planar_strip_real kernel_reals[307];
   int kernel_integers[1];
 } planar_strip_workspace;
 
@@ -253,7 +254,7 @@ void planar_strip_input_jacobian(const planar_strip_real *x, const planar_strip_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of planar_strip_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 8 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 7 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 planar_strip_status planar_strip_error_estimate(const planar_strip_real *inputs, const planar_strip_real *x, planar_strip_real *error_estimate,
                                       planar_strip_workspace *workspace);

@@ -64,11 +64,13 @@ static const planar_strip_real MAX_CURVATURE_SHARE = (planar_strip_real)0.5;
 static const planar_strip_real FIRST_STEP = (planar_strip_real)1.0;
 static const planar_strip_real SAME_BRANCH = (planar_strip_real)0.5;
 #define solver_error_estimate planar_strip_error_estimate
-#define SOLVER_MISSING 4
-#define SOLVER_WATCHED 2
+#define SOLVER_MISSING 3
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const planar_strip_real ERROR_SAFETY = (planar_strip_real)1.1;
 static const planar_strip_real ERROR_SETTLED = (planar_strip_real)0.2;
+static const planar_strip_real ERROR_FOLLOWED = (planar_strip_real)0.5;
 static const planar_strip_real ERROR_CONTRACTING = (planar_strip_real)0.5;
 static const planar_strip_real ERROR_ENOUGH = (planar_strip_real)9.09090909090909e-05;
 static const planar_strip_real ERROR_FASTEST = (planar_strip_real)0.02;

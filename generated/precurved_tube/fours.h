@@ -2,10 +2,10 @@
    lane. What one of the four is comes out the same either way. Included anew for each of the two.
 
    Arrays of fours are arrays of numbers, four for each. EACH makes a number one that stands for four alike, FILL stores
-   such a number, and
-   EVERY_LANE calls what computes four, once or for each lane. */
+   such a number, and SPREAD makes a four of one. EVERY_LANE calls what computes four, once or for each lane. */
 #undef FOUR
 #undef EACH
+#undef SPREAD
 #undef LOAD
 #undef STORE
 #undef FILL
@@ -19,6 +19,7 @@ typedef casadi_real vector_of_four
     __attribute__((vector_size(4 * sizeof(casadi_real)), aligned(sizeof(casadi_real)), may_alias));
 
 #define FOUR vector_of_four
+#define SPREAD(number) (EACH(number) - (FOUR){0})
 #define LOAD(numbers) (*(const FOUR *)(numbers))
 #define STORE(numbers, value) (*(FOUR *)(numbers) = (value))
 #define FILL(numbers, number) ((numbers)[0] = (numbers)[1] = (numbers)[2] = (numbers)[3] = (number))
@@ -29,6 +30,7 @@ typedef casadi_real vector_of_four
   }
 #else
 #define FOUR casadi_real
+#define SPREAD(number) EACH(number)
 #define LOAD(numbers) (*(numbers))
 #define STORE(numbers, value) (*(numbers) = (value))
 #define FILL(numbers, number) (*(numbers) = (number))

@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 10 kB of stack.
+   coordinates of one rod. Functions need at most 13 kB of stack.
 
    The scene asks for a tip pose within 0.0001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 7.8e-05. Far larger loads need it judged anew.
@@ -125,8 +125,8 @@ typedef struct {
 
 typedef struct {
   precurved_tube_jacobian_factors factors;
-  precurved_tube_real steps[12][PRECURVED_TUBE_UNKNOWNS];
-  precurved_tube_real squares[12];
+  precurved_tube_real steps[13][PRECURVED_TUBE_UNKNOWNS];
+  precurved_tube_real squares[13];
   int count;
 } precurved_tube_updated_jacobian;
 
@@ -154,10 +154,11 @@ typedef struct {
   precurved_tube_real d_x_d_inputs[PRECURVED_TUBE_UNKNOWNS * 6];
   precurved_tube_real d_pose_d_x[7 * PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real known_correction[PRECURVED_TUBE_UNKNOWNS];
-  precurved_tube_real missing[12];
-  precurved_tube_real changes[2];
-  precurved_tube_real fewer[12];
-  precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 12];
+  precurved_tube_real missing[9];
+  precurved_tube_real fewer[9];
+  precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
+  precurved_tube_real watched[7];
+  precurved_tube_real watched_after[7];
   precurved_tube_real kernel_reals[1705];
   int kernel_integers[1];
 } precurved_tube_workspace;
@@ -255,7 +256,7 @@ void precurved_tube_input_jacobian(const precurved_tube_real *x, const precurved
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of precurved_tube_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 25 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 22 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 precurved_tube_status precurved_tube_error_estimate(const precurved_tube_real *inputs, const precurved_tube_real *x, precurved_tube_real *error_estimate,
                                       precurved_tube_workspace *workspace);

@@ -64,11 +64,13 @@ static const precurved_tube_real MAX_CURVATURE_SHARE = (precurved_tube_real)0.5;
 static const precurved_tube_real FIRST_STEP = (precurved_tube_real)1.0;
 static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
 #define solver_error_estimate precurved_tube_error_estimate
-#define SOLVER_MISSING 12
-#define SOLVER_WATCHED 2
+#define SOLVER_MISSING 9
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.1;
 static const precurved_tube_real ERROR_SETTLED = (precurved_tube_real)0.2;
+static const precurved_tube_real ERROR_FOLLOWED = (precurved_tube_real)0.5;
 static const precurved_tube_real ERROR_CONTRACTING = (precurved_tube_real)0.5;
 static const precurved_tube_real ERROR_ENOUGH = (precurved_tube_real)9.09090909090909e-05;
 static const precurved_tube_real ERROR_FASTEST = (precurved_tube_real)0.02;

@@ -36,7 +36,7 @@ int precurved_tube_k_richer_balance(const casadi_real** arg, casadi_real** res, 
 #define precurved_tube_k_richer_balance_SZ_ARG 4
 #define precurved_tube_k_richer_balance_SZ_RES 1
 #define precurved_tube_k_richer_balance_SZ_IW 0
-#define precurved_tube_k_richer_balance_SZ_W 1439
+#define precurved_tube_k_richer_balance_SZ_W 1423
 int precurved_tube_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_richer_changes_SZ_ARG 4
 #define precurved_tube_k_richer_changes_SZ_RES 1
@@ -56,7 +56,7 @@ int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, ca
 #define precurved_tube_k_tip_jacobian_SZ_ARG 2
 #define precurved_tube_k_tip_jacobian_SZ_RES 2
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 796
+#define precurved_tube_k_tip_jacobian_SZ_W 1194
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 3
 #define precurved_tube_k_shape_SZ_RES 2

@@ -363,6 +363,19 @@ static void MADE(precurved_tube_kernels_pulls_5)(const casadi_real *given, casad
     EVERY_LANE(MADE(precurved_tube_kernels_pulls_5_turn)(given + lane, made + lane))
 }
 
+static void MADE(precurved_tube_kernels_chain_turn)(const casadi_real *given, casadi_real *made) {
+  made[0] = given[0] * given[4] - given[1] * given[5] - given[2] * given[6] - given[3] * given[7];
+  made[1] = given[0] * given[5] + given[1] * given[4] + given[2] * given[7] - given[3] * given[6];
+  made[2] = given[0] * given[6] - given[1] * given[7] + given[2] * given[4] + given[3] * given[5];
+  made[3] = given[0] * given[7] + given[1] * given[6] - given[2] * given[5] + given[3] * given[4];
+}
+
+static void MADE(precurved_tube_kernels_chain)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 8, made += 4)
+    MADE(precurved_tube_kernels_chain_turn)(given, made);
+}
+
 static void MADE(precurved_tube_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
@@ -1826,4 +1839,268 @@ static int MADE(precurved_tube_k_jacobian)(const casadi_real **arg, casadi_real 
   MADE(precurved_tube_k_jacobian_part_2)(arg, res, w);
   MADE(precurved_tube_k_jacobian_part_3)(arg, res, w);
   return 0;
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_0_turn)(casadi_real *w, int i) {
+  STORE(w + 47 + i, LOAD(w + 1 + i) + LOAD(w + 14 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_0)(casadi_real *w) {
+  const int last = 13 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_0_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_0_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_2_turn)(casadi_real *w, int i) {
+  STORE(w + 156 + i, LOAD(precurved_tube_kernels_table_3 + i) * LOAD(w + 181 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_2)(casadi_real *w) {
+  const int last = 25 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_2_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_2_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_3_turn)(casadi_real *w, int i) {
+  STORE(w + 341 + i, LOAD(precurved_tube_kernels_table_5 + i) + LOAD(w + 426 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_3)(casadi_real *w) {
+  const int last = 85 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_3_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_3_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_4_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14;
+  b0 = EACH(2.0) * LOAD(w + 799 + i);
+  b1 = b0 * LOAD(w + 799 + i);
+  b2 = EACH(2.0) * LOAD(w + 815 + i) * LOAD(w + 815 + i);
+  b3 = EACH(2.0) * LOAD(w + 831 + i);
+  b4 = b3 * LOAD(w + 799 + i);
+  b5 = EACH(2.0) * LOAD(w + 847 + i);
+  b6 = b5 * LOAD(w + 815 + i);
+  b7 = b3 * LOAD(w + 815 + i);
+  b8 = b5 * LOAD(w + 799 + i);
+  b3 = EACH(1.0) - b3 * LOAD(w + 831 + i);
+  b0 = b0 * LOAD(w + 815 + i);
+  b5 = b5 * LOAD(w + 831 + i);
+  b9 = b7 + b8;
+  b10 = b0 - b5;
+  b11 = b3 - b1;
+  b12 = EACH(0.15) * b10;
+  b13 = EACH(0.15) * b11;
+  b14 = EACH(0.15) * b9;
+  STORE(w + 458 + i, EACH(1.0) - b1 - b2);
+  STORE(w + 474 + i, b4 + b6);
+  STORE(w + 490 + i, b7 - b8);
+  STORE(w + 506 + i, b4 - b6);
+  STORE(w + 522 + i, b3 - b2);
+  STORE(w + 538 + i, b0 + b5);
+  STORE(w + 554 + i, b9);
+  STORE(w + 570 + i, b10);
+  STORE(w + 586 + i, b11);
+  STORE(w + 602 + i, b12 * LOAD(w + 92 + i) - b13 * LOAD(w + 76 + i));
+  STORE(w + 618 + i, b13 * LOAD(w + 60 + i) - b14 * LOAD(w + 92 + i));
+  STORE(w + 634 + i, b14 * LOAD(w + 76 + i) - b12 * LOAD(w + 60 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_4)(casadi_real *w) {
+  const int last = 16 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_4_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_4_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_6_turn)(casadi_real *w, int i) {
+  STORE(w + 72 + i, LOAD(w + 97 + i) + LOAD(w + 47 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_6)(casadi_real *w) {
+  const int last = 25 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_6_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_6_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_7_turn)(casadi_real *w, int i) {
+  STORE(w + 47 + i, LOAD(w + 59 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_7)(casadi_real *w) {
+  const int last = 12 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_7_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_7_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_richer_balance_loop_9_turn)(casadi_real *w, int i) {
+  STORE(w + 47 + i, EACH((-1.0)) * LOAD(w + 59 + i));
+}
+static void MADE(precurved_tube_k_richer_balance_loop_9)(casadi_real *w) {
+  const int last = 12 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_9_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_richer_balance_loop_9_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_1_turn)(casadi_real *w, int i) {
+  STORE(w + 112 + i, LOAD(precurved_tube_kernels_table_32 + i) + LOAD(w + 133 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_1)(casadi_real *w) {
+  const int last = 21 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_1_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_1_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_2_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14;
+  b0 = EACH(2.0) * LOAD(w + 354 + i);
+  b1 = b0 * LOAD(w + 362 + i);
+  b2 = EACH(2.0) * LOAD(w + 370 + i);
+  b3 = b2 * LOAD(w + 378 + i);
+  b4 = b1 + b3;
+  b5 = EACH(0.15) * b4;
+  b6 = EACH(2.0) * LOAD(w + 378 + i);
+  b7 = b6 * LOAD(w + 362 + i);
+  b8 = b2 * LOAD(w + 354 + i);
+  b9 = b7 - b8;
+  b10 = EACH(0.15) * b9;
+  b11 = EACH(1.0) - b0 * LOAD(w + 354 + i);
+  b6 = b6 * LOAD(w + 378 + i);
+  b12 = b11 - b6;
+  b13 = EACH(0.15) * b12;
+  b14 = EACH(2.0) * LOAD(w + 362 + i) * LOAD(w + 362 + i);
+  b0 = b0 * LOAD(w + 378 + i);
+  b2 = b2 * LOAD(w + 362 + i);
+  STORE(w + 133 + i, b4);
+  STORE(w + 169 + i, b5);
+  STORE(w + 177 + i, b9);
+  STORE(w + 185 + i, b10);
+  STORE(w + 193 + i, b12);
+  STORE(w + 274 + i, b13);
+  STORE(w + 282 + i, EACH(1.0) - b6 - b14);
+  STORE(w + 290 + i, b0 + b2);
+  STORE(w + 298 + i, b1 - b3);
+  STORE(w + 306 + i, b0 - b2);
+  STORE(w + 314 + i, b11 - b14);
+  STORE(w + 322 + i, b7 + b8);
+  STORE(w + 330 + i, b10 * LOAD(w + 80 + i) - b13 * LOAD(w + 72 + i));
+  STORE(w + 338 + i, b13 * LOAD(w + 64 + i) - b5 * LOAD(w + 80 + i));
+  STORE(w + 346 + i, b5 * LOAD(w + 72 + i) - b10 * LOAD(w + 64 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_2)(casadi_real *w) {
+  const int last = 8 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_2_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_2_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_3_turn)(casadi_real *w, int i) {
+  STORE(w + 64 + i, LOAD(precurved_tube_kernels_table_45 + i) * LOAD(w + 141 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_3)(casadi_real *w) {
+  const int last = 24 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_3_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_3_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_5_turn)(casadi_real *w, int i) {
+  STORE(w + 88 + i, EACH((-1.0)) * LOAD(w + 72 + i));
+  STORE(w + 96 + i, EACH((-1.0)) * LOAD(w + 80 + i));
+  STORE(w + 104 + i, EACH((-1.0)) * LOAD(w + 64 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_5)(casadi_real *w) {
+  const int last = 8 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_5_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_5_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_6_turn)(casadi_real *w, int i) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17;
+  b0 = LOAD(w + 295 + i) + LOAD(w + 308 + i);
+  b1 = b0 + LOAD(w + 321 + i);
+  b2 = b1 + LOAD(w + 334 + i);
+  b3 = b2 + LOAD(w + 347 + i);
+  b4 = b3 + LOAD(w + 360 + i);
+  b5 = b4 + LOAD(w + 373 + i);
+  b6 = LOAD(w + 386 + i) + LOAD(w + 399 + i);
+  b7 = b6 + LOAD(w + 412 + i);
+  b8 = b7 + LOAD(w + 425 + i);
+  b9 = b8 + LOAD(w + 438 + i);
+  b10 = b9 + LOAD(w + 451 + i);
+  b11 = b10 + LOAD(w + 464 + i);
+  b12 = LOAD(w + 477 + i) + LOAD(w + 490 + i);
+  b13 = b12 + LOAD(w + 503 + i);
+  b14 = b13 + LOAD(w + 516 + i);
+  b15 = b14 + LOAD(w + 529 + i);
+  b16 = b15 + LOAD(w + 542 + i);
+  b17 = b16 + LOAD(w + 555 + i);
+  STORE(w + 22 + i, b0);
+  STORE(w + 35 + i, b1);
+  STORE(w + 48 + i, b2);
+  STORE(w + 112 + i, b3);
+  STORE(w + 125 + i, b4);
+  STORE(w + 138 + i, b5);
+  STORE(w + 151 + i, b6);
+  STORE(w + 169 + i, b7);
+  STORE(w + 182 + i, b8);
+  STORE(w + 195 + i, b9);
+  STORE(w + 208 + i, b10);
+  STORE(w + 221 + i, b11);
+  STORE(w + 234 + i, b12);
+  STORE(w + 247 + i, b13);
+  STORE(w + 260 + i, b14);
+  STORE(w + 273 + i, b15);
+  STORE(w + 568 + i, b16);
+  STORE(w + 581 + i, b17);
+  b16 = EACH((-1.0)) * (b5 * LOAD(w + 646 + i) + b11 * LOAD(w + 659 + i) + b17 * LOAD(w + 672 + i));
+  STORE(w + 594 + i, b16);
+  STORE(w + 607 + i, b5 * LOAD(w + 685 + i) + b11 * LOAD(w + 672 + i) - b17 * LOAD(w + 659 + i));
+  STORE(w + 620 + i, b11 * LOAD(w + 685 + i) - b5 * LOAD(w + 672 + i) + b17 * LOAD(w + 646 + i));
+  STORE(w + 633 + i, b5 * LOAD(w + 659 + i) - b11 * LOAD(w + 646 + i) + b17 * LOAD(w + 685 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_6)(casadi_real *w) {
+  const int last = 13 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_6_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_6_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_7_turn)(casadi_real *w, int i) {
+  STORE(w + 22 + i, LOAD(w + 594 + i) / EACH(2.0));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_7)(casadi_real *w) {
+  const int last = 52 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_7_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_7_turn)(w, last + lane))
+}
+
+static void MADE(precurved_tube_k_tip_jacobian_loop_8_turn)(casadi_real *w, int i) {
+  STORE(w + 113 + i, LOAD(w + 22 + i));
+  STORE(w + 126 + i, LOAD(w + 35 + i));
+  STORE(w + 139 + i, LOAD(w + 48 + i));
+  STORE(w + 152 + i, LOAD(w + 61 + i));
+}
+static void MADE(precurved_tube_k_tip_jacobian_loop_8)(casadi_real *w) {
+  const int last = 13 - 4;
+  int i;
+  for (i = 0; i < last; i += 4)
+    EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_8_turn)(w, i + lane))
+  EVERY_LANE(MADE(precurved_tube_k_tip_jacobian_loop_8_turn)(w, last + lane))
 }

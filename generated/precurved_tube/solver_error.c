@@ -4,9 +4,45 @@
 
    cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it.
 
-   Uses of the equations: richer_balance_at, richer_change_at. */
+   Uses of the equations: richer_lack_at, richer_balance_at, watched_at. */
 
-enum { MISSING = SOLVER_MISSING };
+enum {
+  MISSING = SOLVER_MISSING,
+  WATCHED_POSES = SOLVER_WATCHED_POSES,
+  WATCHED_CABLES = SOLVER_WATCHED_CABLES,
+  WATCHED = POSE_SIZE * WATCHED_POSES + WATCHED_CABLES
+};
+
+static real larger_or_none(real one, real largest) {
+  /* Written so that a number which is none is the larger one. */
+  return one <= largest ? largest : one;
+}
+
+/* The angle between two orientations, rad; the second quaternion may have any length. */
+static real angle_between(const real *a, const real *b) {
+  const real cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  const real x = a[0] * b[1] - a[1] * b[0] - a[2] * b[3] + a[3] * b[2];
+  const real y = a[0] * b[2] - a[2] * b[0] - a[3] * b[1] + a[1] * b[3];
+  const real z = a[0] * b[3] - a[3] * b[0] - a[1] * b[2] + a[2] * b[1];
+  return 2 * (real)atan2(SQUARE_ROOT(x * x + y * y + z * z), ABSOLUTE(cosine));
+}
+
+/* The largest change of what is watched: displacements over the length, angles in rad, lengthenings over the length. */
+static real largest_change(const real *before, const real *after) {
+  const real *turned_before = before + 3 * WATCHED_POSES;
+  const real *turned_after = after + 3 * WATCHED_POSES;
+  real largest = 0;
+  for (int i = 0; i < WATCHED_POSES; i++) {
+    real square = 0;
+    for (int j = 3 * i; j < 3 * i + 3; j++) square += (after[j] - before[j]) * (after[j] - before[j]);
+    largest = larger_or_none(SQUARE_ROOT(square), largest);
+    largest = larger_or_none(angle_between(turned_before + 4 * i, turned_after + 4 * i), largest);
+  }
+  for (int i = POSE_SIZE * WATCHED_POSES; i < WATCHED; i++) {
+    largest = larger_or_none(ABSOLUTE(after[i] - before[i]), largest);
+  }
+  return largest;
+}
 
 static real norm_of_missing(const real *missing) {
   real sum = 0;
@@ -20,57 +56,111 @@ static int contracts(real before, real step) {
   return step <= ERROR_CONTRACTING * before || step <= 10 * TOLERANCE;
 }
 
-/* The step of the missing modes that the corrections in the workspace call for; the balance stays in the workspace. */
-static real next_missing_step(const real *x, const real *inputs, workspace *work) {
-  richer_balance_at(x, work->known_correction, work->missing, inputs, work->balance, work);
+/* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing modes that
+   it calls for. */
+static real balance(const real *x, const real *missing, const real *inputs, workspace *work) {
+  richer_balance_at(x, work->known_correction, missing, inputs, work->balance, work);
   return norm_of_missing(work->balance + N);
 }
 
-/* One sweep of the corrections in the workspace, from the balance that is there. Returns the change of what is watched, and
-   sets next to the length of the step that the missing modes would make before the unknowns of the answer follow. */
-static real sweep(const real *x, const real *inputs, const updated_jacobian *jacobian, real *next, workspace *work) {
+/* Ends the updates of the Jacobian that Newton has left: no step has followed the last one. A step of infinite length makes
+   no update, and steps that come behind it begin anew. */
+static void end_updates(updated_jacobian *jacobian) {
+  if (jacobian->count > 0) jacobian->squares[jacobian->count - 1] = INFINITY;
+}
+
+/* Lets the unknowns of the answer follow the missing modes, which leave this residual: by a step with the Jacobian at hand,
+   and a second one from what the equations of the answer say after the first. What both do to a tip nearly cancels what the
+   missing modes do, and one step with an old Jacobian is not exact enough. Leaves both steps as the correction. Returns the
+   length of the second step over that of the first. */
+static real follow_missing(const real *x, const loads *at, const real *residual, updated_jacobian *jacobian,
+                           workspace *work) {
+  real *first = place_of_step(jacobian);
+  real *second = work->correction;
+  const real first_square = newton_step(jacobian, residual, first, work);
+  if (first_square == 0) {
+    memset(work->correction, 0, sizeof work->correction);
+    return 0;
+  }
+  append_step(jacobian, first_square);
+  for (int i = 0; i < N; i++) work->trial[i] = x[i] + first[i];
+  residual_at(work->trial, at, work->trial_residual, work);
+  for (int i = 0; i < N; i++) work->trial_residual[i] += residual[i];
+  const real second_square = newton_step(jacobian, work->trial_residual, second, work);
+  jacobian->count--;
+  for (int i = 0; i < N; i++) work->correction[i] += first[i];
+  return SQUARE_ROOT(second_square / first_square);
+}
+
+/* The change of what is watched by the corrections in the workspace, whose balance is there, and the step that the unknowns of
+   the answer make. What the step moves is that on the answer's own modes: the difference is of second order. */
+static real change_with_following(const real *x, const real *inputs, workspace *work) {
+  const real *richer = work->balance + 2 * N + MISSING;
+  real *after = work->watched_after;
+  for (int i = 0; i < N; i++) work->trial[i] = x[i] + work->correction[i];
+  watched_at(work->trial, inputs, after, work);
+  for (int i = 0; i < WATCHED; i++) after[i] = richer[i] + (after[i] - work->watched[i]);
+  return largest_change(work->watched, after);
+}
+
+/* One sweep of the corrections in the workspace, from the elastic steps that are there. Returns the change of what is watched,
+   and sets next to the length of the step that the missing modes would make before the unknowns of the answer follow. */
+static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian, real *next, real *shortening,
+                  workspace *work) {
+  const loads at = full_load(inputs);
   const real *elastic_step = work->balance;
   const real *missing_step = elastic_step + N;
-  const real *residual = missing_step + MISSING;
-  real *step = work->correction;
   for (int i = 0; i < N; i++) work->known_correction[i] += elastic_step[i];
   for (int i = 0; i < MISSING; i++) work->missing[i] += missing_step[i];
-  *next = next_missing_step(x, inputs, work);
-  apply_inverse(jacobian, residual, step, work);
-  for (int i = 0; i < N; i++) work->known_correction[i] += step[i];
-  return richer_change_at(x, work->known_correction, work->missing, inputs, work);
+  *next = balance(x, work->missing, inputs, work);
+  *shortening = follow_missing(x, &at, work->balance + N + MISSING, jacobian, work);
+  const real change = change_with_following(x, inputs, work);
+  for (int i = 0; i < N; i++) work->known_correction[i] += work->correction[i];
+  return change;
 }
 
 /* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is the part of the two
    highest degrees in the whole change. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
+  const real *richer = work->balance + 2 * N + MISSING;
   for (int i = 0; i < MISSING; i++) work->fewer[i] = IS_AMONG_LAST[i] ? 0 : work->missing[i];
-  const real fewer = richer_change_at(x, work->known_correction, work->fewer, inputs, work);
-  const real last = ABSOLUTE(change - fewer);
+  (void)balance(x, work->missing, inputs, work);
+  const real whole = largest_change(work->watched, richer);
+  (void)balance(x, work->fewer, inputs, work);
+  const real last = ABSOLUTE(whole - largest_change(work->watched, richer));
   real ratio = last / change;
   if (ratio < ERROR_FASTEST) ratio = ERROR_FASTEST;
   if (!(ratio <= ERROR_SLOWEST)) ratio = ERROR_SLOWEST;
   return last * ratio / (1 - ratio);
 }
 
-/* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. What the corrections do to
-   a tip nearly cancels, so that the Jacobian is made anew: that of the last Newton step is not exact enough. */
-static real estimated_error(const real *x, const real *inputs, workspace *work) {
-  updated_jacobian *jacobian = work->updated_jacobians;
+/* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */
+static real estimated_error(const real *x, const real *inputs, updated_jacobian *jacobian, workspace *work) {
   const loads at = full_load(inputs);
+  const int is_old = jacobian != 0;
   real change_before = -1;
   real step_before = -1;
-  jacobian->count = 0;
-  if (!linearise(x, &at, &jacobian->factors, work)) return 1;
+  if (is_old) {
+    end_updates(jacobian);
+  } else {
+    jacobian = work->updated_jacobians;
+    jacobian->count = 0;
+    if (!linearise(x, &at, &jacobian->factors, work)) return 1;
+  }
   memset(work->known_correction, 0, sizeof work->known_correction);
   memset(work->missing, 0, sizeof work->missing);
+  watched_at(x, inputs, work->watched, work);
   for (int k = 0; k < ERROR_SWEEPS; k++) {
     real next;
-    const real step = next_missing_step(x, inputs, work);
+    real shortening;
     const int is_first = k == 0;
+    if (is_first) richer_lack_at(x, inputs, work->balance, work);
+    const real step = is_first ? norm_of_missing(work->balance + N) : balance(x, work->missing, inputs, work);
     if (!is_first && !contracts(step_before, step)) break;
-    const real change = sweep(x, inputs, jacobian, &next, work);
+    const real change = sweep(x, inputs, jacobian, &next, &shortening, work);
+    /* An old Jacobian that is far from that of the answer tells nothing. */
+    if (is_old && !(shortening <= ERROR_FOLLOWED)) return estimated_error(x, inputs, 0, work);
     if (!isfinite(change)) break;
     const int settled = !is_first && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
     if (settled) {
@@ -90,6 +180,6 @@ solver_status solver_error_estimate(const real *inputs, const real *x, real *err
   if (!all_finite(inputs, INPUTS) || !isfinite(size)) return SOLVER_NOT_FINITE;
   residual_at(x, &at, work->trial_residual, work);
   if (!(norm_of(work->trial_residual) <= 10 * TOLERANCE * size)) return SOLVER_NOT_IN_EQUILIBRIUM;
-  *error_estimate = estimated_error(x, inputs, work);
+  *error_estimate = estimated_error(x, inputs, 0, work);
   return SOLVER_CONVERGED;
 }

@@ -2,6 +2,8 @@
 #ifndef COSSERAT_PROGRAM_H
 #define COSSERAT_PROGRAM_H
 
+#include <string.h>
+
 #if defined(__GNUC__)
 #define PROGRAM_MAYBE_UNUSED __attribute__((unused))
 #else
@@ -10,8 +12,11 @@
 
 /* An argument that is not there stands for zeros. */
 static PROGRAM_MAYBE_UNUSED void program_read(casadi_real *to, const casadi_real *from, int count) {
-  int i;
-  for (i = 0; i < count; i++) to[i] = from ? from[i] : 0;
+  if (from) {
+    memcpy(to, from, (size_t)count * sizeof *to);
+  } else {
+    memset(to, 0, (size_t)count * sizeof *to);
+  }
 }
 
 static PROGRAM_MAYBE_UNUSED void program_move(casadi_real *to, const casadi_real *from, int count) {
@@ -30,13 +35,12 @@ static PROGRAM_MAYBE_UNUSED void program_gather(casadi_real *to, const casadi_re
   for (i = 0; i < count; i++) to[i] = from[places[i]];
 }
 
-/* Runs of one length, each from its place. */
-static PROGRAM_MAYBE_UNUSED void program_runs(casadi_real *to, const casadi_real *from, const int *places, int count,
-                                              int length) {
+/* Runs of entries, each with its first place, how far its places are apart, and its length. */
+static PROGRAM_MAYBE_UNUSED void program_strides(casadi_real *to, const casadi_real *from, const int *runs, int count) {
   int i, k;
-  for (k = 0; k < count; k++, to += length) {
-    const casadi_real *run = from + places[k];
-    for (i = 0; i < length; i++) to[i] = run[i];
+  for (k = 0; k < count; k++, runs += 3) {
+    const casadi_real *entry = from + runs[0];
+    for (i = 0; i < runs[2]; i++, entry += runs[1]) *to++ = *entry;
   }
 }
 

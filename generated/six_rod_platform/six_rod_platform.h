@@ -195,8 +195,8 @@ typedef struct {
 
 typedef struct {
   six_rod_platform_jacobian_factors factors;
-  six_rod_platform_real steps[12][SIX_ROD_PLATFORM_UNKNOWNS];
-  six_rod_platform_real squares[12];
+  six_rod_platform_real steps[13][SIX_ROD_PLATFORM_UNKNOWNS];
+  six_rod_platform_real squares[13];
   int count;
 } six_rod_platform_updated_jacobian;
 
@@ -230,11 +230,12 @@ typedef struct {
   six_rod_platform_real front_values[6][28];
   six_rod_platform_real interface_values[7];
   six_rod_platform_real known_correction[SIX_ROD_PLATFORM_UNKNOWNS];
-  six_rod_platform_real missing[168];
-  six_rod_platform_real changes[50];
-  six_rod_platform_real fewer[168];
-  six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 168];
-  six_rod_platform_real kernel_reals[4554];
+  six_rod_platform_real missing[108];
+  six_rod_platform_real fewer[108];
+  six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 108 + 175];
+  six_rod_platform_real watched[175];
+  six_rod_platform_real watched_after[175];
+  six_rod_platform_real kernel_reals[2881];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 
@@ -332,7 +333,7 @@ void six_rod_platform_input_jacobian(const six_rod_platform_real *x, const six_r
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of six_rod_platform_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 301 unknowns.
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 241 unknowns.
    NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 six_rod_platform_status six_rod_platform_error_estimate(const six_rod_platform_real *inputs, const six_rod_platform_real *x, six_rod_platform_real *error_estimate,
                                       six_rod_platform_workspace *workspace);

@@ -69,11 +69,13 @@ static const six_rod_platform_real MAX_CURVATURE_SHARE = (six_rod_platform_real)
 static const six_rod_platform_real FIRST_STEP = (six_rod_platform_real)0.25;
 static const six_rod_platform_real SAME_BRANCH = (six_rod_platform_real)0.5;
 #define solver_error_estimate six_rod_platform_error_estimate
-#define SOLVER_MISSING 168
-#define SOLVER_WATCHED 50
+#define SOLVER_MISSING 108
+#define SOLVER_WATCHED_POSES 25
+#define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const six_rod_platform_real ERROR_SAFETY = (six_rod_platform_real)1.1;
 static const six_rod_platform_real ERROR_SETTLED = (six_rod_platform_real)0.2;
+static const six_rod_platform_real ERROR_FOLLOWED = (six_rod_platform_real)0.5;
 static const six_rod_platform_real ERROR_CONTRACTING = (six_rod_platform_real)0.5;
 static const six_rod_platform_real ERROR_ENOUGH = (six_rod_platform_real)0.0009090909090909091;
 static const six_rod_platform_real ERROR_FASTEST = (six_rod_platform_real)0.02;

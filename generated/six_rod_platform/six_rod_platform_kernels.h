@@ -16,7 +16,7 @@ int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_1_SZ_ARG 4
 #define six_rod_platform_k_residual_1_SZ_RES 1
 #define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 536
+#define six_rod_platform_k_residual_1_SZ_W 2048
 int six_rod_platform_k_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_jacobian_0_SZ_RES 1
@@ -36,7 +36,12 @@ int six_rod_platform_k_input_jacobian_1(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_input_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_input_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_input_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_1_SZ_W 747
+#define six_rod_platform_k_input_jacobian_1_SZ_W 2232
+int six_rod_platform_k_input_jacobian_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_input_jacobian_2_SZ_ARG 4
+#define six_rod_platform_k_input_jacobian_2_SZ_RES 1
+#define six_rod_platform_k_input_jacobian_2_SZ_IW 0
+#define six_rod_platform_k_input_jacobian_2_SZ_W 712
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_rate_SZ_ARG 5
 #define six_rod_platform_k_rate_SZ_RES 1
@@ -52,16 +57,21 @@ int six_rod_platform_k_resolution_index(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_resolution_index_SZ_RES 1
 #define six_rod_platform_k_resolution_index_SZ_IW 0
 #define six_rod_platform_k_resolution_index_SZ_W 75
+int six_rod_platform_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_richer_lack_SZ_ARG 2
+#define six_rod_platform_k_richer_lack_SZ_RES 1
+#define six_rod_platform_k_richer_lack_SZ_IW 0
+#define six_rod_platform_k_richer_lack_SZ_W 1824
 int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1
 #define six_rod_platform_k_richer_balance_SZ_IW 0
-#define six_rod_platform_k_richer_balance_SZ_W 4553
-int six_rod_platform_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_richer_changes_SZ_ARG 4
-#define six_rod_platform_k_richer_changes_SZ_RES 1
-#define six_rod_platform_k_richer_changes_SZ_IW 0
-#define six_rod_platform_k_richer_changes_SZ_W 3111
+#define six_rod_platform_k_richer_balance_SZ_W 2880
+int six_rod_platform_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_watched_SZ_ARG 2
+#define six_rod_platform_k_watched_SZ_RES 1
+#define six_rod_platform_k_watched_SZ_IW 0
+#define six_rod_platform_k_watched_SZ_W 590
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_igm_leg_1_SZ_ARG 4
 #define six_rod_platform_k_igm_leg_1_SZ_RES 3

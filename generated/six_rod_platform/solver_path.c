@@ -181,6 +181,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     }
     accept_next(&now);
     if (now.point->t == 1) {
+      now.has_jacobian = result.jacobians > 0;
       info->status = SOLVER_CONVERGED;
       info->residual_norm = result.residual_norm;
       break;
@@ -191,18 +192,22 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
   return now;
 }
 
-/* Follows a path as far as it goes; x is the last point, as near to equilibrium as Newton brings it. */
-static void follow_to_the_end(const load_path *path, int has_jacobian, real *x, workspace *work, solver_info *info) {
+/* Follows a path as far as it goes; x is the last point, as near to equilibrium as Newton brings it. Returns the Jacobian
+   that Newton has left at the end of the path; null where it has left none. */
+static updated_jacobian *follow_to_the_end(const load_path *path, int has_jacobian, real *x, workspace *work,
+                                           solver_info *info) {
   const progress end = follow_path(path, &LONG_PATH, has_jacobian, work, info);
   memcpy(x, end.point->x, N * sizeof *x);
-  if (end.point->t == 1) return;
+  if (end.point->t == 1) return end.has_jacobian ? end.jacobian : 0;
   const loads at = loads_at(path, end.point->t, work);
   const newton_result result = newton(&at, &DAMPED_NEWTON, x, end.point->residual, end.spare, work);
   count_work(info, &result);
   info->status = SOLVER_LOAD_STALLED;
+  return 0;
 }
 
-static void solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
+/* Returns the Jacobian that Newton has left at the solution, or null. */
+static updated_jacobian *solve_from_unloaded(const real *inputs, real *x, workspace *work, solver_info *info) {
   const load_path path = {.grows_load = 1, .from = inputs, .to = inputs};
   path_point *first = work->points;
   memset(x, 0, N * sizeof *x);
@@ -210,9 +215,9 @@ static void solve_from_unloaded(const real *inputs, real *x, workspace *work, so
   unloaded_tangent(inputs, first->tangent, work);
   if (!isfinite(norm_of(first->tangent))) {
     info->status = SOLVER_NOT_FINITE;
-    return;
+    return 0;
   }
-  follow_to_the_end(&path, 0, x, work, info);
+  return follow_to_the_end(&path, 0, x, work, info);
 }
 
 /* Begins a path at the equilibrium near x for the inputs `from`: in points[0], with tangent and Jacobian. */

@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 10 kB of stack.
+   coordinates of one rod. Functions need at most 14 kB of stack.
 
    The scene asks for a tip pose within 0.0001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 1.4e-05. Far larger loads need it judged anew.
@@ -114,8 +114,7 @@ typedef enum {
   TENDON_ROBOT_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
   TENDON_ROBOT_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   TENDON_ROBOT_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
-  TENDON_ROBOT_PATH_VANISHED      = 8, /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
-  TENDON_ROBOT_BEYOND_MATERIAL    = 9  /* No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains. */
+  TENDON_ROBOT_PATH_VANISHED      = 8  /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
 } tendon_robot_status;
 
 typedef struct {
@@ -178,7 +177,7 @@ typedef struct {
   tendon_robot_real changes[6];
   tendon_robot_real fewer[24];
   tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 24];
-  tendon_robot_real kernel_reals[3023];
+  tendon_robot_real kernel_reals[2234];
   int kernel_integers[1];
 } tendon_robot_workspace;
 

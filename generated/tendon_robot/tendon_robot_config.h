@@ -64,11 +64,13 @@ static const tendon_robot_real MAX_CURVATURE_SHARE = (tendon_robot_real)0.5;
 static const tendon_robot_real FIRST_STEP = (tendon_robot_real)1.0;
 static const tendon_robot_real SAME_BRANCH = (tendon_robot_real)0.5;
 #define solver_error_estimate tendon_robot_error_estimate
-#define SOLVER_MISSING 24
-#define SOLVER_WATCHED 6
+#define SOLVER_MISSING 18
+#define SOLVER_WATCHED_POSES 1
+#define SOLVER_WATCHED_CABLES 4
 enum { ERROR_SWEEPS = 4 };
 static const tendon_robot_real ERROR_SAFETY = (tendon_robot_real)1.1;
 static const tendon_robot_real ERROR_SETTLED = (tendon_robot_real)0.2;
+static const tendon_robot_real ERROR_FOLLOWED = (tendon_robot_real)0.5;
 static const tendon_robot_real ERROR_CONTRACTING = (tendon_robot_real)0.5;
 static const tendon_robot_real ERROR_ENOUGH = (tendon_robot_real)9.09090909090909e-05;
 static const tendon_robot_real ERROR_FASTEST = (tendon_robot_real)0.02;

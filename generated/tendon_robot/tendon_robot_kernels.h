@@ -32,21 +32,21 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
 #define tendon_robot_k_resolution_index_SZ_W 0
-int tendon_robot_k_strain_margins(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_strain_margins_SZ_ARG 2
-#define tendon_robot_k_strain_margins_SZ_RES 1
-#define tendon_robot_k_strain_margins_SZ_IW 0
-#define tendon_robot_k_strain_margins_SZ_W 0
+int tendon_robot_k_path_stretch(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_path_stretch_SZ_ARG 2
+#define tendon_robot_k_path_stretch_SZ_RES 1
+#define tendon_robot_k_path_stretch_SZ_IW 0
+#define tendon_robot_k_path_stretch_SZ_W 0
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 3022
+#define tendon_robot_k_richer_balance_SZ_W 2233
 int tendon_robot_k_richer_changes(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_changes_SZ_ARG 4
 #define tendon_robot_k_richer_changes_SZ_RES 1
 #define tendon_robot_k_richer_changes_SZ_IW 0
-#define tendon_robot_k_richer_changes_SZ_W 1379
+#define tendon_robot_k_richer_changes_SZ_W 1261
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
@@ -61,7 +61,7 @@ int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 815
+#define tendon_robot_k_tip_jacobian_SZ_W 1360
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cosserat_casadi import read_scene
+from cosserat_casadi import choose, read_scene
 from cosserat_casadi.accuracy.fixing import with_accuracy
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.scene.writing import scene_text
@@ -35,6 +35,13 @@ def test_modes_in_contact_are_verified_where_the_inputs_go() -> None:
     assert solution.error_estimate is not None
     assert choice.error_estimate > 1.5 * solution.error_estimate
     assert "push.force.z=-4:-3" in choice.verified.sentence
+
+
+def test_in_contact_no_point_is_solved_for_each_range_alone() -> None:
+    few = with_accuracy(over_bar(), tolerance=1e-3, modes=2, nodes=6)
+    choice = choose(few, {"push.force.x": (-0.5, 0.5), "push.force.z": (-4.0, -3.0)}, samples=1)
+    # The scene's own inputs, a corner, both ends of all ranges together, a random point.
+    assert choice.solves == 5
 
 
 @pytest.mark.slow

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,8 @@ import pytest
 from cosserat_casadi import Identification, Problem, SceneError, read_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND, REFUSED
 from cosserat_casadi.cli.main import app, run
-from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitSettings
+from cosserat_casadi.identification.misfit import Misfit
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitOutcome, FitSettings
 from tests.conftest import ROOT
 
 FIXED = ["--set", "accuracy.modes=3", "--set", "accuracy.nodes=6"]
@@ -81,23 +84,50 @@ def test_what_the_data_leave_open_is_no_success(folder: Path, capsys: pytest.Cap
     assert "do not determine" in capsys.readouterr().out
 
 
-def test_a_search_that_ended_early_is_written_and_marked(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def few_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let searches end after two steps."""
     init = ArrowFit.__init__
-    monkeypatch.setattr(
-        ArrowFit, "__init__", lambda self, *given: init(self, *given, settings=FitSettings(iterations=2))
-    )
+    settings = FitSettings(iterations=2)
+    monkeypatch.setattr(ArrowFit, "__init__", lambda self, *given: init(self, *given, settings=settings))
+
+
+def no_way_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no case be followed any further after two steps."""
+    states_at = Misfit.at
+    calls = itertools.count()
+    monkeypatch.setattr(Misfit, "at", lambda self, *given: states_at(self, *given) if next(calls) < 2 else None)
+
+
+@pytest.mark.parametrize(
+    ("hinder", "outcome", "reason"),
+    [
+        (few_iterations, "max_iterations", FitOutcome.MAX_ITERATIONS.value),
+        (no_way_on, "stalled", FitOutcome.STALLED.value),
+    ],
+)
+def test_a_search_that_ended_early_is_written_and_marked(
+    hinder: Callable[[pytest.MonkeyPatch], None],
+    outcome: str,
+    reason: str,
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Young's modulus meets its bound on the way, which is named beside."""
+    scene = folder / "wire_from_shapes.toml"
+    scene.write_text(scene.read_text().replace("lower = 5e9", "lower = 59e9"))
+    hinder(monkeypatch)
     found, fitted = folder / "found.json", folder / "fitted.toml"
     assert identify(folder, "--output", str(found), "--write", str(fitted)) == NOT_FOUND
     data = written(found)
-    assert data["outcome"] == "max_iterations"
+    assert data["outcome"] == outcome
+    assert data["at_bounds"] == ["wire.material.youngs_modulus"]
     first_line = fitted.read_text().partition("\n")[0]
-    assert first_line.startswith("# Not found: The iterations ran out before the misfit was least.")
+    assert first_line.startswith(f"# Not found: {reason}")
     assert first_line.endswith("The numbers are those at which the search ended.")
     material = read_scene(fitted).rods[0].material
     assert material is not None
-    assert material.youngs_modulus == data["unknowns"]["wire.material.youngs_modulus"]["value"]
+    assert material.youngs_modulus == data["unknowns"]["wire.material.youngs_modulus"]["value"] == 59e9
     # The path may be broken over lines.
     assert "fitted.toml" in capsys.readouterr().out.replace("\n", "")
 

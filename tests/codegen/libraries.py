@@ -160,7 +160,8 @@ class Exported:
 
     def link(self, sources: Sequence[Path | str], *flags: str, others: Sequence[Exported] = ()) -> Path:
         """A program of these sources and the library, or with ``-shared`` the library alone."""
-        compiled = [flag for flag in flags if flag != "-shared" and not flag.startswith("-Wl,")]
+        # Warnings are asked for of the sources: objects of the library are the same with and without.
+        compiled = [flag for flag in flags if flag != "-shared" and not flag.startswith("-W")]
         objects = [path for one in (self, *others) for path in one.objects(*compiled)]
         target = self.scratch / f"{self.name}-{_digest([*flags, *map(str, [*sources, *objects])])}"
         include = [f"-I{one.folder}" for one in (self, *others)]

@@ -180,6 +180,15 @@ def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
     assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
 
 
+def test_a_library_in_contact_says_that_it_estimates_no_error(bar: ContactLibrary) -> None:
+    found = bar.loaded.start()
+    assert found.converged
+    assert found.error_estimate is None
+    assert found.within_tolerance is None
+    for file in ("bar.h", "README.md"):
+        assert "tells its own error" in (bar.folder / file).read_text()
+
+
 def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp_path: Path) -> None:
     """In header, README and manifest, as folders without contact do."""
     verified = Verified(("push.force.z=-4:-2",), 7, 0.25, 0, False)

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise, export, load, read_scene, solve
+from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.plain import pointer
@@ -23,8 +24,11 @@ from tests.scenes import push, scene
 ROOM = 1 << 20
 """Bytes of memory for a turn, more than it needs."""
 
-FRESH = 1e-9
+FRESH = 1e-6
 """Relative difference of two estimates whose equilibria differ by the tolerance of the solver."""
+
+AGE = 0.02
+"""The same where one of them is with the Jacobian that the solver has left: 3e-4 for these loads, 5 % for others."""
 
 
 @pytest.fixture(scope="module")
@@ -45,11 +49,31 @@ def test_estimate_is_that_of_python(robot: Model, in_c: Compiled, tension: float
     solved = in_c.solve(values)
     assert solved.error_estimate is not None
     assert wanted.error_estimate is not None
-    assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=1e-6, atol=0)
+    assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=AGE, atol=0)
     assert solved.within_tolerance is wanted.within_tolerance
     apart = in_c.error_estimate(values, solved.x)
     assert apart is not None
-    assert_allclose(apart, solved.error_estimate, rtol=FRESH, atol=0)
+    assert_allclose(apart, wanted.error_estimate, rtol=FRESH, atol=0)
+
+
+def test_an_old_jacobian_that_tells_nothing_is_made_anew(
+    robot: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(error_sources, "FOLLOWED", 0.0)
+    compiled = load(export(robot, tmp_path / "robot"))
+    values = {"north.tension": 9.0}
+    wanted = solve(robot, values)
+    solved = compiled.solve(values)
+    assert wanted.error_estimate is not None
+    assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=FRESH, atol=0)
+
+
+def test_an_answer_that_lacks_nothing_is_exact(tmp_path: Path) -> None:
+    # A straight rod: no missing mode moves, and the unknowns of the answer have nothing to follow.
+    straight = scene(push(), accuracy={"modes": 2, "nodes": 6})
+    solved = load(export(build(straight), tmp_path / "straight")).solve({"push.force": [0.0, 0.0, 0.0]})
+    assert solved.error_estimate is not None
+    assert solved.error_estimate <= 1e-12
 
 
 def test_an_answer_beyond_the_tolerance_is_told(in_c: Compiled) -> None:
@@ -65,7 +89,7 @@ def test_rows_of_a_batch_know_their_errors(in_c: Compiled) -> None:
         alone = in_c.solve(row)
         assert solved.error_estimate is not None
         assert alone.error_estimate is not None
-        assert_allclose(solved.error_estimate, alone.error_estimate, rtol=1e-6, atol=0)
+        assert_allclose(solved.error_estimate, alone.error_estimate, rtol=AGE, atol=0)
 
 
 def test_unknowns_that_are_no_equilibrium_have_no_error(in_c: Compiled) -> None:
@@ -110,7 +134,7 @@ def test_parameters_move_the_estimate(tmp_path: Path) -> None:
     solved = compiled.solve(parameters=softer)
     wanted = solve(model, parameters=softer)
     assert solved.error_estimate is not None
-    assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=1e-5, atol=0)
+    assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=AGE, atol=0)
 
 
 def test_estimate_is_left_out_where_bytes_count(robot: Model, tmp_path: Path) -> None:

@@ -111,7 +111,7 @@ def initialised(slave, inputs=None, described=None):
 def by_library(model, library, moves, courses):
     """Outputs after each communication step: of (value, rate) of the inputs at its start and at its end.
 
-    What does not move has the value of the end; what moves, an acceleration in each half.
+    Loads move in a straight line; what moves rods, with an acceleration in each half.
     """
     outputs = motion_outputs(model).function
     before = courses[0][0][0]
@@ -119,7 +119,10 @@ def by_library(model, library, moves, courses):
     memory = library.step_memory()
     seen = []
     for (value, rate), (end_value, end_rate) in courses:
-        moved = np.where(moves, value, end_value)
+        moved = value
+        straight = (end_value - value) / PERIOD
+        rate = np.where(moves, rate, straight)
+        end_rate = np.where(moves, end_rate, straight)
         half = PERIOD / 2
         # Values and rates at the end by accelerations in both halves.
         matrix = [[3 * half**2 / 2, half**2 / 2], [half, half]]
@@ -168,7 +171,7 @@ def test_command_writes_the_same_sources(fmu, tmp_path):
 def test_motion_vs_library(model, library, described, instance):
     inputs = model.pack()
     given = model.pack({"push.force": [0.02, 0.01, 0.0], "finger.base.position": [1e-3, 0.0, 2e-3]})
-    # A load jumps to its value, a base moves there.
+    # A load goes straight to its value, a base moves there without a jump of its rate.
     moves = np.zeros(len(inputs), dtype=bool)
     moves[model.inputs.slices["finger.base.position"]] = True
     # Parabolas through the last values: from rest, then one that ends where the value stays.
@@ -186,7 +189,8 @@ def test_motion_vs_library(model, library, described, instance):
         assert instance.doStep(k * PERIOD, PERIOD) == (False, False, False, pytest.approx((k + 1) * PERIOD))
         seen.append(instance.getFloat64(references(described, "output")))
     assert np.abs(wanted[0] - wanted[1]).max() > 1e-3
-    assert_allclose(seen, wanted, rtol=1e-12, atol=1e-13)
+    # A straight line by two accelerations has their rounding.
+    assert_allclose(seen, wanted, rtol=1e-11, atol=1e-12)
 
 
 def test_fmu_simulated_by_fmpy(fmu, described):

@@ -185,8 +185,16 @@ def test_an_argument_that_is_not_there_is_zero() -> None:
     assert_same(with_zero, expected, 1e-15)
 
 
+def test_a_loop_over_entries_that_are_all_alike() -> None:
+    """A number that is spread over entries, a constant one too, is one that four lanes share."""
+    a, b = ca.MX.sym("a"), ca.MX.sym("b", 9)
+    ones = ca.MX(ca.DM([3.0] * 9))
+    function = ca.Function("alike", [a, b], [a * ones, ones + b, ca.repmat(a, 9, 1) - b * a, a * a + ones])
+    assert_same(in_c(function, "alike_in_c")[1], function, 1e-15)
+
+
 def test_entries_that_lie_apart_are_gathered() -> None:
-    """In a few runs, in runs of one length, and one by one."""
+    """In a few runs, in runs of equal stride, and one by one."""
     x = ca.MX.sym("x", 20, 20)
     few = ca.vec(x)[list(range(40, 90)) + list(range(200, 260))]
     runs = ca.vec(x[3:9, :])
@@ -194,7 +202,7 @@ def test_entries_that_lie_apart_are_gathered() -> None:
     function = ca.Function("gathered", [x], [few, runs, mixed, ca.vertcat(mixed[:50], 0.0, 2.5, mixed[60:])])
     texts, compiled = in_c(function, "gathered_in_c")
     text = texts["gathered_in_c.c"]
-    for routine in ("program_move(res", "program_runs(res", "program_gather(res"):
+    for routine in ("program_move(res", "program_strides(res", "program_gather(res"):
         assert routine in text
     assert FEW_RUNS >= 2
     assert_same(compiled, function, 0.0)

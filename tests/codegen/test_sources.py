@@ -18,7 +18,10 @@ from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
-ALL = pytest.mark.parametrize("name", list(RECIPES))
+KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
+"""Libraries with each kind of source: dense and by blocks, without inputs, with actuators and bodies."""
+
+ALL = pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=KINDS))
 
 C_SOURCES = Path(library_module.__file__).parent / "c"
 
@@ -40,9 +43,6 @@ def test_hand_readable_sources_compile_without_a_warning(library: Library, name:
 
 LINT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
 """What any compiler may complain of; MSVC knows no arrays of variable length."""
-
-KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
-"""Libraries with each kind of source: dense and by blocks, without inputs, with actuators and bodies."""
 
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])

@@ -61,6 +61,15 @@ def test_residual_at_rest_is_that_of_statics_to_the_last_bit(family: str) -> Non
         np.testing.assert_array_equal(at_rest(model, x), model.residual(x, model.pack()).full())
 
 
+@EVERY
+def test_residual_in_scalars_vs_that_of_matrices(family: str) -> None:
+    model = model_of(family)
+    state = drawn_state(model, seed=5)
+    expected = model.inverse_dynamics(*state.all).full()
+    found = model.inverse_dynamics_in_scalars(*state.all).full()
+    assert_allclose(found, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
+
+
 # Concentric tubes have no rods to build.
 OF_RODS = sorted(path.name for path in (ROOT / "examples").glob("*.toml") if "[[tubes]]" not in path.read_text())
 

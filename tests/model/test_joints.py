@@ -179,3 +179,32 @@ def test_models_of_one_scene_share_the_kernels_of_their_joints() -> None:
     assert first is second
     assert first is not other
     assert first.law != other.law
+
+
+def two_rods_that_meet(kind: str, **changes: Any) -> Model:
+    """A rod, and one that meets its tip at an angle of atan(4/3) and carries the same body."""
+    second = {"length": 0.5, "base": {"position": [0.4, 0, 0], "tangent": [-0.8, 0, 0.6]}}
+    tables = {
+        "schema": 1,
+        "accuracy": FEW,
+        "rods": [rod("a", 0.3), rod("b", **second)],
+        "bodies": [{"name": "plate", "mass": 0.1}],
+        "joints": [
+            {"rod": "b", "body": "plate", "kind": "fixed"},
+            {"rod": "a", "body": "plate", "kind": kind, **changes},
+        ],
+    }
+    return build(scene_from_dict(tables))
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes"), [("revolute", {"axis": [0, 1, 0]}), ("spherical", {}), ("prismatic", {"axis": [0, 0, 1]})]
+)
+def test_what_a_joint_leaves_free_does_not_turn_the_unloaded_body(kind: str, changes: dict[str, Any]) -> None:
+    model = two_rods_that_meet(kind, **changes)
+    open_by = np.abs(model.residual(model.unloaded(), model.pack()).full()).max()
+    if kind == "prismatic":
+        # It holds the angle between the rods, which do not agree on it: the body stays between them.
+        assert open_by > 0.1
+    else:
+        assert_allclose(open_by, 0.0, rtol=0, atol=1e-12)

@@ -199,3 +199,10 @@ def test_what_is_held_or_watched_in_its_unknowns_keeps_them() -> None:
     assert can_be_centred(model_of(free, actuators=[cable]))
     assert not can_be_centred(model_of(free, actuators=[{**cable, "slack": True}]))
     assert not can_be_centred(model_of(free, inputs=["a.length"]))
+
+
+def test_positions_alone_are_those_of_whole_states(coordinates: CentredCoordinates, flying: Model) -> None:
+    motions = [some_motion(flying.size, seed) for seed in (4, 5, 6)]
+    found = coordinates.positions_of_model(np.array([motion.x for motion in motions]))
+    expected = [coordinates.to_model(motion).x for motion in motions]
+    assert_allclose(found, expected, rtol=1e-13, atol=1e-14)

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.motion.moving_inputs import Break, MovingInputs
+from cosserat_casadi.motion.moving_inputs import MOST_CUTS, Break, MovingInputs
 from tests.scenes import WEIGHT, WIND, push, rod, scene
 
 FORCE = np.array([0.9, 0.5, -0.4])
@@ -128,7 +128,7 @@ def test_linear_tables_are_interpolated_and_constant_outside() -> None:
     assert_array_equal(inputs.at(0.4).value[:3], WEIGHT["acceleration"])
 
 
-@pytest.mark.parametrize("motion", [LINEAR, STEP, CUBIC], ids=["linear", "step", "cubic"])
+@pytest.mark.parametrize("motion", [LINEAR, STEP], ids=["linear", "step"])
 def test_pieces_meet_at_the_knots_with_limits_from_within(motion: dict[str, Any]) -> None:
     pieces = moving(motion).pieces(0.8)
     bounds = [0.0, *TIMES, 0.8] if motion is not STEP else [0.0, *TIMES[1:], 0.8]
@@ -148,11 +148,47 @@ def test_pieces_meet_at_the_knots_with_limits_from_within(motion: dict[str, Any]
 def test_pieces_go_on_beyond_their_ends() -> None:
     """As one polynomial: constraints are differentiated there where a motion starts anew next to an end."""
     for piece in moving(CUBIC).pieces(0.8):
-        span = piece.end - piece.start
+        span = piece.end - max([piece.start, *piece.kinks])
         samples = [of_force(piece.at(t)) for t in np.linspace(piece.end - span, piece.end + 0.1 * span, 6)]
         differences = np.diff(samples, n=4, axis=0)
         scale = np.abs(samples).max(axis=(0, 2))[:, None]
         assert np.all(np.abs(differences) <= 1e-12 * scale)
+
+
+def test_knots_of_a_spline_cut_nothing_but_at_its_ends() -> None:
+    inputs = moving(CUBIC)
+    pieces = inputs.pieces(0.8)
+    assert [piece.start for piece in pieces] == [0.0, TIMES[0], TIMES[-1]]
+    assert [piece.kinks for piece in pieces] == [(), tuple(TIMES[1:-1]), ()]
+    assert_allclose(pieces[1].smooth, np.diff(TIMES).min(), rtol=1e-14, atol=0)
+    for t in [*TIMES[1:-1], *(0.5 * np.add(TIMES[1:], TIMES[:-1]))]:
+        assert_array_equal(pieces[1].at(t).value, inputs.at(t).value)
+
+
+@pytest.mark.parametrize(("count", "cuts"), [(MOST_CUTS - 2, True), (MOST_CUTS + 2, False)])
+def test_kinks_of_a_record_cut_nothing(count: int, cuts: bool) -> None:
+    times = np.linspace(0.0, 0.5, count).tolist()
+    values = [[(-1.0) ** k, 0.0, 0.0] for k in range(count)]
+    pieces = moving(table(times, values)).pieces(1.0)
+    kinks = [time for piece in pieces for time in piece.kinks]
+    assert len(pieces) == (count if cuts else 1)
+    assert kinks == ([] if cuts else times[1:])
+
+
+def test_jumps_of_a_record_cut_all_the_same() -> None:
+    times = np.linspace(0.0, 0.5, 2 * MOST_CUTS).tolist()
+    values = [[float(k), 0.0, 0.0] for k in range(len(times))]
+    pieces = moving(table(times, values, "step")).pieces(1.0)
+    assert len(pieces) == len(times)
+
+
+def test_a_jump_of_another_input_cuts_between_knots() -> None:
+    jump = {**table([0.0, 0.55], [[0, 0, 0], [1, 0, 0]], "step"), "input": "weight.acceleration"}
+    pieces = moving(CUBIC, jump).pieces(0.8)
+    assert 0.55 in [piece.start for piece in pieces]
+    inside = [(piece.start, time, piece.end) for piece in pieces for time in piece.kinks]
+    assert all(start < time < end for start, time, end in inside)
+    assert [time for _, time, _ in inside] == [time for time in TIMES[1:-1] if time != 0.55]
 
 
 def test_knots_on_a_line_cut_nothing() -> None:

@@ -146,7 +146,7 @@ def test_gauss_is_refused_for_supports() -> None:
 def test_start_off_a_support_is_refused() -> None:
     """Nothing is moved there in silence."""
     message = refused(held(simulation=asked(start="unloaded")))
-    assert "simulation.start: supports or joints are open by 0.2 (over the length)" in message
+    assert "simulation.start: supports or joints are open by 0.2 (of the length, or rad)" in message
 
 
 def test_base_that_starts_with_a_speed_is_refused_in_a_loop() -> None:
@@ -260,3 +260,27 @@ def test_a_start_that_is_refused_takes_no_step() -> None:
     with pytest.raises(SceneError, match="open by"):
         simulate(moving_model(scene), progress=steps.append)
     assert steps == []
+
+
+def test_a_rod_that_merely_falls_is_not_warned_of_waves() -> None:
+    free = {**IN_SPACE, "base": {"position": [0, 0, 0], "free": True}}
+    simulation = asked(start="unloaded", duration=0.1)
+    falls = simulated(table(free, gravity(9.81), accuracy=FEW, simulation=simulation))
+    assert falls.warnings == ()
+    pushed = simulated(table(free, at_tip(force=[1.0, 0.0, 0.0]), accuracy=FEW, simulation=simulation))
+    assert len(pushed.warnings) == 1
+    assert "out of balance" in pushed.warnings[0]
+
+
+def test_modes_that_are_never_tried_count_by_the_last_coefficients_there_are() -> None:
+    """A rod that is hardly bent has the same modes on the second level: their distance is rounding, not an error."""
+    lifted = {
+        "input": "rod.base.position",
+        "amplitude": [0.0, 0.0, 0.01],
+        "frequency": 0.02,
+        "wave": "one_minus_cosine",
+    }
+    damped = {"damping": {"retardation_time": 0.01}}
+    motion = simulate(scene_from_dict(table(damped, motions=[lifted], simulation=asked(duration=1.0))))
+    assert motion.converged, motion.message
+    assert 1e-12 < motion.error_estimate < 1e-4

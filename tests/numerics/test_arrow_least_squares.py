@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import scipy.optimize
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, Fit, FitOutcome, FitSettings, Limits
@@ -203,6 +203,16 @@ def test_iterations_that_run_out_are_told(decays: Decays) -> None:
     start, own = np.array([0.3, 0.0]), np.ones((4, 1))
     few = ArrowFit(decays, free(2), free(1), Loss(), FitSettings(iterations=2))
     assert few.run(start, own, decays.point(start, own)).outcome is FitOutcome.MAX_ITERATIONS
+
+
+def test_steps_that_lead_nowhere_are_told(decays: Decays, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search ends where it is, which is no least misfit."""
+    start, own = np.array([0.3, 0.0]), np.ones((4, 1))
+    monkeypatch.setattr(decays, "at", lambda shared, own, near: None)
+    ended = ArrowFit(decays, free(2), free(1)).run(start, own, decays.point(start, own))
+    assert ended.outcome is FitOutcome.STALLED
+    assert_array_equal(ended.shared, start)
+    assert_array_equal(ended.own, own)
 
 
 def test_what_is_positive_changes_by_half_in_a_step() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from moving import (
@@ -529,3 +531,35 @@ def test_motion_that_crawls_is_given_up_by_name() -> None:
     assert integration.outcome is StepOutcome.TOO_MANY_STEPS
     assert 900 < integration.statistics.steps < 1100
     assert 0.0 < integration.end.time < 1e-2
+
+
+# Kinks that steps reach over
+
+
+def pulse_force(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+    """An oscillator that rests until a triangular pulse of 2 ms."""
+    return -x + np.interp(t, [0.499, 0.5, 0.501], [0.0, 100.0, 0.0])
+
+
+PULSED = explicit(pulse_force, lambda t, x, v: -np.eye(1), lambda t, x, v: np.zeros((1, 1)))
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_a_pulse_between_the_stages_is_seen_at_its_kinks(tolerance: float) -> None:
+    start = start_at(PULSED, np.zeros(1), np.zeros(1))
+    overlooked = controlled(PULSED, start, 1.0, tolerance)
+    assert_allclose(overlooked.end.x, 0.0, rtol=0, atol=1e-12)
+    seen = controlled(replace(PULSED, kinks=(0.499, 0.5, 0.501)), start, 1.0, tolerance)
+    # An impulse of 0.1 at t = 0.5.
+    assert_allclose(seen.end.x, 0.1 * np.sin(0.5), rtol=0, atol=10.0 * tolerance)
+    assert len(seen.steps) < 100
+
+
+def test_kinks_that_tell_nothing_new_cost_no_step() -> None:
+    start = start_at(DUFFING, np.array([0.5]), np.zeros(1))
+    plain = controlled(DUFFING, start, 3.0, 1e-6)
+    kinks = tuple(np.linspace(0.0, 3.0, 301))
+    kinked = controlled(replace(DUFFING, kinks=kinks), start, 3.0, 1e-6)
+    # The force between the stages is smooth, and missed by the order of the stages.
+    assert len(kinked.steps) <= 1.5 * len(plain.steps)
+    assert_allclose(kinked.end.x, plain.end.x, rtol=0, atol=1e-5)

@@ -86,7 +86,7 @@ def test_turn_matrix_vs_taylor_matrices(admitted, breaks, nodes, transport):
 def test_node_matrix_vs_shape_functions_at_the_nodes(breaks):
     basis = strain_basis(rod(REISSNER), modes=4, nodes=6, breaks=breaks)
     for c in basis.columns:
-        matrix = basis.node_matrix(c)
+        matrix = basis.node_matrices[c]
         assert_allclose(matrix.unfolded.full(), basis.at_nodes[c], rtol=0, atol=1e-14)
         assert matrix.half.nnz() <= 4 * (len(breaks) - 1) * 4
 

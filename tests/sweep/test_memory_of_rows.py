@@ -64,7 +64,7 @@ def rows_take_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def peak() -> Iterator[Any]:
+def peak(usual_garbage: None) -> Iterator[Any]:
     """The most bytes that Python had from a call on, beside those that it had before."""
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]

@@ -316,6 +316,24 @@ def test_connections_are_bounded(server: RobotServer) -> None:
     assert status == 200
 
 
+def test_a_signal_while_a_connection_begins_stops_the_server(
+    server: RobotServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its thread may have served the connection, and closed it, by the time that the signal is heard."""
+    start = threading.Thread.start
+
+    def start_and_interrupt(thread: threading.Thread) -> None:
+        start(thread)
+        thread.join()
+        raise KeyboardInterrupt
+
+    with RobotServer(server.desk.session) as interrupted:
+        socket.create_connection((HOST, interrupted.server_port), timeout=30).close()
+        monkeypatch.setattr(threading.Thread, "start", start_and_interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            interrupted.handle_request()
+
+
 def test_a_page_that_is_closed_while_it_waits_is_no_fault(
     server: RobotServer, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,7 +1,7 @@
 /* How inputs move over a communication step.
 
-   Loads are held: they are all along what was given. What moves rods or prescribes a length needs rates and
-   accelerations, and the importer gives a value for the end of each communication step alone. The rate at the end of a
+   Loads move in a straight line from their value at its start to the one that was given: held at one of the two, they
+   would be late or early by half a step. What moves rods or prescribes a length needs rates and accelerations, and the importer gives a value for the end of each communication step alone. The rate at the end of a
    step is that of the parabola through the last three values; the first step begins at rest, and its parabola without a
    rate. Two accelerations, one in each half of the step, lead from value and rate at its start to those at its end. So
    neither values nor rates jump; on a smooth path they are right to the third and to the second power of the step. */
@@ -38,11 +38,11 @@ static double rate_at_end(const snapshot *held, int input, double duration) {
 static void inputs_on(const course *way, double time, int is_second_half, moving_inputs *at) {
   const double left = way->duration - time;
   for (int i = 0; i < FMU_INPUTS; i++) {
-    at->value[i] = way->to[i];
-    at->rate[i] = 0;
+    const double mean_rate = (way->to[i] - way->from[i]) / way->duration;
+    at->value[i] = way->from[i] + time * mean_rate;
+    at->rate[i] = mean_rate;
     at->acceleration[i] = 0;
     if (!MOVES[i]) continue;
-    const double mean_rate = (way->to[i] - way->from[i]) / way->duration;
     const double sooner = 4 * (mean_rate - way->from_rate[i]) / way->duration;
     const double mean = (way->to_rate[i] - way->from_rate[i]) / way->duration;
     if (is_second_half) {

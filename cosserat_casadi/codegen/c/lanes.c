@@ -107,6 +107,7 @@ static void end_correction(row *own) {
     own->state = WAITS_FOR_RATE;
   } else {
     accept_next(&own->now);
+    own->now.has_jacobian = result->jacobians > 0;
     own->info.status = SOLVER_CONVERGED;
     own->info.residual_norm = result->residual_norm;
     own->info.load_factor = 1;
@@ -206,7 +207,8 @@ static void after_resolution(row *own) {
   own->info.status = within_limits(own->info.status, own->x, own->inputs, own->work);
 #ifdef SOLVER_MISSING
   if (own->info.status == SOLVER_CONVERGED) {
-    own->info.error_estimate = estimated_error(own->x, own->inputs, own->work);
+    updated_jacobian *jacobian = own->now.has_jacobian ? own->now.jacobian : 0;
+    own->info.error_estimate = estimated_error(own->x, own->inputs, jacobian, own->work);
   }
 #endif
   *own->ended = own->info;

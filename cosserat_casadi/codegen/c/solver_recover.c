@@ -61,5 +61,5 @@ solver_status solver_recover(const real *inputs, real *x, solver_memory *memory,
   memory->step = stalled ? 0 : next_step(&end);
   found.status = stalled ? SOLVER_LOAD_STALLED : SOLVER_LOST_TRACK;
   if (found.load_factor == 1) found.status = SOLVER_CONVERGED;
-  return finish(x, inputs, &found, info, work);
+  return finish(x, inputs, 0, &found, info, work);
 }

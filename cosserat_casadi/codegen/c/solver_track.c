@@ -52,7 +52,7 @@ static solver_status reach(const solver_memory *memory, const solver_options *op
   if (!correct(&limits, inputs, x, work, found) && !follow_last_turn(memory, options, inputs, x, work, found)) {
     return SOLVER_LOST_TRACK;
   }
-  return finish(x, inputs, found, 0, work);
+  return finish(x, inputs, 0, found, 0, work);
 }
 
 /* The end of a turn that has no solution: of what x is, for these inputs. */

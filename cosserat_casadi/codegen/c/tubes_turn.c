@@ -77,7 +77,7 @@ solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, s
   const int is_resolved = end != SOLVER_UNRESOLVED && end != SOLVER_NOT_FINITE;
   if (end == SOLVER_CONVERGED) found.determinant = tubes_determinant(x, inputs, work);
   if (is_cold && is_resolved && !(found.determinant > 0) && solve_with_care(inputs, x, work, &found)) {
-    end = finish(x, inputs, &found, &found, work);
+    end = finish(x, inputs, 0, &found, &found, work);
     found.determinant = tubes_determinant(x, inputs, work);
   }
   if (info && end == SOLVER_CONVERGED) found.error_estimate = estimated_error(x, inputs, work);

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import SOLVED, CompiledAnswer, Info, answer_words
+from cosserat_casadi.codegen.compiled_results import SOLVED, Info, JudgedAnswer, answer_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
@@ -53,8 +53,8 @@ class ContactInC(ctypes.Structure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompiledContactSolution(CompiledAnswer):
-    """What the solver in C found.
+class CompiledContactSolution(JudgedAnswer):
+    """What the solver in C found; ``error_estimate`` is None, since a library in exact contact makes no estimate.
 
     Attributes:
         arrangement: number of the arrangement of contacts, in the order of the manifest.

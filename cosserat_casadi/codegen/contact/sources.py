@@ -76,6 +76,12 @@ LOOKED_ALONG = 1e-2
 GOLDEN_SECTIONS = 24
 """Golden sections to where a gap is least between three sections."""
 
+STRIDE = 1e-3
+"""Way of a section between two looks on the way of a step, relative to the length of the rod."""
+
+MOST_LOOKS = 400
+"""Most such looks."""
+
 SHORTER = 0.7
 """Share of a line of contact that stays where a rod curls up, as in contact_search.py."""
 
@@ -187,8 +193,8 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "shortest_element": contact_state.SHORTEST,
         "longest_way": LONGEST_WAY,
         "min_step": MIN_STEP,
-        "stride": passing_through.STRIDE,
-        "most_looks": passing_through.MOST_LOOKS,
+        "stride": STRIDE,
+        "most_looks": MOST_LOOKS,
         "deep": passing_through.DEEP,
         "vanished": VANISHED,
         "fastest": FASTEST,

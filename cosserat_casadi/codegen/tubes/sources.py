@@ -136,6 +136,7 @@ def _words(
         "first": 1.0,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
+        "kept_steps": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
         **ROWS_OF_INPUTS,

@@ -36,7 +36,9 @@ def with_error_in_contact(
         return solution
     scene = without_contacts(solution.model.scene)
     modes = signal_modes(scene)
-    grids = {name: enriched(chosen, modes) for name, chosen in solution.model.discretisation.items()}
+    grids = {
+        name: enriched(chosen, modes, meets_obstacles=True) for name, chosen in solution.model.discretisation.items()
+    }
     finer = solve_contact(scene, Grids(grids), values, start=solution, newton=newton)
     if finer.converged and same_contacts(solution, finer):
         return with_tolerance_note(with_contact_error(solution, finer))

@@ -7,7 +7,7 @@ without a state that holds, it says so. See docs/contact.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -192,11 +192,14 @@ class Settling:
         """Abscissae inside each rod at which lines of contact have seams, by name."""
         return load_sections(self.scene)
 
-    def run(self, guesses: Sequence[tuple[ContactState, Solution]]) -> tuple[ContactEquilibrium | None, bool]:
+    def run(
+        self, guesses: Sequence[tuple[ContactState, Solution]], admits: Callable[[Solution], bool]
+    ) -> tuple[ContactEquilibrium | None, bool]:
         """Try states until one holds.
 
         Args:
             guesses: the first ones, the likeliest first, each with a shape to start from.
+            admits: whether the rods may have come to a shape; Newton's method may lead behind an obstacle.
 
         Returns:
             the state that holds, or the last one that was solved; whether it holds.
@@ -206,7 +209,7 @@ class Settling:
         last: ContactEquilibrium | None = None
         while waiting and len(tried) < MOST_STATES:
             candidate, start = waiting.pop(0)
-            candidate = candidate.split(self.sections)
+            candidate = candidate.apart.split(self.sections)
             if not candidate.in_order or any(_alike(candidate, other) for other in tried):
                 continue
             tried.append(candidate)
@@ -217,8 +220,10 @@ class Settling:
                 waiting = [(other, start) for other in beyond] + waiting
                 waiting += [(other, start) for other in otherwise(candidate, self.sections)]
                 continue
-            last = found
             others = list(next_states(found, self.tolerance))
+            if not others and not admits(found.solution):
+                continue
+            last = found
             if not others:
                 return found, True
             # What follows from a state that was solved comes before what was only thought of.

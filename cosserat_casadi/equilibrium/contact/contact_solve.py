@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import combinations, product
+from math import inf
 
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
@@ -62,27 +64,28 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        found, holds = settling.run([(state_in(start.model.scene), start)])
-        if found is not None and holds and not passes_through(start, found.solution):
+        found, holds = settling.run(
+            [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
+        )
+        if found is not None and holds:
             return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
     settling.iterations += cushioned.iterations
-    if not cushioned.converged:
-        # Short of the full load there is nothing whose contacts could be found.
-        return replace(cushioned, iterations=settling.iterations)
     first = first_state(cushioned)
-    found, holds = settling.run(_guesses(cushioned, first))
-    if found is None:
-        found = settling.solve(ContactState(()), cushioned)
+    # Where thin bars cut through their cushions before the loads are full, the contacts there may hold all the same.
+    guesses = _guesses(cushioned, first) if cushioned.converged else [(first, cushioned)]
+    found, holds = settling.run(guesses, admits=lambda shape: not passes_through(cushioned, shape, deepest=inf))
+    if not cushioned.converged and not holds:
+        return replace(cushioned, iterations=settling.iterations)
     if found is None:
         unsettled = Outcome.CONTACT_UNSETTLED
-        message = unsettled.value + _over_joints(bare, first)
+        message = unsettled.value + _why_unsettled(bare, guesses)
         return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=message)
     solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
     if solution.converged and PATH_OF_ENERGY in cushioned.message:
         return replace(solution, message=solution.message + PATH_OF_ENERGY)
     if not holds:
-        return replace(solution, message=solution.message + _over_joints(bare, first))
+        return replace(solution, message=solution.message + _why_unsettled(bare, guesses))
     return solution
 
 
@@ -93,6 +96,30 @@ def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactStat
     if sharp is None:
         return [rough]
     return [*((state, sharp.shape) for state in likely_states(sharp)), rough]
+
+
+def _why_unsettled(scene: scenes.Scene, guesses: Sequence[tuple[ContactState, Solution]]) -> str:
+    """A sentence on contact of a kind that the search does not know; nothing where there is none."""
+    for state, _ in guesses:
+        sentence = _over_joints(scene, state) or _on_two_obstacles(state)
+        if sentence:
+            return sentence
+    return ""
+
+
+def _on_two_obstacles(state: ContactState) -> str:
+    """A sentence on a rod that touches two obstacles at one place; nothing where none does."""
+    of_rods = [touch for touch in state.touches if not touch.of_body]
+    for first, second in combinations(of_rods, 2):
+        same_rod = first.owner == second.owner
+        together = second.start - first.end < NEAR
+        if same_rod and together and first.obstacle != second.obstacle:
+            return (
+                f" {first.owner!r} touches {first.obstacle!r} and {second.obstacle!r} together near "
+                f"X = {second.start:.2g}: exact contact with two obstacles at one section is not found. Give the "
+                "obstacles a width, m."
+            )
+    return ""
 
 
 def _over_joints(scene: scenes.Scene, state: ContactState) -> str:

@@ -232,10 +232,19 @@ class ContactState:
             first = last + count
 
     @property
+    def apart(self) -> ContactState:
+        """The contacts that do not touch where a longer one of the same rod does, or one before it; tips may."""
+        kept: list[Touch] = []
+        for touch in sorted(self.touches, key=lambda touch: touch.start - touch.end):
+            if touch.of_body or all(_are_apart(touch, other) for other in kept if other.owner == touch.owner):
+                kept.append(touch)
+        return ContactState.of(kept)
+
+    @property
     def in_order(self) -> bool:
         """Whether the places of each rod follow each other between base and tip, a little apart."""
         for rod in {touch.owner for touch in self.touches}:
-            ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers)]
+            ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers if end != TIP)]
             gaps = np.diff(ends)
             if np.any(gaps < SHORTEST) or ends[-1] > TIP:
                 return False
@@ -348,6 +357,13 @@ def state_in(scene: scenes.Scene) -> ContactState:
         elif point.rod is not None and (point.rod, point.obstacle.name, point.at) not in of_lines:
             touches.append(Touch.point(point.obstacle.name, point.rod, point.at))
     return ContactState.of(touches)
+
+
+def _are_apart(touch: Touch, other: Touch) -> bool:
+    """Whether two contacts of one rod touch at different sections, or at the tip different obstacles."""
+    if touch.start == TIP and touch.obstacle != other.obstacle:
+        return True
+    return bool(other.end < touch.start or touch.end < other.start)
 
 
 def _order(touch: Touch) -> tuple[bool, str, Place, str]:

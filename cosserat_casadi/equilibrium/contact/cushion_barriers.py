@@ -12,14 +12,16 @@ from math import isfinite
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs
-from cosserat_casadi.equilibrium.contact.passing_through import LookedAt, ball_is_inside_between, is_inside_between
+from cosserat_casadi.equilibrium.contact.passing_through import (
+    MIDDLE,
+    LookedAt,
+    ball_is_inside_between,
+    is_inside_between,
+)
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.outcome import Outcome
-
-MIDDLE = 0.7
-"""Share of the radius of a bar or ball to which a rod may sink in: deeper it would come out on the other side."""
 
 
 @dataclass(frozen=True)

@@ -72,9 +72,6 @@ HARDER = 10.0
 MOST_STIFFENINGS = 3
 """Times that cushions are made stiffer where rods sink in deeper."""
 
-LONGEST_STEP = 0.15
-"""Longest step of the continuation: a rod must not jump through an obstacle."""
-
 
 @dataclass(frozen=True)
 class Pressure:
@@ -191,7 +188,7 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         values: inputs by name.
         progress: told the share of the load path that is done.
     """
-    settings = ContinuationSettings(longest=LONGEST_STEP)
+    settings = ContinuationSettings()
     found = _under_growing_loads(cushioned(scene), values, settings, progress)
     factor = HARDER
     while (

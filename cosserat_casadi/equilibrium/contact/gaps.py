@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -20,19 +20,31 @@ DENSE = np.linspace(0.0, 1.0, 801)
 
 
 def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
-    """Every rod with every obstacle that it touches exactly, if at all."""
+    """Every rod with every obstacle that it touches exactly, if at all; of obstacles that coincide with the first."""
     for rod in scene.rods:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name) and not obstacle.is_smooth:
-                yield rod.name, obstacle
+        concerned = [obstacle for obstacle in scene.obstacles if obstacle.concerns(rod.name) and not obstacle.is_smooth]
+        for obstacle in _distinct(concerned):
+            yield rod.name, obstacle
 
 
 def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.ObstacleRecord]]:
     """Every body with every obstacle that it touches exactly, if at all, as a ball of its radius about its origin."""
     for body in scene.bodies:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns_body(body.name) and not obstacle.is_smooth:
-                yield body, obstacle
+        concerned = [
+            obstacle for obstacle in scene.obstacles if obstacle.concerns_body(body.name) and not obstacle.is_smooth
+        ]
+        for obstacle in _distinct(concerned):
+            yield body, obstacle
+
+
+def _distinct(obstacles: Sequence[scenes.ObstacleRecord]) -> Iterator[scenes.ObstacleRecord]:
+    """Obstacles without copies at the place of an earlier one: how the two share the force would not be known."""
+    shapes: list[dict[str, object]] = []
+    for obstacle in obstacles:
+        shape = obstacle.model_dump(exclude={"name", "rods", "bodies"})
+        if shape not in shapes:
+            shapes.append(shape)
+            yield obstacle
 
 
 def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:

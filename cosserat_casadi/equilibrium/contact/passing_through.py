@@ -2,10 +2,14 @@
 
 A solve that starts from a solution knows its shape alone: where inputs change much, Newton's method may end behind an
 obstacle, in an equilibrium that the rods could not have come to.
+
+Sections move in straight lines. A distance changes by no more than the way, so that a part of the rod and of the way is
+free of the obstacle where the distance in its middle is larger than the part is wide; a part that is not is halved.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -30,14 +34,14 @@ from cosserat_casadi.rod.properties import RodProperties
 SECTIONS = DENSE
 """Abscissae that are looked at."""
 
-STRIDE = 1e-3
-"""Way of a section between two looks, relative to the length of the rod: thinner obstacles may be missed."""
-
-MOST_LOOKS = 400
-"""Most looks on the way."""
-
 DEEP = 1e-3
 """Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
+
+MIDDLE = 0.7
+"""Share of the radius of a bar or ball to which a rod may sink in: deeper it would come out on the other side."""
+
+FINEST = 0.25
+"""Width of the smallest parts, relative to the depth that is admitted: they miss no way through the middle."""
 
 
 @dataclass(frozen=True)
@@ -73,17 +77,23 @@ class LookedAt:
         return self.model.discrete.rods[self.rod].grid.interpolation_matrix(SECTIONS)
 
 
-def passes_through(before: Solution, after: Solution) -> bool:
-    """Whether a section or a body is inside an obstacle on the straight way from one shape to the other."""
+def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> bool:
+    """Whether a section or a body is inside an obstacle on the straight way from one shape to the other.
+
+    Args:
+        before: a shape.
+        after: another, of the same scene.
+        deepest: depth on the way, as :func:`is_inside_between` takes it.
+    """
     for rod, obstacle in pairs(after.model.scene):
         start = seen_sections(before, rod, obstacle, SECTIONS)
         end = seen_sections(after, rod, obstacle, SECTIONS)
-        if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end):
+        if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end, deepest):
             return True
     for body, obstacle in body_pairs(after.model.scene):
         length = after.model.discrete.body_frame(body.name).length
         way = (before.body(body.name).position, after.body(body.name).position)
-        if ball_is_inside_between(obstacle, ball_radius(body), length, *way):
+        if ball_is_inside_between(obstacle, ball_radius(body), length, *way, deepest):
             return True
     return False
 
@@ -104,11 +114,12 @@ def ball_is_inside_between(
         length: what depths are relative to, m.
         start: position.
         end: another.
-        deepest: depth on the way up to which it is not inside.
+        deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
     """
-    way = float(np.linalg.norm(end - start))
-    gaps = ball_gaps(obstacle, radius, start + _shares(way, length)[:, None] * (end - start))
-    return bool(gaps.min() < -deepest * length)
+    admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
+    # A stretch without length.
+    ends = (np.repeat(start, 2, axis=0), np.repeat(end, 2, axis=0))
+    return _sinks(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
 
 
 def is_inside_between(
@@ -125,28 +136,53 @@ def is_inside_between(
         properties: of the rod.
         start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m.
         end: others, likewise.
-        deepest: depth on the way, relative to the length of the rod, up to which it is not inside.
+        deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
+            :data:`MIDDLE` of the radius of a bar or ball.
     """
-    gaps_at_start = section_gaps(obstacle, properties, start, SECTIONS)
-    gaps_at_end = section_gaps(obstacle, properties, end, SECTIONS)
-    ways = np.linalg.norm(end - start, axis=1)
-    # A distance changes by no more than the way: on a shorter one nothing can have come between.
-    doubtful = ways > np.maximum(gaps_at_start, 0.0) + np.maximum(gaps_at_end, 0.0)
-    if not doubtful.any():
-        return False
-    shares = _shares(float(ways[doubtful].max()), properties.length)
-    positions = start[doubtful] + shares[:, None, None] * (end - start)[doubtful]
-    X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
-    gaps = section_gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
-    return bool(gaps.min() < -deepest * properties.length)
+    admitted = min(deepest * properties.length, MIDDLE * obstacle.thickness / 2)
+    return _sinks(lambda positions, X: section_gaps(obstacle, properties, positions, X), start, end, SECTIONS, admitted)
 
 
-def _shares(way: float, length: float) -> FloatArray:
-    """Shares of a way, without its ends, at which is looked, shape (looks,).
+def _sinks(
+    gaps_at: Callable[[FloatArray, FloatArray], FloatArray],
+    start: FloatArray,
+    end: FloatArray,
+    X: FloatArray,
+    admitted: float,
+) -> bool:
+    """Whether a gap is below −admitted on the straight way of sections from their positions to others.
 
     Args:
-        way: its length, m.
-        length: length of the rod or body that the way is relative to, m.
+        gaps_at: gaps, m, at positions of shape (k, 3) with their abscissae.
+        start: positions at X, between which the rod is straight, shape (k, 3), m.
+        end: others, likewise.
+        X: abscissae, shape (k,).
+        admitted: depth, m.
     """
-    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
-    return np.linspace(0.0, 1.0, looks + 2)[1:-1]
+    ways = np.linalg.norm(end - start, axis=1)
+    stretches = np.maximum(*(np.linalg.norm(np.diff(positions, axis=0), axis=1) for positions in (start, end)))
+    first = np.arange(len(X) - 1)
+    # Middle and width of each part, in the number of the section and in the share of the way.
+    section, share = first + 0.5, np.full(len(first), 0.5)
+    along, across = np.ones(len(first)), np.ones(len(first))
+    while len(first):
+        weight = (section - first)[:, None]
+        before = (1 - weight) * start[first] + weight * start[first + 1]
+        after = (1 - weight) * end[first] + weight * end[first + 1]
+        abscissae = X[first] + weight[:, 0] * (X[first + 1] - X[first])
+        gaps = gaps_at(before + share[:, None] * (after - before), abscissae)
+        if gaps.min() < -admitted:
+            return True
+        by_section = along * stretches[first]
+        by_way = across * np.maximum(ways[first], ways[first + 1])
+        reach = (by_section + by_way) / 2
+        halved = (gaps - reach < -admitted) & (reach > FINEST * admitted)
+        longer = (by_section > by_way)[halved]
+        first, section, share, along, across = (part[halved] for part in (first, section, share, along, across))
+        along = np.where(longer, along / 2, along)
+        across = np.where(longer, across, across / 2)
+        by_half = np.where(longer, along / 2, 0.0), np.where(longer, 0.0, across / 2)
+        first, along, across = (np.tile(part, 2) for part in (first, along, across))
+        section = np.concatenate([section - by_half[0], section + by_half[0]])
+        share = np.concatenate([share - by_half[1], share + by_half[1]])
+    return False

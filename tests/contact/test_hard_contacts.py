@@ -1,0 +1,188 @@
+"""Contacts that were once missed, entered or not settled: thin bars, grooves, planes that coincide, held rods."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, build, discretise, parse_scene, solve
+from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
+from cosserat_casadi.equilibrium.contact.cushions import cushioned
+from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
+from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, is_inside_between
+from cosserat_casadi.equilibrium.load_path import load_path
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.numerics.continuation import ContinuationSettings, PathPoint, follow
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.scene.obstacle_records import Capsule
+
+DENSE = np.linspace(0.0, 1.0, 4001)
+
+HEAD = "schema = 1\naccuracy = { tolerance = 1e-6 }\n"
+
+PLANAR = """
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_y = 1.0 }
+linear_density = 0.1019367991845056
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+"""
+
+SPATIAL = PLANAR.replace('"planar"', '"kirchhoff"').replace(
+    "{ bending_y = 1.0 }", "{ bending_x = 1.0, bending_y = 1.0, torsion = 0.8 }"
+)
+
+
+def push(force: float) -> str:
+    return f'[[loads]]\nname = "push"\nkind = "tip_wrench"\nrod = "rod"\nforce = [0.0, 0.0, {force}]\n'
+
+
+def weight(acceleration: float, sideways: float = 0.0) -> str:
+    return f'[[loads]]\nname = "weight"\nkind = "gravity"\nacceleration = [0.0, {sideways}, {acceleration}]\n'
+
+
+def bar(name: str, x: float, z: float, radius: float) -> str:
+    ends = f"from = [{x}, -2.0, {z}]\nto = [{x}, 2.0, {z}]\n"
+    return f'[[obstacles]]\nname = "{name}"\nkind = "capsule"\n{ends}radius = {radius}\n'
+
+
+def plane(name: str, z: float, normal: tuple[int, int, int] = (0, 0, 1)) -> str:
+    return f'[[obstacles]]\nname = "{name}"\nkind = "plane"\npoint = [0, 0, {z}]\nnormal = {list(normal)}\n'
+
+
+def clamped_end(x: float, z: float) -> str:
+    half = np.sqrt(0.5)
+    turned = f"quaternion = [{half}, 0.0, {half}, 0.0]\n"
+    return f'[[supports]]\nname = "s"\nrod = "rod"\nkind = "clamped"\nposition = [{x}, 0.0, {z}]\n{turned}'
+
+
+def pinned_end(x: float, z: float) -> str:
+    return f'[[supports]]\nname = "s"\nrod = "rod"\nkind = "pinned"\nposition = [{x}, 0.0, {z}]\n'
+
+
+def solved(text: str) -> Solution:
+    solution = solve(parse_scene(HEAD + text))
+    assert isinstance(solution, Solution)
+    return solution
+
+
+def on_coarse_modes(text: str) -> Solution:
+    scene = parse_scene(HEAD + text)
+    return solve(build(scene, discretise(scene, 5)), estimate_error=False)
+
+
+def check_holds(solution: Solution) -> None:
+    """No section is inside an obstacle, and no force pulls."""
+    for rod, obstacle in pairs(solution.model.scene):
+        assert gap_along(solution, rod, obstacle, DENSE).min() >= -1e-6
+    for contact in solution.contacts:
+        assert min(contact.ends) >= 0.0
+
+
+THIN_BAR = PLANAR + push(-4.0) + bar("bar", 0.6, -0.063, 0.005)
+
+
+def test_a_path_goes_on_from_points_that_it_was_let_to() -> None:
+    """Near a fold an exact correction may lead behind the bar: no step was asked for that leads there."""
+    model = cushioned(parse_scene(HEAD + THIN_BAR), 1000.0)
+    inputs = model.pack(None)
+    path = load_path(model, inputs)
+    barriers = Barriers(model, inputs)
+    met = [path.start]
+
+    def admits(before: PathPoint, after: PathPoint) -> bool:
+        assert any(np.array_equal(before[0], x) for x in met)
+        if barriers.are_between(before[0], after[0]):
+            return False
+        met.append(after[0])
+        return True
+
+    end = follow(replace(path, admits=admits), ContinuationSettings(longest=0.15))
+    assert end.outcome is Outcome.LOAD_STALLED
+
+
+@pytest.mark.parametrize("radius", [1e-2, 2e-3, 1e-4])
+def test_a_way_through_a_bar_is_seen_however_thin_it_is(radius: float) -> None:
+    scene = parse_scene(HEAD + PLANAR)
+    properties = rod_properties(scene.rods[0])
+    obstacle = Capsule.model_validate(
+        {"name": "bar", "kind": "capsule", "from": [0.6, -1, -0.3], "to": [0.6, 1, -0.3], "radius": radius}
+    )
+    straight = np.stack([SECTIONS, 0 * SECTIONS, 0 * SECTIONS], axis=1)
+    inclined = straight * [0.9, 1.0, 1.0] - np.outer(0.4 * SECTIONS, [0.0, 0.0, 1.0])
+    below = straight - [0.0, 0.0, 0.7]
+    assert not is_inside_between(obstacle, properties, straight, inclined)
+    assert is_inside_between(obstacle, properties, straight, below)
+    assert is_inside_between(obstacle, properties, inclined, below)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("height", "radius", "tip"), [(-0.063, 0.005, (0.9412, -0.2524)), (-0.06, 0.002, (0.9409, -0.2530))]
+)
+def test_a_rod_touches_a_thin_bar(height: float, radius: float, tip: tuple[float, float]) -> None:
+    """The tip is where a path of equilibria leads that begins without load."""
+    solution = solved(PLANAR + push(-4.0) + bar("bar", 0.6, height, radius))
+    assert solution.converged, solution.message
+    check_holds(solution)
+    (contact,) = solution.contacts
+    assert contact.kind == "point"
+    x, _, z = solution.tip().position[0]
+    assert_allclose([x, z], tip, rtol=0, atol=5e-5)
+    assert solution.stable
+
+
+def test_planes_that_coincide_are_as_one() -> None:
+    one = on_coarse_modes(PLANAR + weight(-49.05) + plane("t", -0.1))
+    two = on_coarse_modes(PLANAR + weight(-49.05) + plane("t", -0.1) + plane("t2", -0.1))
+    assert one.converged
+    assert two.converged, two.message
+    assert_allclose(two.tip().position, one.tip().position, rtol=0, atol=1e-12)
+    (contact,) = two.contacts
+    assert_allclose(contact.force, one.contacts[0].force, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("sideways", [3.0, pytest.param(0.0, marks=pytest.mark.slow)])
+def test_a_rod_lies_in_a_groove_as_on_a_plane(sideways: float) -> None:
+    """At the bottom of the groove; what its walls press along y they press against each other, and the weight."""
+    groove = plane("v1", -0.08, (0, 1, 1)) + plane("v2", -0.08, (0, -1, 1))
+    in_groove = solved(SPATIAL + weight(-60.0, sideways) + groove)
+    assert in_groove.converged, in_groove.message
+    check_holds(in_groove)
+    assert {contact.obstacle for contact in in_groove.contacts} == {"v1", "v2"}
+    on_plane = on_coarse_modes(PLANAR + weight(-60.0) + plane("floor", -0.08))
+    assert_allclose(in_groove.tip().position, on_plane.tip().position, rtol=0, atol=2e-5)
+    pressed = sum(contact.force for contact in in_groove.contacts)
+    total = 0.1019367991845056 * np.array([0.0, sideways, -60.0])
+    assert_allclose(pressed + total, -in_groove.base_wrench().force, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_rod_that_would_have_to_be_clamped_between_bars_is_told() -> None:
+    """Bars that touch the rod from both sides at one section hold its slope: no forces that are finite do so."""
+    between = bar("b1", 0.4, -0.05, 0.05) + bar("b2", 0.4, 0.05, 0.05)
+    solution = solved(PLANAR + push(-3.0) + between)
+    assert solution.outcome is Outcome.CONTACT_UNSETTLED
+    assert "touches 'b2' and 'b1' together near X = 0.4" in solution.message
+    assert "width" in solution.message
+
+
+@pytest.mark.slow
+def test_a_rod_that_is_clamped_at_both_ends_lies_on_a_plane() -> None:
+    solution = solved(PLANAR + weight(-46.79568387832218) + plane("t", -0.133901) + clamped_end(0.872683, 0.0992853))
+    assert solution.converged, solution.message
+    check_holds(solution)
+
+
+@pytest.mark.slow
+def test_a_rod_that_is_pinned_on_a_plane_is_resolved() -> None:
+    solution = solved(PLANAR + weight(-72.08712535182201) + plane("t", -0.127173) + pinned_end(0.766856, -0.0176784))
+    assert solution.converged, solution.message
+    check_holds(solution)
+    assert solution.error_estimate is not None
+    assert solution.error_estimate < 1e-6
