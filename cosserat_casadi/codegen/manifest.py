@@ -1,4 +1,4 @@
-"""What an exported folder holds, as data: functions, shapes, units, discretisation, sizes."""
+"""Contents of an exported folder, as data: functions, shapes, units, discretisation, sizes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ SCHEMA = 1
 """Version of the manifest that is written, and read back."""
 
 EXPORT_FIRST = "write one with cosserat export"
-"""What helps where there is no manifest."""
+"""Remedy where there is no manifest."""
 
 
 def read_manifest(folder: Path) -> Any:

@@ -1,4 +1,4 @@
-"""What the library in C needs of memory: a workspace that the caller gives, and stack."""
+"""Memory of the library in C: a workspace that the caller gives, and stack."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FRAMES = 2000
 
 
 DEFINED = re.compile(r"MADE\((\w+)\)|(\w+)\(")
-"""The name of a function where it begins; those that compute four numbers at a time are made under several names."""
+"""The name of a function where it begins; functions that compute four numbers at a time have several names."""
 
 
 def largest_room(generated: Mapping[str, str], kind: str) -> int:

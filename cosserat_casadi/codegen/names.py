@@ -30,7 +30,7 @@ stddef stdint stdio stdlib string tgmath threads time"""
 _BUILD = "all c clean edit_cache help install m package rebuild_cache test"
 
 KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
-"""Words of C and C++, and of what is linked with them, that a library may not be called."""
+"""Words of C and C++, and of linked libraries, that are no names for a library."""
 
 TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
 """Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
@@ -43,7 +43,7 @@ FUNCTIONS = tuple(table(ModelFunctions))
 
 QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
 sparsity_out work work_bytes"""
-"""What CasADi appends to the name of a function."""
+"""Endings that CasADi appends to the name of a function."""
 
 TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies"}
 """Tables of a scene whose names become part of symbols."""
@@ -51,7 +51,7 @@ TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies"}
 
 @dataclass(frozen=True)
 class Names:
-    """How an exported library and what is in it are called.
+    """Names of an exported library and of its parts.
 
     Attributes:
         name: the library, a C identifier.
@@ -69,7 +69,7 @@ class Names:
 
     @property
     def macro(self) -> str:
-        """What macros and enumerators begin with."""
+        """Beginning of macros and enumerators."""
         return self.name.upper()
 
     def function(self, word: str, owner: str | None = None) -> str:
@@ -99,9 +99,9 @@ def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_err
 
     Args:
         name: the library.
-        model: what is exported.
+        model: the exported model.
         dynamics: whether functions of motion are among them.
-        estimate_errors: whether those that estimate errors of answers are among them.
+        estimate_errors: whether the functions that estimate errors of answers are among them.
 
     Raises:
         ExportError: as :func:`library_names`.

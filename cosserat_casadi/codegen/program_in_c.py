@@ -78,7 +78,7 @@ UNUSED = -1
 """Place of an entry that has none yet."""
 
 
-class Kind(Enum):
+class UnitKind(Enum):
     """Pieces of C that steps become."""
 
     STRAIGHT = "small steps without a loop"
@@ -96,7 +96,7 @@ class Unit:
         steps: the steps.
     """
 
-    kind: Kind
+    kind: UnitKind
     steps: list[Step]
 
     @property
@@ -329,11 +329,11 @@ class _Writing:
 
     def _operands_of(self, unit: Unit) -> list[Numbers]:
         """Entries of each array that a unit reads; none of steps without a loop, which read numbers one by one."""
-        if unit.kind is Kind.STRAIGHT:
+        if unit.kind is UnitKind.STRAIGHT:
             return []
-        if unit.kind is Kind.CALLS:
+        if unit.kind is UnitKind.CALLS:
             return [self._given(unit)]
-        if unit.kind is Kind.LOOP:
+        if unit.kind is UnitKind.LOOP:
             inside = {result.numbers.tobytes() for step in unit.steps for result in step.results}
             return [numbers for numbers in unit.operands if len(numbers) > 1 and numbers.tobytes() not in inside]
         return unit.operands
@@ -341,12 +341,12 @@ class _Writing:
     # Units
 
     def _write_unit(self, k: int, unit: Unit) -> None:
-        if unit.kind is Kind.STRAIGHT:
+        if unit.kind is UnitKind.STRAIGHT:
             for steps in _bundles(unit.steps):
                 self._write_bundle(k, steps)
-        elif unit.kind is Kind.LOOP:
+        elif unit.kind is UnitKind.LOOP:
             self._write_loop(k, unit.steps)
-        elif unit.kind is Kind.CALLS:
+        elif unit.kind is UnitKind.CALLS:
             self._write_calls(k, unit)
         elif unit.steps[0].called:
             self._write_kernel(k, unit.steps[0])
@@ -584,7 +584,7 @@ def _units(program: Program) -> list[Unit]:
     return [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
 
 
-_Key = tuple[Kind, int]
+_Key = tuple[UnitKind, int]
 """A key that steps share which one unit may hold: the kind of unit, and its turns, its function or its step."""
 
 
@@ -597,18 +597,18 @@ def _key(step: Step, number: int, calls: Mapping[int, int]) -> _Key:
         calls: how often each function is called, by its hash.
     """
     if step.called and (calls[hash(step.function)] >= FEWEST or _stays(step)):
-        return (Kind.SINGLE, number) if _is_kernel(step) else (Kind.CALLS, hash(step.function))
+        return (UnitKind.SINGLE, number) if _is_kernel(step) else (UnitKind.CALLS, hash(step.function))
     if step.operation is not None and len(step.results[0].numbers) >= FEWEST_TURNS:
-        return Kind.LOOP, len(step.results[0].numbers)
+        return UnitKind.LOOP, len(step.results[0].numbers)
     longest = SMALL if step.called or step.operation is not None else LONGEST_PRODUCT_WITHOUT_LOOP
     if step.instructions <= longest:
-        return Kind.STRAIGHT, 0
-    return (Kind.CALLS, hash(step.function)) if step.called and not _is_kernel(step) else (Kind.SINGLE, number)
+        return UnitKind.STRAIGHT, 0
+    return (UnitKind.CALLS, hash(step.function)) if step.called and not _is_kernel(step) else (UnitKind.SINGLE, number)
 
 
 def _joins(key: _Key, operand: Numbers, made: Numbers) -> bool:
     """Whether a step may stand in the unit that computes an operand: a turn of a loop reads what that turn made."""
-    return key[0] is Kind.STRAIGHT or (key[0] is Kind.LOOP and np.array_equal(operand, made))
+    return key[0] is UnitKind.STRAIGHT or (key[0] is UnitKind.LOOP and np.array_equal(operand, made))
 
 
 def _stays(step: Step) -> bool:

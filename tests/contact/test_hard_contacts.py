@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, parse_scene, solve
 from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
 from cosserat_casadi.equilibrium.contact.cushions import cushioned
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
@@ -66,7 +66,7 @@ def pinned_end(x: float, z: float) -> str:
 
 
 def solved(text: str) -> Solution:
-    solution = solve_scene(parse_scene(HEAD + text))
+    solution = solve(parse_scene(HEAD + text))
     assert isinstance(solution, Solution)
     return solution
 

@@ -44,7 +44,8 @@ def test_as_many_outcomes_as_one_likes_have_a_style(monkeypatch: pytest.MonkeyPa
     labels = (*LABELS, *(f"outcome_{i}" for i in range(20)))
     monkeypatch.setattr("cosserat_casadi.plots.sweep_plot.LABELS", labels)
     sweep = swept(planar=True, failing=True)
-    sweep.outcomes[1:38] = np.arange(37) % len(labels)
+    # Rows without a result stay failures.
+    sweep.outcomes[1:38] = 1 + np.arange(37) % (len(labels) - 1)
     inputs = plot_sweep(sweep, "outcome").axes[1]
     assert len(inputs.collections) == len(set(sweep.outcomes.tolist())) > len(CATEGORIES)
 

@@ -360,7 +360,7 @@ def state_in(scene: scenes.Scene) -> ContactState:
 
 
 def _are_apart(touch: Touch, other: Touch) -> bool:
-    """Whether two contacts of one rod touch at sections of their own, or at the tip different obstacles."""
+    """Whether two contacts of one rod touch at different sections, or at the tip different obstacles."""
     if touch.start == TIP and touch.obstacle != other.obstacle:
         return True
     return bool(other.end < touch.start or touch.end < other.start)

@@ -38,7 +38,7 @@ def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.Obstac
 
 
 def _distinct(obstacles: Sequence[scenes.ObstacleRecord]) -> Iterator[scenes.ObstacleRecord]:
-    """Obstacles without those that are where an earlier one is: how the two share the force would not be known."""
+    """Obstacles without copies at the place of an earlier one: how the two share the force would not be known."""
     shapes: list[dict[str, object]] = []
     for obstacle in obstacles:
         shape = obstacle.model_dump(exclude={"name", "rods", "bodies"})
