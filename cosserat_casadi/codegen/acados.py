@@ -27,7 +27,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.stage import check_scalar, written
+from cosserat_casadi.codegen.stage import check_scalar
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -115,10 +115,11 @@ def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[c
     }
     symbols = [dae.x, dae.xdot, dae.u, dae.z, ca.SX.sym("t"), dae.p]
     words = ["x", "xdot", "u", "z", "t", "p"]
-    return [
-        written(ca.Function(called, symbols, [blocks[word] for word in outputs], words, list(outputs)), called)
-        for called, outputs in ((f"{name}_impl_dae_{ending}", outputs) for ending, outputs in wanted.items())
-    ]
+    functions = []
+    for ending, outputs in wanted.items():
+        results = ca.cse([blocks[word] for word in outputs])
+        functions.append(ca.Function(f"{name}_impl_dae_{ending}", symbols, results, words, list(outputs)))
+    return functions
 
 
 def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, moving: bool = False) -> Path:
