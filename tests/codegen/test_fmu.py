@@ -165,7 +165,13 @@ def test_command_writes_the_same_sources(fmu, tmp_path):
     assert written.namelist() == wanted.namelist()
     for name in written.namelist():
         if name.endswith((".c", ".h")):
-            assert written.read(name) == wanted.read(name), name
+            assert _of_model(written, name) == _of_model(wanted, name), name
+
+
+def _of_model(archive, name):
+    """A source without its first comment, where the command says of ranges what it saw, and the token made of all."""
+    _, _, text = archive.read(name).partition(b"*/")
+    return [line for line in text.splitlines() if not line.startswith(b"#define FMU_TOKEN")]
 
 
 def test_motion_vs_library(model, library, described, instance):
