@@ -342,8 +342,7 @@ class _Writing:
 
     def _write_unit(self, k: int, unit: Unit) -> None:
         if unit.kind is UnitKind.STRAIGHT:
-            for steps in _bundles(unit.steps):
-                self._write_bundle(k, steps)
+            self._write_bundle(k, unit.steps)
         elif unit.kind is UnitKind.LOOP:
             self._write_loop(k, unit.steps)
         elif unit.kind is UnitKind.CALLS:
@@ -581,7 +580,8 @@ def _units(program: Program) -> list[Unit]:
         units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
         for owner in program.origins.holders(_joined([result.numbers for result in step.results])):
             made_by[owner] = (depth, key)
-    return [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
+    in_order = [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
+    return [part for unit in in_order for part in _in_bundles(unit)]
 
 
 _Key = tuple[UnitKind, int]
@@ -628,8 +628,15 @@ def _is_kernel(step: Step) -> bool:
     return step.called and bool(not step.function.is_a("SXFunction") or step.function.find_functions(0))
 
 
+def _in_bundles(unit: Unit) -> list[Unit]:
+    """Small steps in bundles that are written together, a unit each: a bundle keeps what later ones read."""
+    if unit.kind is not UnitKind.STRAIGHT:
+        return [unit]
+    return [Unit(unit.kind, steps) for steps in _bundles(unit.steps)]
+
+
 def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
-    """Small steps in bundles that are written together."""
+    """Small steps in bundles of bounded length."""
     bundles: list[list[Step]] = [[]]
     length = 0.0
     for step in steps:

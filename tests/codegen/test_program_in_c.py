@@ -193,6 +193,14 @@ def test_a_loop_over_entries_that_are_all_alike() -> None:
     assert_same(in_c(function, "alike_in_c")[1], function, 1e-15)
 
 
+@pytest.mark.parametrize("name", ["rate", "second_derivative"])
+def test_small_steps_in_several_bundles(model: Model, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bundle keeps the numbers that later ones read."""
+    monkeypatch.setattr("cosserat_casadi.codegen.program_in_c.LONGEST_BUNDLE", 20)
+    function = FUNCTIONS[name](model)
+    assert_same(in_c(function, f"{name}_in_bundles")[1], function, 1e-13)
+
+
 def test_entries_that_lie_apart_are_gathered() -> None:
     """In a few runs, in runs of equal stride, and one by one."""
     x = ca.MX.sym("x", 20, 20)
