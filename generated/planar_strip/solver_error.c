@@ -78,8 +78,9 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   real *first = place_of_step(jacobian);
   real *second = work->correction;
   const real first_square = newton_step(jacobian, residual, first, work);
-  if (first_square == 0) {
-    memset(work->correction, 0, sizeof work->correction);
+  /* A step of what Newton has left of the balance tells nothing of the Jacobian: an update by it may be of any size. */
+  if (!(norm_of(residual) > 10 * TOLERANCE * (1 + norm_of(x)))) {
+    memcpy(work->correction, first, sizeof work->correction);
     return 0;
   }
   append_step(jacobian, first_square);

@@ -164,3 +164,18 @@ def test_estimate_that_does_not_settle_is_the_whole_length(
     compiled = load(export(robot, tmp_path / "one"))
     away = compiled.solve({"payload.force": [0.0, 2.0, 0.0]})
     assert away.error_estimate == answer_error.UNKNOWN
+
+
+def test_an_answer_that_needs_no_step_is_not_in_doubt(tmp_path: Path) -> None:
+    """Under so small a load the start is in balance to the tolerance: its rest says nothing of the Jacobian."""
+    small = scene(
+        push(force=[0.0, 0.0, 0.0]), strain="planar", accuracy={"modes": 4, "nodes": 10}, inputs=["push.force"]
+    )
+    export(build(small), tmp_path / "small")
+    compiled = load(tmp_path / "small")
+    force = np.array([2e-4, 0.0, 0.0])
+    solution = compiled.solve(force)
+    assert solution.iterations == 0
+    assert solution.error_estimate is not None
+    assert solution.error_estimate < 1e-9
+    assert compiled.error_estimate(force, solution.x) < 1e-9
