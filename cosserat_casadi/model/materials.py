@@ -33,10 +33,10 @@ FIBRE_STRAINS = (0, 1, 5)
 """Indices of the strains that stretch fibres along the rod: the two curvatures and extension."""
 
 ROUNDED = 0.1
-"""Share of a plateau's length, and of what lies before it, on each side of a corner that is rounded."""
+"""Half of the width of a rounded corner, relative to the plateau or, where that is shorter, the strain before it."""
 
 SMALLEST_BENDING = 1e-9
-"""Curvature, relative to the first point of a curve, below which its direction does not matter."""
+"""Curvature, relative to the last point of a curve, below which its direction does not matter."""
 
 
 @dataclass(frozen=True)

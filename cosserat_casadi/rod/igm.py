@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths.block_operators import stack
 from cosserat_casadi.maths.rotation import dot
@@ -19,7 +18,7 @@ from cosserat_casadi.rod.actuation import Actuation, Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
-from cosserat_casadi.rod.strain_density import StrainDensity
+from cosserat_casadi.rod.strain_density import energy_beyond_hooke
 from cosserat_casadi.rod.transport import interval_kernels
 
 
@@ -74,13 +73,7 @@ class InverseGeometricModel:
     @cached_property
     def energy_beyond_hooke(self) -> Conjugate | None:
         """Elastic energy beyond that of the Hooke tensor, J, at this shape; None of a rod that is linear."""
-        rod = self.rod
-        law = rod.properties.beyond_hooke
-        if law is None:
-            return None
-        nodes = np.arange(rod.grid.size)
-        data = law.data(rod.grid.nodes).T
-        return StrainDensity(law.density, nodes, data, of_change=True).on(self.shape)
+        return energy_beyond_hooke(self.shape)
 
     @cached_property
     def strain_functions(self) -> tuple[tuple[Matrix, Conjugate], ...]:

@@ -8,6 +8,7 @@ from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.properties import EnergyBeyondHooke
+from cosserat_casadi.rod.strain_density import energy_beyond_hooke
 
 
 def material_margin(shape: Shape) -> Matrix | None:
@@ -15,16 +16,17 @@ def material_margin(shape: Shape) -> Matrix | None:
 
     Negative where a further strain would set energy free, or where the law is not known.
     """
+    energy = energy_beyond_hooke(shape)
     rod = shape.rod
     law = rod.properties.beyond_hooke
-    if law is None:
+    if energy is None or law is None:
         return None
     nodes = rod.grid.size
-    data = as_matrix(law.data(rod.grid.nodes)).T
+    data = as_matrix(energy.quantity.data)
     hooke = as_matrix(rod.properties.hooke(rod.grid.nodes))[:, list(rod.admitted)]
     stiffness = ca.MX(hooke if hooke.shape[0] == nodes else ca.repmat(hooke, nodes, 1)).T
     kernel = section_margins(law, rod.admitted, data.shape[0]).map(nodes)
-    least: Matrix = ca.mmin(kernel(_changes(shape), data, stiffness))
+    least: Matrix = ca.mmin(kernel(energy.strain, data, stiffness))
     return least
 
 
@@ -34,18 +36,6 @@ def stress_beyond_hooke(law: EnergyBeyondHooke, data_size: int) -> ca.Function:
     data = ca.SX.sym("data", data_size)
     gradient = ca.jacobian(law.density(change, data), change).T
     return ca.Function("stress_beyond_hooke", [change, data], [ca.densify(gradient)])
-
-
-def _changes(shape: Shape) -> Matrix:
-    """Changes ξ − ξ⁰ at the nodes, 6×M."""
-    rod = shape.rod
-    none = ca.DM(1, rod.grid.size)
-    rows = [rod.change_row(shape.q, c) for c in range(6)]
-    per_coordinate = ca.vertcat(*[none if row is None else row for row in rows])
-    rates = rod.node_rates
-    if rates is not None:
-        per_coordinate = per_coordinate @ ca.diag(as_matrix(1 / rates))
-    return per_coordinate if shape.ratio is None else per_coordinate / shape.ratio
 
 
 def section_margins(law: EnergyBeyondHooke, admitted: tuple[int, ...], data_size: int) -> ca.Function:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, reciprocal
@@ -87,18 +88,22 @@ class StrainDensityOnRod(Lossless):
         return whole
 
     @cached_property
+    def strain(self) -> Matrix:
+        """Strains that the density is a function of, per length of the rod, at the nodes, 6×k."""
+        nodes = self.quantity.nodes.tolist()
+        zero = ca.DM(1, len(nodes))
+        strain = ca.vertcat(*[zero if row is None else row[nodes] for row in self._strain_rows])
+        if self._rates is None:
+            return strain
+        # Rows are per length of the grid's coordinate.
+        return strain @ ca.diag(as_matrix(1 / self._rates))
+
+    @cached_property
     def _at_nodes(self) -> tuple[Matrix, Matrix, Matrix]:
         """Density, 1×k, its gradient, 6×k, and its second derivatives column by column, 36×k, at the nodes."""
-        nodes = self.quantity.nodes.tolist()
-        rows = self._strain_rows
-        present = [c for c, row in enumerate(rows) if row is not None]
-        zero = ca.DM(1, len(nodes))
-        strain = ca.vertcat(*[zero if row is None else row[nodes] for row in rows])
-        if self._rates is not None:
-            # Rows are per length of the grid's coordinate, strains per length of the rod.
-            strain = strain @ ca.diag(as_matrix(1 / self._rates))
-        kernel = self._kernel(present).map(len(nodes))
-        density, gradient, second = kernel.call([strain, as_matrix(self.quantity.data)])
+        present = [c for c, row in enumerate(self._strain_rows) if row is not None]
+        kernel = self._kernel(present).map(len(self.quantity.nodes))
+        density, gradient, second = kernel.call([self.strain, as_matrix(self.quantity.data)])
         return density, gradient, second
 
     def _kernel(self, present: list[int]) -> ca.Function:
@@ -120,7 +125,7 @@ class StrainDensityOnRod(Lossless):
         """Reference length of each node of the span, the weight of densities per such length, ℓ w, (k,), m."""
         return self.shape.rod.reference_lengths[self.quantity.nodes]
 
-    @property
+    @cached_property
     def _strain_rows(self) -> list[Matrix | None]:
         """Strains at all nodes that the density is a function of, 1×M each; None for strains that stay zero."""
         rod = self.shape.rod
@@ -137,3 +142,13 @@ class StrainDensityOnRod(Lossless):
         if ratio is None:
             return rates
         return ratio * (ca.DM.ones(len(self.quantity.nodes)) if rates is None else as_matrix(rates))
+
+
+def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:
+    """Elastic energy of a rod beyond that of its Hooke tensor, J; None of a rod that is linear."""
+    rod = shape.rod
+    law = rod.properties.beyond_hooke
+    if law is None:
+        return None
+    data = law.data(rod.grid.nodes).T
+    return StrainDensity(law.density, np.arange(rod.grid.size), data, of_change=True).on(shape)
