@@ -153,7 +153,7 @@ TOO_SMALL = [
     ("strong", 14, 1e-4),
     ("strong", 26, 1e-8),
     ("rich", 8, 1e-7),
-    pytest.param("rich", 26, 1e-7, marks=pytest.mark.slow),
+    ("rich", 26, 1e-7),
 ]
 """Scenes and tolerances of which an estimate was too small while references knew the error of their tips alone."""
 
