@@ -77,6 +77,7 @@ MOTIONS = (
     "thrown_rod",
     "snapping_arch",
     "seaweed",
+    "swimmer",
     "dropped_rod",
     "bouncing_rod",
     "rod_hits_floor",

@@ -1,1 +1,1 @@
-"""Actuators inside a rod, which act between its sections: tendons and pressure chambers, along their routings."""
+"""Actuators inside a rod, which act between its sections: tendons, pressure chambers and muscles."""

@@ -2,7 +2,8 @@
 
 Drag is Taylor's for long bodies in a stream at any angle, −½ ρ d (C_n |v_n| v_n + π C_t |v| v_t) with the velocity v of
 the section relative to the stream and its parts across and along the tangent: G. I. Taylor, Proc. R. Soc. A 214 (1952)
-158. A speed is √(v·v + ε²), so that its derivatives are finite where nothing moves.
+158. A speed is √(v·v + ε²), so that its derivatives are finite where nothing moves. Slow flow of viscous fluids adds
+−ζ_n v_n − ζ_t v_t, resistive force theory: J. Gray and G. J. Hancock, J. Exp. Biol. 32 (1955) 802.
 
 Fluid that moves along has the kinetic energy ½ m_a |ṙ − (t·ṙ) t|² per length, that of slender bodies in a fluid at
 rest: H. Lamb, *Hydrodynamics*, 6th ed., § 124. Its force and moment are those of Lagrange's equations, so that the
@@ -44,9 +45,17 @@ class FlowLoad(Load[scenes.Flow]):
         """Force (N/m) and moment (N m/m) in world axes; the moment is that of the added mass in motion."""
         force: Matrix = ca.DM(3, 1)
         moment: Matrix = ca.DM(3, 1)
+        velocity = section.velocity - values["velocity"]
+        tangent = section.rotation[:, 2]
+        along = ca.dot(velocity, tangent) * tangent
+        across = velocity - along
         if not (is_zero(load.normal) and is_zero(load.tangential)):
+            of_normal = load.normal * _speed(across) * across
+            of_tangential = np.pi * load.tangential * _speed(velocity) * along
             diameter = section.data[0]
-            force = -load.density / 2 * diameter * self._drag(load, section, values["velocity"])
+            force = -load.density / 2 * diameter * (of_normal + of_tangential)
+        if not (is_zero(load.normal_resistance) and is_zero(load.tangential_resistance)):
+            force = force - load.normal_resistance * across - load.tangential_resistance * along
         if load.gravity is not None:
             force = force - load.density * section.data[1] * ca.vertcat(*load.gravity)
         # At rest nothing is accelerated.
@@ -74,17 +83,6 @@ class FlowLoad(Load[scenes.Flow]):
         if site.rod.diameter is None and site.rod.area is not None:
             displaced = site.rod.area(site.X)
         return stacked_rows([repeated(diameter, site.X.shape[0]), repeated(displaced, site.X.shape[0])])
-
-    @staticmethod
-    def _drag(load: scenes.Flow, section: Section, stream: Matrix) -> Matrix:
-        """C_n |v_n| v_n + π C_t |v| v_t, m²/s², 3×1."""
-        tangent = section.rotation[:, 2]
-        velocity = section.velocity - stream
-        along = ca.dot(velocity, tangent) * tangent
-        across = velocity - along
-        of_normal = load.normal * _speed(across) * across
-        of_tangential = np.pi * load.tangential * _speed(velocity) * along
-        return of_normal + of_tangential
 
 
 def _speed(velocity: Matrix) -> Matrix:

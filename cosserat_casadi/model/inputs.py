@@ -130,19 +130,21 @@ class InputLayout(StackedLayout[Input]):
 
 
 def scene_value(record: Entry, field: str) -> Numbers:
-    """An input of a load or an actuator as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
+    """An input of a load or an actuator as the scene has it, shape (1, k) or (3, k); zero where it is left out."""
     value: Any = record
     # The name of a field in an inner table has dots.
     for key in field.split("."):
         value = getattr(value, key, None)
+    components = record.inputs[field].components
     if value is None:
-        components = record.inputs[field].components
         return np.zeros((components, 1))
     if isinstance(value, int | float):
         return np.array([[float(value)]])
     if is_symbolic(value):
         return value
-    return coefficients(value)
+    # The record of a number along the rod has its coefficients, or as loads of contact do a list of one component.
+    is_one_component = components == 1 and not isinstance(value[0], tuple)
+    return coefficients((value,) if is_one_component else value)
 
 
 def input_layout(scene: scenes.Scene) -> InputLayout:

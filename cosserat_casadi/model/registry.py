@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cosserat_casadi.actuators.chamber import ChamberActuator
+from cosserat_casadi.actuators.muscle import MuscleActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
 from cosserat_casadi.loads.contact_layer import ContactLayerLoad
@@ -32,6 +33,7 @@ for shipped in (
     FlowLoad,
     TendonActuator,
     ChamberActuator,
+    MuscleActuator,
 ):
     register(shipped)
 

@@ -52,6 +52,7 @@ def signal_modes(scene: scenes.Scene) -> int:
         if isinstance(load, scenes.DistributedWrench):
             components = (*load.force, *load.moment)
             degrees += [_series_degree(component) for component in components]
+    degrees += [_series_degree(wave) for motion in scene.motions if motion.travels for wave in motion.along_the_rod]
     return max(degrees) + BEYOND
 
 

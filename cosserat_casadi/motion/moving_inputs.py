@@ -114,7 +114,8 @@ class MovingInputs:
         _refuse_unknown(layout, motions)
         self._motions = tuple(motions)
         self._slices = layout.slices
-        self._paths = tuple(_path_of(motion) for motion in motions)
+        degrees = {entry.name: entry.shape[1] for entry, _ in layout}
+        self._paths = tuple(_path_of(motion, degrees[motion.input]) for motion in motions)
         self._constant = np.array(defaults, dtype=float)
         for motion in motions:
             if motion.is_table:
@@ -227,16 +228,17 @@ class _Path(ABC):
 
 @dataclass(frozen=True)
 class _Wave(_Path):
-    """amplitude · sin(ω t + φ), or amplitude · (1 − cos(ω t + φ))."""
+    """constant + sine · sin(ω t + φ) + cosine · cos(ω t + φ), shape (entries,) each."""
 
-    amplitude: FloatArray
+    constant: FloatArray
+    sine: FloatArray
+    cosine: FloatArray
     angular_frequency: float
     phase: float
-    begins_at_rest: bool
 
     @property
     def moves(self) -> bool:
-        return bool(np.any(self.amplitude))
+        return bool(np.any(self.sine) or np.any(self.cosine))
 
     @property
     def breaks(self) -> tuple[tuple[float, int], ...]:
@@ -249,18 +251,14 @@ class _Wave(_Path):
         omega = self.angular_frequency
         sine = np.sin(omega * t + self.phase)
         cosine = np.cos(omega * t + self.phase)
-        if self.begins_at_rest:
-            value = self.amplitude * (1.0 - cosine)
-            rate = self.amplitude * omega * sine
-            return InputState(value, rate, self.amplitude * omega**2 * cosine)
-        value = self.amplitude * sine
-        rate = self.amplitude * omega * cosine
-        return InputState(value, rate, -self.amplitude * omega**2 * sine)
+        varying = sine * self.sine + cosine * self.cosine
+        rate = omega * (cosine * self.sine - sine * self.cosine)
+        return InputState(self.constant + varying, rate, -(omega**2) * varying)
 
     def values_at(self, times: FloatArray) -> FloatArray:
         angles = self.angular_frequency * times + self.phase
-        course = 1.0 - np.cos(angles) if self.begins_at_rest else np.sin(angles)
-        return np.outer(course, self.amplitude)
+        varying = np.outer(np.sin(angles), self.sine) + np.outer(np.cos(angles), self.cosine)
+        return np.asarray(self.constant + varying)
 
 
 @dataclass(frozen=True)
@@ -321,13 +319,25 @@ class _Table(_Path):
         return np.asarray(constant + s * (linear + s * (quadratic + s * cubic)))
 
 
-def _path_of(motion: InputMotion) -> _Path:
+def _path_of(motion: InputMotion, degrees: int) -> _Path:
+    """The path of a motion of an input with so many Legendre coefficients."""
     if motion.is_table:
         return _table_of(motion)
     # A wave without frequency is refused where the scene is read.
     assert motion.frequency is not None
     angular_frequency = 2 * np.pi * motion.frequency
-    return _Wave(motion.amplitudes, angular_frequency, motion.phase, motion.wave == "one_minus_cosine")
+    amplitude = motion.amplitudes
+    zero = np.zeros_like(amplitude)
+    if motion.travels:
+        # sin(ω t + φ − α) = sin(ω t + φ) cos α − cos(ω t + φ) sin α, with α = 2π X/wavelength.
+        cosine, sine = np.zeros((2, degrees))
+        cosine[: motion.degrees], sine[: motion.degrees] = motion.along_the_rod
+        of_sine = np.outer(cosine, amplitude).ravel()
+        of_cosine = -np.outer(sine, amplitude).ravel()
+        return _Wave(np.zeros_like(of_sine), of_sine, of_cosine, angular_frequency, motion.phase)
+    if motion.wave == "one_minus_cosine":
+        return _Wave(amplitude, zero, -amplitude, angular_frequency, motion.phase)
+    return _Wave(zero, amplitude, zero, angular_frequency, motion.phase)
 
 
 def _table_of(motion: InputMotion) -> _Table:

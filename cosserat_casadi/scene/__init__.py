@@ -5,7 +5,7 @@ A new kind is a record that derives from the one of its family, and a class of t
 """
 
 from cosserat_casadi.scene.accuracy import Accuracy, RodDiscretisation
-from cosserat_casadi.scene.actuator_records import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
+from cosserat_casadi.scene.actuator_records import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Muscle, Tendon
 from cosserat_casadi.scene.constraint_records import (
     JOINTS,
     SUPPORTS,
@@ -108,6 +108,7 @@ __all__ = [
     "Material",
     "Measurement",
     "MeasurementRecord",
+    "Muscle",
     "NamedNumbers",
     "Obstacle",
     "ObstacleRecord",

@@ -1,4 +1,4 @@
-"""Actuators: tendons and pressure chambers, led along a rod.
+"""Actuators: tendons, pressure chambers and muscles along a rod.
 
 A kind is a record here and a class in `actuators/` that gives the quantity its effort works on.
 """
@@ -13,8 +13,19 @@ from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJso
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.load_records import force_or_moment
 from cosserat_casadi.scene.records import Entry, Record, refusal
-from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, PowerComponent, Share, listed
+from cosserat_casadi.scene.values import (
+    LegendreComponent,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    PowerComponent,
+    Share,
+    Vector,
+    listed,
+)
 
 
 class ActuatorRecord(Entry):
@@ -195,5 +206,50 @@ offset = [0.0, 1.0e-3]
     span: Span = Field((0.0, 1.0), description="abscissae X between which the channel runs")
 
 
+@ACTUATORS.register
+class Muscle(ActuatorRecord):
+    """An active moment and force in the sections of a rod: activation × profile(X) × (moment, force)."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "bender"
+kind = "muscle"
+rod = "finger"
+activation = 0.5
+moment = [0, 2.0e-3, 0]
+profile = { base = 1.0, tip = 0.2 }
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "activation": InputField("1", 1),
+        "profile": InputField("1", 1, polynomial=True, on_request=True),
+    }
+
+    kind: Literal["muscle"] = Field(description="active moment and force in the sections of a rod")
+    rod: str = Field(description="name of the rod that it bends, twists, shears or stretches")
+    activation: Number = Field(1.0, description="what moment and force are multiplied by, without unit")
+    moment: Vector = Field(
+        (0.0, 0.0, 0.0), description="moment in section axes that bends and twists the rod at activation 1, N m"
+    )
+    force: Vector = Field(
+        (0.0, 0.0, 0.0), description="force in section axes that shears and stretches the rod at activation 1, N"
+    )
+    profile: LegendreComponent = Field(
+        1.0,
+        description="factor on both along the rod, without unit; a list is of Legendre coefficients in 2X − 1",
+    )
+    offset: Offset = Field(
+        (0.0, 0.0),
+        description="place in the section that the force acts at, x and y, m; a component may list polynomial "
+        "coefficients in X",
+    )
+    span: Span = Field((0.0, 1.0), description="abscissae X between which it acts")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A muscle has a force or a moment."""
+        yield from force_or_moment(given)
+
+
 # The type checker knows the kinds that ship; a scene may hold any that is registered.
-Actuator = Annotated[Tendon | Chamber, ACTUATORS]
+Actuator = Annotated[Tendon | Chamber | Muscle, ACTUATORS]

@@ -16,7 +16,10 @@ from cosserat_casadi.scene.values import Names, NotNegative, Positive, Size, Vec
 
 @LOADS.register
 class Flow(LoadRecord):
-    """A fluid round rods: drag −½ ρ d (C_n |v_n| v_n + π C_t |v| v_t) per length, v relative to the stream."""
+    """A fluid round rods: drag −½ ρ d (C_n |v_n| v_n + π C_t |v| v_t) − ζ_n v_n − ζ_t v_t per length.
+
+    v is the velocity relative to the stream.
+    """
 
     example: ClassVar[str] = """\
 [[loads]]
@@ -36,6 +39,12 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
     velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity of the stream in world axes, m/s")
     normal: NotNegative = Field(1.1, description="drag coefficient C_n across the rod, without unit")
     tangential: NotNegative = Field(0.01, description="drag coefficient C_t along the rod, without unit")
+    normal_resistance: NotNegative = Field(
+        0.0, description="viscous drag across the rod per length and speed, ζ_n of resistive force theory, Pa s"
+    )
+    tangential_resistance: NotNegative = Field(
+        0.0, description="viscous drag along the rod per length and speed, ζ_t, Pa s"
+    )
     added_mass: NotNegative = Field(
         1.0, description="mass of fluid that moves along across the rod over that displaced, in motion, without unit"
     )

@@ -50,12 +50,14 @@ class InputField:
 
     def entry_count(self, value: Any) -> int:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
-        if not self.polynomial or not isinstance(value, list | tuple):
+        if not self.polynomial:
             return self.components
-        coefficients = 1
+        if self.components == 1:
+            return coefficient_count(value)
+        if not isinstance(value, list | tuple):
+            return self.components
         # Components share the highest degree that one of them has; the others are filled up with zeros.
-        for component in value:
-            coefficients = max(coefficients, coefficient_count(component))
+        coefficients = max([1, *map(coefficient_count, value)])
         return self.components * coefficients
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from numpy.polynomial import legendre
 from pydantic import Field, model_validator
 
 from cosserat_casadi.errors import Problem, SceneError
@@ -15,11 +17,35 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import Fault, Table
 from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.scene.number_table import read_numbers, shortened
+from cosserat_casadi.scene.profiles import coefficient_count
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.values import Component, NotEmpty, Number, Positive, not_increasing, numbers_of
+from cosserat_casadi.scene.values import (
+    Component,
+    LegendreComponent,
+    NotEmpty,
+    Number,
+    Positive,
+    not_increasing,
+    numbers_of,
+)
 
 SLOPE_SLACK = 1e-9
 """Change of slope relative to the steepest one that is put down to rounding."""
+
+MOST_DEGREES = 80
+"""Legendre coefficients beyond which a travelling wave is refused as too short."""
+
+TRAVELLING = ("wavelength", "envelope")
+"""Keys of travelling waves alone."""
+
+MARGIN_OF_DECAY = 30
+"""Legendre coefficients in which a wave decays to rounding, beyond the degree of its frequency."""
+
+POINTS_BEYOND = 20
+"""Points of the quadrature beyond these coefficients."""
+
+WAVE_ROUNDING = 1e-12
+"""Share of the largest Legendre coefficient of a travelling wave below which a coefficient is left out."""
 
 TIME_COLUMN = "t"
 """The column of a file that holds times."""
@@ -64,10 +90,21 @@ wave = "one_minus_cosine"
     )
     frequency: Positive | None = Field(None, description="frequency of the wave, Hz")
     phase: Number = Field(0.0, description="phase of the wave at t = 0, rad")
-    wave: Literal["sine", "one_minus_cosine"] = Field(
+    wave: Literal["sine", "one_minus_cosine", "travelling"] = Field(
         "sine",
-        description="value + amplitude sin(2π frequency t + phase), or value + amplitude (1 − cos(2π frequency t + "
-        "phase)), which begins at rest",
+        description="value + amplitude sin(2π frequency t + phase); value + amplitude (1 − cos(2π frequency t + "
+        "phase)), which begins at rest; or, of an input that varies along the rod, value + amplitude envelope(X) "
+        "sin(2π (frequency t − X/wavelength) + phase)",
+    )
+    wavelength: Number | None = Field(
+        None,
+        description="length of a travelling wave relative to that of the rod, without unit; one below zero runs to "
+        "the base",
+    )
+    envelope: LegendreComponent = Field(
+        1.0,
+        description="factor on the amplitude of a travelling wave along the rod, without unit; a list is of Legendre "
+        "coefficients in 2X − 1",
     )
     file: str | None = Field(
         None,
@@ -100,11 +137,35 @@ wave = "one_minus_cosine"
 
     @property
     def entry_count(self) -> int:
-        """Count the numbers of the input at one time."""
+        """Count the numbers of the input at one time; of a travelling wave, those of one Legendre degree."""
         if self.is_table:
             _, count = self.knot_values.shape
             return int(count)
         return self.amplitudes.size
+
+    @property
+    def travels(self) -> bool:
+        """Whether it is a wave along the rod."""
+        return self.wave == "travelling"
+
+    @cached_property
+    def along_the_rod(self) -> FloatArray:
+        """Legendre coefficients of envelope(X) cos(2π X/wavelength) and of envelope(X) sin(…), shape (2, degrees)."""
+        assert self.wavelength is not None, "the record's rules ask for one"
+        points, weights = legendre.leggauss(MOST_DEGREES + POINTS_BEYOND)
+        angle = np.pi * (points + 1) / self.wavelength
+        wave = legendre.legval(points, np.atleast_1d(self.envelope)) * np.array([np.cos(angle), np.sin(angle)])
+        norms = (2 * np.arange(MOST_DEGREES) + 1) / 2
+        coefficients = norms * ((wave * weights) @ legendre.legvander(points, MOST_DEGREES - 1))
+        largest = np.abs(coefficients).max(axis=0)
+        degrees = np.flatnonzero(largest > WAVE_ROUNDING * largest.max())
+        return np.asarray(coefficients[:, : int(degrees.max(initial=0)) + 1])
+
+    @property
+    def degrees(self) -> int:
+        """Number of Legendre coefficients of a travelling wave."""
+        _, degrees = self.along_the_rod.shape
+        return int(degrees)
 
     @property
     def jumps(self) -> tuple[float, ...]:
@@ -173,6 +234,25 @@ def _wave_faults(given: Table) -> Iterator[Fault]:
             yield Fault((key,), "missing", f"a wave has an amplitude and a frequency: {remedy}")
     if "interpolation" in given:
         yield Fault(("interpolation",), "is for a table of values", "leave it out: a wave is smooth")
+    if given.get("wave") == "travelling":
+        yield from _travelling_faults(given)
+        return
+    for key in TRAVELLING:
+        if key in given:
+            yield Fault((key,), "is for a travelling wave", 'wave = "travelling", or leave it out')
+
+
+def _travelling_faults(given: Table) -> Iterator[Fault]:
+    """Faults of a wavelength; it must not be so short that no series of Legendre polynomials has it."""
+    if "wavelength" not in given:
+        yield Fault(("wavelength",), "missing", "a travelling wave has one, relative to the length of the rod")
+    for wavelength in numbers_of(given.get("wavelength")):
+        envelope = coefficient_count(given.get("envelope"))
+        # Coefficients of a wave decay beyond the degree π/wavelength, by an envelope that many later.
+        least = np.pi / (MOST_DEGREES - MARGIN_OF_DECAY - envelope) if envelope < MOST_DEGREES / 2 else np.inf
+        if abs(wavelength) < least:
+            problem = f"must be at least {least:.2g} in size, got {wavelength:g}"
+            yield Fault(("wavelength",), problem, "it is relative to the length of the rod")
 
 
 def _table_faults(given: Table) -> Iterator[Fault]:
@@ -206,7 +286,7 @@ def _file_faults(given: Table) -> Iterator[Fault]:
 
 
 def _without_wave(given: Table) -> Iterator[Fault]:
-    for key in ("phase", "wave"):
+    for key in ("phase", "wave", *TRAVELLING):
         if key in given:
             yield Fault((key,), "is for a wave", "leave it out, or give amplitude and frequency")
 

@@ -107,6 +107,9 @@ def _duration(scene: SceneTables) -> float:
 def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
     """The motion has another number of numbers than its input."""
     wanted = moving.declared.entry_count(moving.table.get(moving.field))
+    if motion.travels:
+        yield from _wave_faults(motion, moving, wanted)
+        return
     if motion.entry_count == wanted:
         return
     key = "values" if motion.is_table else "amplitude"
@@ -116,6 +119,19 @@ def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
         remedy = "those of each Legendre coefficient in turn"
     problem = f"must have {numbers} at each time, got {motion.entry_count}"
     yield Fault((key,), problem, remedy)
+
+
+def _wave_faults(motion: InputMotion, moving: _Moving, entries: int) -> Iterator[Fault]:
+    """A travelling wave moves what does not vary along a rod, or has another number of components."""
+    components = moving.declared.components
+    if not moving.declared.polynomial:
+        problem = f"travels along a rod, and {motion.input} has one value"
+        yield Fault(("wave",), problem, "move an input of Legendre coefficients, such as the profile of a muscle")
+    elif motion.entry_count != components:
+        yield Fault(("amplitude",), f"must have a number for each of {components} components")
+    elif entries < components * motion.degrees:
+        problem = f"has {motion.degrees} Legendre coefficients, and {motion.input} has {entries // components}"
+        yield Fault(("wave",), problem, "fill the value of the input up with zeros")
 
 
 def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> Iterator[Fault]:

@@ -20,6 +20,7 @@ from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, as
 from cosserat_casadi.scene.records import keys_of
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.toml import TOO_DEEP, file_text, parsed
+from cosserat_casadi.scene.travelling_waves import make_room_for_waves
 
 SCENE_KEYS = tuple(keys_of(Scene))
 """Tables and plain keys of a scene."""
@@ -142,6 +143,7 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     if faults:
         raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
     _locate_files(tables, folder)
+    make_room_for_waves(tables)
     try:
         scene = Scene.model_validate(tables)
     except ValidationError as error:

@@ -98,7 +98,7 @@ inputs = ["push.force", "cable.tension"]
     rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field((), description="the rods, at least one, unless it has tubes")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
-    actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
+    actuators: tuple[Actuator, ...] = Field((), description="tendons, pressurised chambers and muscles")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")

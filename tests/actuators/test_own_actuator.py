@@ -35,7 +35,7 @@ TENDON: dict[str, Any] = {
 
 
 class _CordKeys(ActuatorRecord):
-    """A cord under tension, or a muscle whose volume depends on the strains."""
+    """A cord under tension, or a soft part whose volume depends on the strains."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"pull": InputField("N", 1)}
 
@@ -49,8 +49,8 @@ class CordRecord(_CordKeys):
     kind: Literal["cord"]
 
 
-class MuscleRecord(_CordKeys):
-    kind: Literal["muscle"]
+class SwellingRecord(_CordKeys):
+    kind: Literal["swelling"]
 
 
 class _Pulled(Actuator[Any]):
@@ -79,10 +79,10 @@ class Cord(_Pulled):
         return ca.sqrt(ca.sumsqr(tangent))
 
 
-class Muscle(_Pulled):
+class Swelling(_Pulled):
     """A quantity of curvature, torsion and stretch together that no cable has."""
 
-    record = MuscleRecord
+    record = SwellingRecord
 
     def density(self, strain: Matrix, data: Matrix) -> Matrix:
         bending = strain[0] ** 2 + strain[1] ** 2
@@ -91,10 +91,10 @@ class Muscle(_Pulled):
 
 @pytest.fixture(autouse=True, scope="module")
 def kinds() -> Iterator[None]:
-    for kind in (Cord, Muscle):
+    for kind in (Cord, Swelling):
         register(kind)
     yield
-    for kind in (Cord, Muscle):
+    for kind in (Cord, Swelling):
         forget(kind)
 
 
@@ -134,7 +134,7 @@ def test_cord_as_density_vs_tendon(strain: str | list[str]) -> None:
 
 @pytest.mark.parametrize("strain", STRAINS)
 def test_muscle_vs_automatic_differentiation(strain: str | list[str]) -> None:
-    muscle = MuscleRecord(name="muscle", kind="muscle", rod="rod", pull=0.7, span=(0.2, 0.6))
+    muscle = SwellingRecord(name="muscle", kind="swelling", rod="rod", pull=0.7, span=(0.2, 0.6))
     model = build(scene(strain, muscle))
     assert model.potential is not None
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("u", model.inputs.size)
@@ -155,7 +155,7 @@ def test_muscle_vs_automatic_differentiation(strain: str | list[str]) -> None:
 
 
 def test_effort_is_an_input_and_the_rod_is_solved() -> None:
-    muscle = MuscleRecord(name="muscle", kind="muscle", rod="rod", pull=0.7)
+    muscle = SwellingRecord(name="muscle", kind="swelling", rod="rod", pull=0.7)
     model = build(scene("reissner", muscle))
     assert "muscle.pull" in model.inputs.names
     solution = solve(model, {"muscle.pull": 1.2})
@@ -165,7 +165,7 @@ def test_effort_is_an_input_and_the_rod_is_solved() -> None:
     assert np.abs(solution.tip().position - without.tip().position).max() > 1e-3
 
 
-@pytest.mark.parametrize("kind", [CordRecord, MuscleRecord])
+@pytest.mark.parametrize("kind", [CordRecord, SwellingRecord])
 def test_a_density_on_moved_elements_vs_a_scene_of_its_own(kind: type[_CordKeys]) -> None:
     """Strains are counted per nominal length of their element: residual and Jacobian of the other scene follow."""
     record = kind(

@@ -45,7 +45,8 @@ def tables(**rod: Any) -> dict[str, Any]:
     wind = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "force": [0, 0, 0], "moment": [0, 0, 0]}
     cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 1.0, "offset": [0.1, 0]}
     bellows = {"name": "bellows", "kind": "chamber", "rod": "rod", "pressure": 1.0, "area": 1e-3, "offset": [0, 0]}
-    return {"schema": 1, "rods": [made], "loads": [wind], "actuators": [cable, bellows]}
+    bender = {"name": "bender", "kind": "muscle", "rod": "rod", "moment": [0, 1.0, 0], "offset": [0, 0]}
+    return {"schema": 1, "rods": [made], "loads": [wind], "actuators": [cable, bellows, bender]}
 
 
 def of_section(shape: str, **sizes: float) -> dict[str, Any]:
@@ -55,6 +56,9 @@ def of_section(shape: str, **sizes: float) -> dict[str, Any]:
 MAGNET = {"name": "load", "kind": "magnet", "rod": "rod", "magnetisation": [0, 1.0, 1.0], "field": [0, 0, 1.0]}
 TISSUE = {"name": "load", "kind": "foundation", "rod": "rod", "stiffness": [1.0, 1.0, 1.0], "curve": [0, 0, 0]}
 WATER = {"name": "load", "kind": "flow", "density": 1000.0, "diameter": 1.0}
+
+
+WAVE = {"input": "bender.profile", "amplitude": 1.0, "frequency": 1.0, "wave": "travelling", "wavelength": 0.7}
 
 
 def with_load(load: dict[str, Any]) -> dict[str, Any]:
@@ -92,7 +96,9 @@ PLACES: list[tuple[str, dict[str, Any], tuple[Any, ...], Notation]] = [
     *(("magnetisation", with_load(MAGNET), ("loads", 0, "magnetisation", i), Notation.LEGENDRE) for i in range(3)),
     *(("curve", with_load(TISSUE), ("loads", 0, "curve", i), Notation.LEGENDRE) for i in range(3)),
     ("diameter", with_load(WATER), ("loads", 0, "diameter"), Notation.ENDS),
-    *(("offset", tables(), ("actuators", k, "offset", i), Notation.POWERS) for k in range(2) for i in range(2)),
+    *(("offset", tables(), ("actuators", k, "offset", i), Notation.POWERS) for k in range(3) for i in range(2)),
+    ("profile", tables(), ("actuators", 2, "profile"), Notation.LEGENDRE),
+    ("envelope", {**tables(), "motions": [WAVE]}, ("motions", 0, "envelope"), Notation.LEGENDRE),
 ]  # fmt: skip
 
 

@@ -1,0 +1,66 @@
+"""Active moment and force in the sections of a rod, as muscles and active materials have them.
+
+A muscle of activation a has in each section the active moment a p(X) (l + D × f) and the active force a p(X) f, in
+section axes, beside the elastic ones. Its work on the rod is a W with W = ℓ ∫ p ((l + D × f)·K + f·Γ) dX. A moment
+K_b κ₀(X) is the same as an unloaded curvature κ₀(X).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.actuators.actuator import Actuator
+from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.loads.load import coefficients, legendre_series
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_zero, known, rows_of, stacked_rows
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.actuation import StrainSum
+
+
+@final
+class MuscleActuator(Actuator[scenes.Muscle]):
+    """An activation (without unit) of a moment and a force in the sections."""
+
+    record = scenes.Muscle
+    effort = "activation"
+    conjugate = "work"
+    conjugate_unit = "J"
+    energy_sign = -1.0
+
+    def quantity(self, actuator: scenes.Muscle, grid: Grid) -> StrainSum:
+        """The work of a unit of activation: p (l + D × f) for each unit of K and p f for each of Γ."""
+        return _work(actuator, grid, coefficients((actuator.profile,)))
+
+    def worked_on(self, actuator: scenes.Muscle, grid: Grid, values: Mapping[str, Matrix]) -> StrainSum:
+        """The same, with the profile of the inputs."""
+        profile = values["profile"]
+        if profile.is_constant():
+            return self.quantity(actuator, grid)
+        return _work(actuator, grid, profile)
+
+
+def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
+    """Work of a unit of activation, for a profile of Legendre coefficients, shape (1, degrees)."""
+    nodes = grid.nodes_in(*actuator.span)
+    X = grid.nodes_at(nodes)
+    (profile,) = rows_of(legendre_series(series, X))
+    offset, _ = offset_at(actuator, X)
+    x, y = rows_of(offset)
+    fx, fy, fz = actuator.force
+    lx, ly, lz = actuator.moment
+    stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
+    components = [c for c, stress in enumerate(stresses) if not is_zero(stress)]
+    along = [stresses[c] * profile for c in components]
+    densities = stacked_rows(along)
+    if any_symbolic(along):
+        to_nodes = ca.DM(np.eye(grid.size)[nodes])
+        return StrainSum(components, as_matrix(densities) @ ca.sparsify(to_nodes))
+    everywhere = np.zeros((len(components), grid.size))
+    everywhere[:, nodes] = known(densities)
+    return StrainSum(components, everywhere)

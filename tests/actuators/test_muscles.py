@@ -1,0 +1,210 @@
+"""Muscles: constant strains by hand, the moment of a tip that follows, waves that travel, a swimmer's speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+from numpy.testing import assert_allclose
+from scipy.linalg import expm
+
+from cosserat_casadi import SceneError, build, scene_from_dict, simulate, solve
+from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.scene import Scene
+from tests.scenes import STIFFNESS, push, rod, scene
+
+MUSCLE = {"name": "muscle", "kind": "muscle", "rod": "rod", "moment": [0.0, 0.6, 0.0]}
+WAVE = {"input": "muscle.profile", "amplitude": 0.7, "frequency": 2.0, "wave": "travelling", "wavelength": 0.6}
+
+
+def with_muscle(*loads: dict[str, Any], strain: str = "reissner", **changes: Any) -> Scene:
+    return scene(*loads, strain=strain, actuators=[{**MUSCLE, **changes}], accuracy={"modes": 6, "nodes": 16})
+
+
+def test_a_uniform_muscle_makes_uniform_strains() -> None:
+    """Strains are stress over stiffness, the stress of a force beside the axis included; the rod is a screw."""
+    moment, force, offset = np.array([0.1, 0.3, 0.05]), np.array([0.0, 0.4, 2.0]), np.array([0.02, -0.01, 0.0])
+    solution = solve(with_muscle(activation=0.7, moment=moment.tolist(), force=force.tolist(), offset=[0.02, -0.01]))
+    stress = 0.7 * np.concatenate([moment + np.cross(offset, force), force])
+    strain = stress / np.array(list(STIFFNESS.values())) + np.array([0, 0, 0, 0, 0, 1])
+    x, y, z = strain[:3]
+    twist = np.zeros((4, 4))
+    twist[:3, :3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
+    twist[:3, 3] = strain[3:]
+    assert_allclose(solution.tip().position[0], expm(0.8 * twist)[:3, 3], rtol=1e-9, atol=1e-12)
+    work = 0.8 * (stress / 0.7) @ strain
+    assert_allclose(solution.actuator("muscle")["work"], work, rtol=1e-9, atol=0)
+
+
+def test_a_uniform_moment_in_a_plane_is_a_moment_that_follows_the_tip() -> None:
+    follower = {"name": "turn", "kind": "tip_wrench", "rod": "rod", "moment": [0.0, 0.6, 0.0], "frame": "body"}
+    force = push(force=[0.5, 0.0, 0.3])
+    by_muscle = solve(with_muscle(force, strain="planar"))
+    by_moment = solve(scene(force, follower, strain="planar", accuracy={"modes": 6, "nodes": 16}))
+    assert_allclose(by_muscle.tip().position, by_moment.tip().position, rtol=0, atol=1e-9)
+
+
+def test_a_muscle_of_stiffness_times_curvature_is_an_unloaded_curvature() -> None:
+    """In space, under a load, with a profile that varies: K κ₀(X) in the stress is K κ₀(X) in the energy."""
+    curvature = [1.5, 0.4, -0.3]
+    curved = rod(intrinsic={"curvature": [0.0, {"legendre": curvature}, 0.0]})
+    wanted = solve(scene(push(), rods=[curved], accuracy={"modes": 8, "nodes": 20}))
+    active = [{**MUSCLE, "moment": [0.0, STIFFNESS["bending_y"], 0.0], "profile": curvature}]
+    found = solve(scene(push(), actuators=active, accuracy={"modes": 8, "nodes": 20}))
+    assert_allclose(found.tip().position, wanted.tip().position, rtol=0, atol=1e-9)
+
+
+def test_a_profile_may_be_free() -> None:
+    """Value and derivative are those of scenes with these numbers."""
+    tables = with_muscle(push(), profile=[1.0, 0.2, 0.0]).model_dump(by_alias=True, exclude_unset=True)
+    model = build(scene_from_dict({**tables, "inputs": ["muscle.profile", "muscle.activation"]}))
+    inputs = np.array([0.4, -0.3, 0.5, 0.9])
+    solution = solve(model, inputs)
+    tables["actuators"][0].update(profile=[0.4, -0.3, 0.5], activation=0.9)
+    assert_allclose(solution.tip().position, solve(scene_from_dict(tables)).tip().position, rtol=0, atol=1e-10)
+    by_inputs = model.input_jacobian(solution.x, inputs)
+    step = 1e-4
+    differences = [
+        (model.residual(solution.x, inputs + step * e) - model.residual(solution.x, inputs - step * e)).full()[:, 0]
+        for e in np.eye(4)
+    ]
+    assert_allclose(by_inputs.full(), np.transpose(differences) / (2 * step), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("wavelength", [0.6, -1.3])
+@pytest.mark.parametrize("envelope", [1.0, [0.5, 0.3, -0.2]])
+def test_a_wave_travels_along_the_rod(wavelength: float, envelope: Any) -> None:
+    tables = with_muscle(profile=[0.3, -0.1]).model_dump(by_alias=True, exclude_unset=True)
+    motion = {**WAVE, "phase": 0.4, "wavelength": wavelength, "envelope": envelope}
+    model = build(scene_from_dict({**tables, "motions": [motion]}).with_motion_inputs())
+    moving = MovingInputs(model.inputs, model.scene.motions, model.pack())
+    X = np.linspace(0, 1, 41)
+    x = 2 * X - 1
+    for t in (0.0, 0.13, 0.9):
+        state = moving.at(t)
+        series = state.value[model.inputs.slices["muscle.profile"]]
+        angle = 2 * np.pi * (2.0 * t - X / wavelength) + 0.4
+        wanted = 0.3 - 0.1 * x + 0.7 * legendre.legval(x, np.atleast_1d(envelope)) * np.sin(angle)
+        assert_allclose(legendre.legval(x, series), wanted, rtol=0, atol=1e-10)
+        step = 1e-6
+        rate = (moving.at(t + step).value - moving.at(t - step).value) / (2 * step)
+        assert_allclose(state.rate, rate, rtol=0, atol=1e-7)
+
+
+def resistive_speed(curvature: float, length: float, ratio: float) -> float:
+    """Speed of a free swimmer of small amplitude, by resistive force theory, m/s towards +z; one wave of 1 Hz a length.
+
+    The shape follows the curvature c sin(2π(t − z/ℓ)) up to a translation and a turn, which no force and no moment
+    across the axis leave; ⟨(ζ_n/ζ_t − 1) ẏ y′⟩ is the speed.
+    """
+    z, weights = legendre.leggauss(60)
+    arm = length * z / 2
+    weights = weights / 2
+    number, frequency = 2 * np.pi / length, 2 * np.pi
+    speeds = []
+    for t in np.arange(20) / 20:
+        angle = frequency * t - number * (arm + length / 2)
+        deflection = [-curvature / number**2 * np.sin(angle), -frequency * curvature / number**2 * np.cos(angle)]
+        slope = curvature / number * np.cos(angle)
+        tilt, turning = (-(weights @ (of * arm)) / (weights @ arm**2) for of in deflection)
+        velocity = deflection[1] - weights @ deflection[1] + turning * arm
+        speeds.append((ratio - 1) * weights @ (velocity * (slope + tilt)))
+    return float(np.mean(speeds))
+
+
+def swimmer(curvature: float) -> dict[str, Any]:
+    body = rod(
+        "planar",
+        length=0.1,
+        stiffness={"bending_y": 1.0},
+        linear_density=1e-3,
+        rotary_inertia=[1e-9, 1e-9, 2e-9],
+        damping={"retardation_time": 1e-3},
+        base={"free": True},
+    )
+    water = {"name": "water", "kind": "flow", "density": 1000.0, "diameter": 1e-3, "normal": 0.0, "tangential": 0.0}
+    water |= {"added_mass": 0.0, "normal_resistance": 2.0, "tangential_resistance": 1.0}
+    return {
+        "schema": 1,
+        "accuracy": {"tolerance": 1e-6},
+        "simulation": {"duration": 2.0, "times": [0.0, 1.0, 2.0], "start": "unloaded"},
+        "rods": [body],
+        "loads": [water],
+        "actuators": [{**MUSCLE, "moment": [0.0, curvature, 0.0], "activation": 0.0}],
+        "motions": [
+            {"input": "muscle.activation", "times": [0.0, 0.5], "values": [0.0, 1.0], "interpolation": "cubic"},
+            {**WAVE, "amplitude": 1.0, "frequency": 1.0, "wavelength": 1.0},
+        ],
+    }
+
+
+def speed_share(curvature: float, tolerance: float) -> float:
+    """Speed of the swimmer over that of the theory."""
+    motion = simulate(scene_from_dict({**swimmer(curvature), "accuracy": {"tolerance": tolerance}}))
+    assert motion.converged
+    begin, end = motion.section("rod", [0.5]).position[1:, 0, 2]
+    return float(end - begin) / resistive_speed(curvature, 0.1, 2.0)
+
+
+def test_a_wave_swims() -> None:
+    assert_allclose(speed_share(8.0, 1e-4), 0.987, rtol=5e-3, atol=0)
+
+
+@pytest.mark.slow
+def test_a_wave_swims_at_the_speed_of_resistive_force_theory() -> None:
+    """The speed differs from the theory by the square of the amplitude: two amplitudes extrapolate to it."""
+    small, large = (speed_share(curvature, 1e-6) for curvature in (4.0, 8.0))
+    assert 0.95 < large < small < 1.0
+    assert_allclose((4 * small - large) / 3, 1.0, rtol=2e-3, atol=0)
+
+
+def test_energy_of_a_wave_is_its_work() -> None:
+    wave = {**WAVE, "frequency": 0.5, "wavelength": 1.0}
+    body = rod("planar", damping={"retardation_time": 0.02})
+    tables = {"schema": 1, "accuracy": {"tolerance": 1e-4}, "rods": [body], "actuators": [MUSCLE], "motions": [wave]}
+    energy = simulate(scene_from_dict({**tables, "simulation": {"duration": 0.5, "start": "unloaded"}})).energy
+    assert energy.dissipated[-1] > 1e-4
+    assert_allclose(energy.imbalance, 0.0, rtol=0, atol=1e-2 * energy.dissipated[-1])
+
+
+@pytest.mark.parametrize(
+    ("motion", "sentence"),
+    [
+        ({"wavelength": 0.01}, "motions[0].wavelength: must be at least"),
+        ({"wavelength": 0.0}, "motions[0].wavelength: must be at least"),
+        ({"wavelength": None}, "motions[0].wavelength: missing"),
+        ({"amplitude": [1.0, 0.0]}, "motions[0].amplitude: must have a number for each of 1 component"),
+        ({"input": "muscle.activation"}, "motions[0].wave: travels along a rod, and muscle.activation has one value"),
+        ({"wave": "sine"}, "motions[0].wavelength: is for a travelling wave"),
+    ],
+)
+def test_waves_that_cannot_be_are_refused(motion: dict[str, Any], sentence: str) -> None:
+    tables = with_muscle().model_dump(by_alias=True, exclude_unset=True)
+    wave = {key: value for key, value in {**WAVE, **motion}.items() if value is not None}
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict({**tables, "motions": [wave]})
+    assert sentence in str(refused.value)
+
+
+def test_a_muscle_without_moment_and_force_is_refused() -> None:
+    with pytest.raises(SceneError, match="give force, moment or both"):
+        scene(actuators=[{key: value for key, value in MUSCLE.items() if key != "moment"}])
+
+
+def test_a_free_rod_that_may_spin_without_inertia_is_refused() -> None:
+    tables = swimmer(4.0)
+    del tables["rods"][0]["rotary_inertia"]
+    with pytest.raises(SceneError, match="nothing resists a spin of the free rod"):
+        scene_from_dict(tables)
+
+
+def test_modes_see_the_wave_that_will_come() -> None:
+    """A profile that is zero at rest asks for the modes of its wave, of degree π/wavelength and some more."""
+    tables = with_muscle().model_dump(by_alias=True, exclude_unset=True)
+    still = scene_from_dict(tables)
+    moving = scene_from_dict({**tables, "motions": [{**WAVE, "wavelength": 0.3}]})
+    assert signal_modes(still) < 4
+    assert 10 < signal_modes(moving) < 20
