@@ -147,10 +147,13 @@ class MotionEnergy:
         return motion
 
     def _by_inputs(self, value: Matrix) -> Matrix:
-        """Rate of a value with the inputs, at fixed unknowns."""
-        if not self.system.discrete.layout.geometry:
+        """Rate of a value with the inputs that move rods, at fixed unknowns and at fixed efforts and profiles."""
+        geometry = self.system.discrete.layout.geometry
+        if not geometry:
             return ca.DM(*value.shape)
-        rate: Matrix = ca.jtimes(value, self.system.arguments.inputs, self._motion.inputs_rate)
+        moving = ca.DM(self.system.arguments.inputs.shape[0], 1)
+        moving[geometry] = 1.0
+        rate: Matrix = ca.jtimes(value, self.system.arguments.inputs, moving * self._motion.inputs_rate)
         return rate
 
     # Loads

@@ -161,10 +161,13 @@ def test_a_wave_swims_at_the_speed_of_resistive_force_theory() -> None:
     assert_allclose((4 * small - large) / 3, 1.0, rtol=2e-3, atol=0)
 
 
-def test_energy_of_a_wave_is_its_work() -> None:
+@pytest.mark.parametrize("moving_base", [False, True])
+def test_energy_of_a_wave_is_its_work(moving_base: bool) -> None:
     wave = {**WAVE, "frequency": 0.5, "wavelength": 1.0}
     body = rod("planar", damping={"retardation_time": 0.02})
-    tables = {"schema": 1, "accuracy": {"tolerance": 1e-4}, "rods": [body], "actuators": [MUSCLE], "motions": [wave]}
+    shaken = {"input": "rod.base.position", "amplitude": [0.05, 0.0, 0.0], "frequency": 2.0, "wave": "one_minus_cosine"}
+    motions = [wave, shaken] if moving_base else [wave]
+    tables = {"schema": 1, "accuracy": {"tolerance": 1e-4}, "rods": [body], "actuators": [MUSCLE], "motions": motions}
     energy = simulate(scene_from_dict({**tables, "simulation": {"duration": 0.5, "start": "unloaded"}})).energy
     assert energy.dissipated[-1] > 1e-4
     assert_allclose(energy.imbalance, 0.0, rtol=0, atol=1e-2 * energy.dissipated[-1])
