@@ -95,6 +95,8 @@ STUDIES = (
         (
             Number("chamber.offset.0", "offset in the plane of bending, mm", 1e3),
             Number("chamber.offset.1", "offset across, mm", 1e3),
+            Number("chamber.area_growth.0", "growth of area times offset by 200 mbar"),
+            Number("chamber.area_growth.1", "by the square of that"),
         ),
     ),
     Study(
@@ -122,7 +124,7 @@ class Validation:
 
     Attributes:
         found: the end of each identification by the name of its study.
-        arm: of each pressure above those that were fitted: pressure, mbar; measured and predicted displacement, mm;
+        arm: of each pressure that was held out: pressure, mbar; measured and predicted displacement, mm;
             rows of shape (3,).
         periods: of each mass at the block: mass, kg; measured period, modelled one, s; rows of shape (3,).
     """
@@ -184,9 +186,11 @@ def mean_distance(displacements: FloatArray) -> float:
 
 def predicted_arm(found: Identification) -> list[FloatArray]:
     """Rows of `Validation.arm`."""
+    data = columns("silicone-mocap/arm_static.csv")
+    held = {float(pressure) for pressure, use in zip(data["pressure_mbar"], data["use"], strict=True) if use == "held"}
     rows = []
     for pressure, displacements in arm_displacements().items():
-        if pressure > 200:
+        if pressure in held:
             predicted = mean_distance(arm_moved(found, pressure))
             rows.append(np.array([pressure, mean_distance(displacements), predicted]))
     return rows
@@ -307,9 +311,9 @@ def draw_arm(axes: Any, found: Identification) -> None:
     measured = arm_displacements()
     curve = np.linspace(0.0, max(measured), 17)
     moved = np.array([mean_distance(arm_moved(found, pressure)) for pressure in curve])
-    low = curve <= 200
-    axes.plot(curve[low], moved[low], color=MODELLED, label="fitted")
-    axes.plot(curve[curve >= 200], moved[curve >= 200], color=PREDICTED, ls="--", label="predicted")
+    fitted = curve <= 350
+    axes.plot(curve[fitted], moved[fitted], color=MODELLED, label="fitted at five pressures")
+    axes.plot(curve[curve >= 350], moved[curve >= 350], color=PREDICTED, ls="--", label="predicted")
     distances = [mean_distance(displacements) for displacements in measured.values()]
     axes.plot(list(measured), distances, "o", color=MEASURED, ms=4, label="measured")
     axes.set(title="Silicone arm", xlabel="pressure, mbar", ylabel="displacement of the markers, mm")

@@ -111,7 +111,7 @@ class MuscleRecord(ActuatorRecord):
     inputs: ClassVar[Mapping[str, InputField]] = {"contraction": InputField("N m", 1, lower=0.0)}
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
-    kind: Literal["muscle"] = Field(description="muscle along the rod")
+    kind: Literal["fibre"] = Field(description="muscle along the rod")
     rod: str = Field(description="name of the rod that it bends")
     span: tuple[float, float] = Field((0.0, 1.0), description="where it begins and ends, X, without unit")
     contraction: float = Field(ge=0.0, description="bending moment, N m")
@@ -310,7 +310,7 @@ anchor = {ANCHOR.tolist()}
 stiffness = {STIFFNESS}
 [[actuators]]
 name = "muscle"
-kind = "muscle"
+kind = "fibre"
 rod = "finger"
 contraction = {MOMENT}
 [simulation]
@@ -571,7 +571,7 @@ def test_bad_tables_are_refused_in_plain_words(
 ) -> None:
     (folder / "bad.toml").write_text(
         FINGER.replace("stiffness = 3.0", "stiffness = -3.0")
-        .replace('kind = "muscle"\nrod = "finger"', 'kind = "muscle"\nrod = "thumb"')
+        .replace('kind = "fibre"\nrod = "finger"', 'kind = "fibre"\nrod = "thumb"')
         .replace("wall = 2e-3", "wal = 2e-3")
     )
     assert cosserat(monkeypatch, "check", "bad.toml") == REFUSED

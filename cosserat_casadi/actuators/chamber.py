@@ -1,11 +1,17 @@
 """Pressurised channels along a rod.
 
 A channel of area A at D(X) holds the volume V = A ℓ ∫ (Γ + K × D)_z dX, on which a pressure p does the work p δV: the
-force p A e_z on the sections and the moment D × p A e_z, whatever the rod's strain.
+force p A e_z on the sections and the moment D × p A e_z, whatever the rod's strain. A and D may grow with the pressure;
+the energy is −p V(ξ, p) then, and what the pressure does on the wall stays in the wall.
+
+A round wall of radii a and b, modulus E and Poisson's ratio ν that keeps its length widens by the share
+u/a = (1 + ν) p/E ((1 − 2ν) a² + b²)/(b² − a²): Lamé's cylinder in plane strain.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import final
 
 import casadi as ca
@@ -15,7 +21,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.numbers import is_symbolic, rows_of, stacked_rows
+from cosserat_casadi.maths.numbers import Scalar, is_symbolic, rows_of, stacked_rows
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import StrainSum
 
 BENDINGS_AND_EXTENSION = (0, 1, 5)
@@ -32,15 +39,59 @@ class ChamberActuator(Actuator[scenes.Chamber]):
     conjugate_unit = "m³"
     energy_sign = -1.0
 
+    def worked_on(self, actuator: scenes.Chamber, grid: Grid, values: Mapping[str, Matrix]) -> StrainSum:
+        """The volume of the channel as the pressure has widened it."""
+        volume = self.quantity(actuator, grid)
+        if actuator.wall is None and not actuator.area_growth and not actuator.offset_growth:
+            return volume
+        of_area = _growth_of_area(actuator, values["pressure"])
+        of_moment = of_area * _polynomial(actuator.offset_growth, actuator.reference_pressure, values["pressure"])
+        return replace(volume, factors=(of_moment, of_moment, of_area))
+
     def quantity(self, actuator: scenes.Chamber, grid: Grid) -> StrainSum:
-        """The volume: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
+        """The volume without pressure: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
         # (Γ + K × D)_z = Γ_z + K_x D_y − K_y D_x.
         channel = routing(actuator, grid)
         x, y = rows_of(channel.offset)
-        along = actuator.area * stacked_rows([y, -x, np.ones(len(channel.nodes))])
+        along = _area(actuator) * stacked_rows([y, -x, np.ones(len(channel.nodes))])
         if is_symbolic(along):
             to_nodes = ca.DM(np.eye(grid.size)[channel.nodes])
             return StrainSum(BENDINGS_AND_EXTENSION, along @ ca.sparsify(to_nodes))
         densities = np.zeros((3, grid.size))
         densities[:, channel.nodes] = along
         return StrainSum(BENDINGS_AND_EXTENSION, densities)
+
+
+def _area(actuator: scenes.Chamber) -> Scalar:
+    """Cross-section without pressure, m²."""
+    if actuator.wall is None:
+        assert actuator.area is not None, "the record's rules ask for area or wall"
+        return actuator.area
+    area: Scalar = np.pi * actuator.wall.inner_radius**2
+    return area
+
+
+def _growth_of_area(actuator: scenes.Chamber, pressure: Matrix) -> Scalar:
+    """Cross-section at a pressure (Pa) over that without pressure."""
+    wall = actuator.wall
+    if wall is None:
+        return _polynomial(actuator.area_growth, actuator.reference_pressure, pressure)
+    if wall.reinforced:
+        return 1.0
+    inner = wall.inner_radius**2
+    outer = wall.outer_radius**2
+    nu = wall.poisson_ratio
+    by_pressure = (1 + nu) / wall.youngs_modulus * ((1 - 2 * nu) * inner + outer) / (outer - inner)
+    growth: Scalar = (1 + by_pressure * pressure) ** 2
+    return growth
+
+
+def _polynomial(coefficients: Sequence[Scalar], reference: Scalar | None, pressure: Matrix) -> Scalar:
+    """The polynomial 1 + c₁ (p/p₀) + c₂ (p/p₀)² + … of a pressure."""
+    if not coefficients:
+        return 1.0
+    assert reference is not None, "the record's rules ask for one"
+    total: Scalar = 0.0
+    for coefficient in reversed(coefficients):
+        total = (total + coefficient) * (pressure / reference)
+    return 1.0 + total

@@ -15,7 +15,7 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, product, row_times, rows_of
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, known, product, row_times, rows_of
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
 
@@ -98,15 +98,17 @@ class Actuation:
 
 @dataclass(frozen=True)
 class StrainSum:
-    """A quantity that is linear in the strains: L = ℓ Σ_k w_k Σ_c g_ck ξ_ck.
+    """A quantity that is linear in the strains: L = ℓ Σ_c f_c Σ_k w_k g_ck ξ_ck.
 
     Attributes:
         components: the strains c that it depends on.
         densities: g, shape (len(components), M), numbers or expressions.
+        factors: f, one for each component, such as what an input makes of constant densities; None where all are 1.
     """
 
     components: Sequence[int]
     densities: Numbers
+    factors: Sequence[Scalar] | None = None
 
     def on(self, shape: Shape) -> StrainSumOnRod:
         """The quantity on a rod of this shape."""
@@ -131,9 +133,9 @@ class StrainSumOnRod(Lossless):
         rod = self.shape.rod
         strains = rod.strain_rows(self.shape.q, self.quantity.components, self.shape.ratio)
         total = ca.DM(0.0)
-        for row, weights in zip(strains, self._weighted, strict=True):
+        for component, row, weights in zip(self.quantity.components, strains, self._weighted, strict=True):
             if row is not None:
-                total = total + row @ as_matrix(weights)
+                total = total + self._times_factor(component, row @ as_matrix(weights))
         return total
 
     @cached_property
@@ -147,14 +149,21 @@ class StrainSumOnRod(Lossless):
             # A strain that the quantity does not depend on has no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
             rows.append((phi.T, own))
-        if any_symbolic(own for _, own in rows):
-            return ca.vertcat(*[product(to_rows, own) for to_rows, own in rows])
+        if self.quantity.factors is not None or any_symbolic(own for _, own in rows):
+            products = [product(to_rows, own) for to_rows, own in rows]
+            return ca.vertcat(*[self._times_factor(c, own) for c, own in zip(rod.admitted, products, strict=True)])
         gradient = np.concatenate([to_rows @ known(own) for to_rows, own in rows])
         return ca.sparsify(ca.DM(gradient))
 
     def curvature(self, a: int, b: int) -> None:
         """Zero."""
         return
+
+    def _times_factor(self, component: int, value: Matrix) -> Matrix:
+        """A share of a strain in the quantity, times its factor."""
+        if self.quantity.factors is None or component not in self.quantity.components:
+            return value
+        return self.quantity.factors[list(self.quantity.components).index(component)] * value
 
     @property
     def _weighted(self) -> list[Numbers]:

@@ -20,11 +20,13 @@ from cosserat_casadi.scene.values import (
     Name,
     NotNegative,
     Number,
+    PoissonRatio,
     Positive,
     PowerComponent,
     Share,
     Vector,
     listed,
+    numbers_of,
 )
 
 
@@ -180,9 +182,31 @@ def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
         yield Fault((first,), "missing", f"give {first} or {second}")
 
 
+class ChamberWall(Record):
+    """The round wall of a chamber, which widens under pressure."""
+
+    example: ClassVar[str] = """\
+wall = { inner_radius = 3.0e-3, outer_radius = 5.0e-3, youngs_modulus = 2.6e5 }
+"""
+
+    inner_radius: Positive = Field(description="radius of the chamber without pressure, m")
+    outer_radius: Positive = Field(description="outer radius of the wall, m")
+    youngs_modulus: Positive = Field(description="Young's modulus of the wall, Pa")
+    poisson_ratio: PoissonRatio = Field(0.5, description="Poisson's ratio of the wall, without unit")
+    reinforced: StrictBool = Field(False, description="whether fibres round the wall keep it from widening")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The wall lies outside of the chamber."""
+        radii = [*numbers_of(given.get("inner_radius")), *numbers_of(given.get("outer_radius"))]
+        if len(radii) == 2 and not radii[0] < radii[1]:
+            problem = f"must be larger than inner_radius, got {radii[1]:g} and {radii[0]:g}"
+            yield Fault(("outer_radius",), problem, "a wall has a thickness")
+
+
 @ACTUATORS.register
 class Chamber(ActuatorRecord):
-    """A pressurised channel of constant cross-section along the rod."""
+    """A pressurised channel along the rod, whose cross-section may widen with the pressure."""
 
     example: ClassVar[str] = """\
 [[actuators]]
@@ -192,6 +216,8 @@ rod = "finger"
 pressure = 1.0e4
 area = 2.0e-6
 offset = [0.0, 1.0e-3]
+area_growth = [0.3, 0.1]
+reference_pressure = 2.0e4
 """
 
     inputs: ClassVar[Mapping[str, InputField]] = {"pressure": InputField("Pa", 1)}
@@ -199,11 +225,35 @@ offset = [0.0, 1.0e-3]
     kind: Literal["chamber"] = Field(description="pressurised channel along the rod")
     rod: str = Field(description="name of the rod that it pushes")
     pressure: Number = Field(description="pressure above that outside, Pa")
-    area: Positive = Field(description="cross-section of the channel, m²")
+    area: Positive | None = Field(None, description="cross-section of the channel without pressure, m²; or wall")
+    wall: ChamberWall | None = Field(
+        None, description="round wall from which area and area_growth follow: thick-walled cylinder"
+    )
+    area_growth: tuple[Number, ...] = Field(
+        (),
+        description="coefficients c of area(p) = area (1 + c₁ (p/p₀) + c₂ (p/p₀)² + …), p₀ the reference pressure, "
+        "without unit",
+    )
+    offset_growth: tuple[Number, ...] = Field(
+        (), description="coefficients of the offset likewise, as the wall moves outwards, without unit"
+    )
+    reference_pressure: Positive | None = Field(None, description="pressure p₀ of the growths, Pa")
     offset: Offset = Field(
         (0.0, 0.0), description="place in the section, x and y, m; a component may list polynomial coefficients in X"
     )
     span: Span = Field((0.0, 1.0), description="abscissae X between which the channel runs")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """One of area and wall; growths with their reference pressure."""
+        yield from _one_of("area", "wall", given)
+        if "wall" in given and "area_growth" in given:
+            yield Fault(("area_growth",), "stands beside wall", "it follows from the wall: leave one of them out")
+        grows = "area_growth" in given or "offset_growth" in given
+        if grows and "reference_pressure" not in given:
+            yield Fault(("reference_pressure",), "missing", "the growths are polynomials of the pressure over it, Pa")
+        if "reference_pressure" in given and not grows:
+            yield Fault(("reference_pressure",), "stands without area_growth and offset_growth", "leave it out")
 
 
 @ACTUATORS.register

@@ -14,7 +14,16 @@ from pydantic import Field
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, listed, numbers_of
+from cosserat_casadi.scene.values import (
+    NotEmpty,
+    NotNegative,
+    Number,
+    PoissonRatio,
+    Positive,
+    Whole,
+    listed,
+    numbers_of,
+)
 
 INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a material that keeps its volume."""
@@ -31,7 +40,7 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
 """
 
     youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
-    poisson_ratio: Annotated[Number, Field(gt=-1, le=0.5)] | None = Field(
+    poisson_ratio: PoissonRatio | None = Field(
         None, description="Poisson's ratio, without unit; instead of shear_modulus"
     )
     shear_modulus: Positive | None = Field(None, description="shear modulus G, Pa; instead of poisson_ratio")

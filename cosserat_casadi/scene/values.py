@@ -289,6 +289,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]
 Share = Annotated[Number, Field(ge=0, le=1)]
+PoissonRatio = Annotated[Number, Field(gt=-1, le=0.5)]
 Whole = Annotated[int, Field(strict=True)]
 
 Vector = Annotated[tuple[Number, Number, Number], listed(3, "3 numbers")]

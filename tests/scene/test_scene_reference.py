@@ -69,6 +69,9 @@ def completed(example: str) -> dict[str, Any]:
         if key == "helix":
             del tables["actuators"][0]["offset"]
             tables["actuators"][0][key] = value
+        elif key == "wall":
+            chamber = {"name": "bellows", "kind": "chamber", "rod": "finger", "pressure": 1e4, key: value}
+            tables["actuators"].append(chamber)
         elif key not in scene_reference.contents_by_key(Scene):
             rod = tables["rods"][0]
             if key == "stiffness":
