@@ -192,7 +192,7 @@ def rates(variant: Variant, count: int) -> None:
     layout = unknown_layout(model)
     indices = stacked_indices(layout.own, model.inputs.size)
     known = knowledge_of(layout)
-    library = estimator_library(model, differences(model, sections, indices, table.at), indices)
+    library = estimator_library(model, differences(model, sections, indices, table.at), indices, ())
     tables = start_tables(table, layout, indices, model.scene)
     # Compiled here.
     library.estimate(table.part(slice(0, 1)), known)

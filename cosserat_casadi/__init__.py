@@ -10,6 +10,7 @@ Every result has ``to_dict()``, ``write(path)`` and ``plot()``.
 A public name loads its module when it is first used, so that ``import cosserat_casadi`` itself takes no time.
 """
 
+import time
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +63,9 @@ if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_solution import TubeSolution as TubeSolution
 
     __version__: str
+
+IMPORTED = time.time()
+"""Seconds since the epoch: this process may not run sources that changed later."""
 
 _NAMES = {
     "accuracy.choose": ("Choice", "choose"),

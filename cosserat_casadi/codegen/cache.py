@@ -1,16 +1,18 @@
-"""Where compiled libraries are kept: under names that hold a hash of their sources, and one of their content.
+"""Where compiled libraries and their texts are kept: under names that hold a hash of their origin, and one of content.
 
-The first is of all that a library is made of. The second tells one that was cut off or written over, as by a full disk,
-before it is loaded: loading it could end the process.
+The first is of all that a file is made of: of a library its sources in C, of texts in C the model and the options that
+they are written for. The second tells a file that was cut off or written over, as by a full disk, before it is loaded:
+loading such a library could end the process.
 
-The least recently used ones are removed beyond a limit, so that the folder never grows without bound. Processes may do
-all this at once: a library appears whole or not at all, and one that was used in the last hour is not removed.
+The least recently used files are removed beyond a limit, so that the folder never grows without bound. Processes may do
+all this at once: a file appears whole or not at all, and one that was used in the last hour is not removed.
 """
 
 from __future__ import annotations
 
 import atexit
 import hashlib
+import json
 import os
 import platform
 import re
@@ -18,11 +20,18 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Sequence
+import zlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.codegen.description import key_of
+from cosserat_casadi.errors import WriteError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.sources import sources_hash
 
 VARIABLE = "COSSERAT_CASADI_CACHE"
 """Environment variable that names the folder; ``off`` keeps nothing beyond the end of the process."""
@@ -36,7 +45,7 @@ FOLDERS = {"win32": "AppData/Local", "darwin": "Library/Caches"}
 """The folder of caches in a user's home, by platform; elsewhere it is .cache."""
 
 LIMIT = 500_000_000
-"""Bytes of all libraries in the folder, beyond which some are removed."""
+"""Bytes of all files of ours in the folder, beyond which some are removed."""
 
 IN_USE = 3600.0
 """Seconds since its last use for which a library is not removed: a process may be about to load it."""
@@ -44,8 +53,12 @@ IN_USE = 3600.0
 SCRATCH = "cosserat_casadi-compiling-"
 """How folders begin in which libraries are compiled."""
 
-LIBRARY = re.compile(r"\w+-[0-9a-f]{20}(-[0-9a-f]{20})?\.so")
-"""What libraries are called; those of earlier versions had no hash of their content.
+LIBRARY = ".so"
+TEXTS = ".texts"
+"""Ends of the names of libraries and of texts."""
+
+OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS})")
+"""What these files are called; libraries of earlier versions had no hash of their content.
 
 Whatever else lies in the folder is not ours to remove."""
 
@@ -82,30 +95,66 @@ def _folder_of_process() -> Path:
     return Path(folder)
 
 
-def library_name(stem: str, content: bytes) -> str:
-    """Name of a library: what tells its sources, and what tells its content."""
-    return f"{stem}-{_short_hash(content)}.so"
+def file_name(stem: str, content: bytes, ending: str = LIBRARY) -> str:
+    """Name of a library or of texts: a stem that tells the origin, and a hash of the content."""
+    return f"{stem}-{_short_hash(content)}{ending}"
 
 
-def kept_library(folder: Path, stem: str) -> Path | None:
-    """A library of the folder, its content as it was compiled; one that has changed since is removed.
+def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
+    """A file of the folder, its content as it was written; one that has changed since is removed.
 
     Args:
-        folder: with the libraries.
-        stem: what the name of the library begins with: it tells the sources.
+        folder: with the files.
+        stem: what the name of the file begins with: it tells the origin.
+        ending: of its name.
 
     Returns:
         None where there is none.
     """
-    for library in sorted(folder.glob(f"{stem}-*.so")):
+    for file in sorted(folder.glob(f"{stem}-*{ending}")):
         try:
-            if library.name == library_name(stem, library.read_bytes()):
-                return library
-            library.unlink()
+            if file.name == file_name(stem, file.read_bytes(), ending):
+                return file
+            file.unlink()
         except OSError:
             # Another process has removed it, or it is not ours to read.
             continue
     return None
+
+
+def kept_texts(name: str, made_from: Sequence[Any], write: Callable[[], Mapping[str, str]]) -> dict[str, str]:
+    """Texts by file name, written once for a model and its options: a later process takes them from the folder.
+
+    Args:
+        name: what the name of their file in the folder begins with.
+        made_from: the model and all options on which the texts depend.
+        write: writes the texts.
+    """
+    key = key_of(*made_from)
+    if key is None:
+        return dict(write())
+    folder = cache_folder()
+    stem = f"{name}-{key}"
+    with suppress(OSError):
+        kept = kept_file(folder, stem, TEXTS)
+        if kept is not None:
+            texts: dict[str, str] = json.loads(zlib.decompress(kept.read_bytes()))
+            mark_used(kept)
+            return texts
+    written = dict(write())
+    # Sources that changed meanwhile may have written parts of it.
+    if sources_hash() is not None:
+        _keep_texts(folder, stem, written)
+    return written
+
+
+def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:
+    """Keep texts in the folder, unless it takes none: they are at hand all the same."""
+    content = zlib.compress(json.dumps(texts).encode(), 1)
+    with suppress(OSError, WriteError):
+        folder.mkdir(parents=True, exist_ok=True)
+        write_atomically(folder / file_name(stem, content, TEXTS), content)
+        keep_within(folder)
 
 
 def _short_hash(content: bytes) -> str:
@@ -143,31 +192,31 @@ def _program_facts(word: str) -> str:
     return str(program)
 
 
-def mark_used(library: Path) -> None:
-    """Remember that a library is used now."""
+def mark_used(file: Path) -> None:
+    """Remember that a file is used now."""
     with suppress(OSError):
-        os.utime(library, ns=(time.time_ns(), library.stat().st_mtime_ns))
+        os.utime(file, ns=(time.time_ns(), file.stat().st_mtime_ns))
 
 
 def keep_within(folder: Path, limit: int = LIMIT) -> None:
-    """Remove the least recently used libraries beyond a limit, and what killed compilations left.
+    """Remove the least recently used libraries and texts beyond a limit, and what killed compilations left.
 
     Args:
-        folder: with the libraries.
+        folder: with the files.
         limit: bytes.
     """
     now = time.time()
-    libraries: list[tuple[float, int, Path]] = []
+    files: list[tuple[float, int, Path]] = []
     for path in folder.iterdir():
         # Another process may remove what is listed here.
         with suppress(OSError):
             found = path.stat()
             if path.name.startswith(SCRATCH) and now - found.st_mtime > ABANDONED:
                 shutil.rmtree(path, ignore_errors=True)
-            elif LIBRARY.fullmatch(path.name):
-                libraries.append((found.st_atime, found.st_size, path))
-    size = sum(size for _, size, _ in libraries)
-    for used, own_size, path in sorted(libraries):
+            elif OURS.fullmatch(path.name):
+                files.append((found.st_atime, found.st_size, path))
+    size = sum(size for _, size, _ in files)
+    for used, own_size, path in sorted(files):
         if size <= limit or now - used < IN_USE:
             return
         with suppress(OSError):

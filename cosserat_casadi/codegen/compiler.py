@@ -16,9 +16,9 @@ from cosserat_casadi.codegen.cache import (
     VARIABLE,
     cache_folder,
     content_hash,
+    file_name,
     keep_within,
-    kept_library,
-    library_name,
+    kept_file,
     mark_used,
 )
 from cosserat_casadi.codegen.processes import Processes
@@ -59,7 +59,7 @@ def shared_object(
     stem = f"{name}-{digest}"
     folder = cache_folder()
     try:
-        kept = kept_library(folder, stem)
+        kept = kept_file(folder, stem)
         if kept is not None:
             mark_used(kept)
             return kept
@@ -164,7 +164,7 @@ def _compile(compiler: str, sources: Sequence[Path], folder: Path, stem: str, pr
             command = [*call, "-shared", *map(str, objects), "-o", str(made), "-lm"]
             _run(processes, command, made, sources[0].parent)
         _check_loads(compiler, made)
-        library = folder / library_name(stem, made.read_bytes())
+        library = folder / file_name(stem, made.read_bytes())
         made.replace(library)
     return library
 

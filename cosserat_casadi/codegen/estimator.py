@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -11,6 +12,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernel, kernels
 from cosserat_casadi.codegen.library import LEAST_MISFIT, library_sources
@@ -197,7 +199,9 @@ class EstimatorLibrary:
         return results
 
 
-def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int]) -> EstimatorLibrary:
+def estimator_library(
+    model: Model, measured: ca.Function, indices: Sequence[int], kind: Sequence[Any]
+) -> EstimatorLibrary:
     """Sources of the solver of a model with a function that estimates inputs.
 
     Args:
@@ -205,10 +209,18 @@ def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int
         measured: (x, inputs, at, measured) ↦ the differences between model and measurement, and their derivatives with
             x and with the numbers that are found. Behind the inputs stand the parameters.
         indices: of these numbers among the stacked inputs and parameters.
+        kind: all that tells this function from others of the model.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
     """
+    made_from = (estimator_library.__name__, model, kind)
+    files = kept_texts(NAME, made_from, lambda: _texts(model, measured, indices))
+    return EstimatorLibrary(tuple(files.items()), len(indices), measured.size1_out(0), model.size)
+
+
+def _texts(model: Model, measured: ca.Function, indices: Sequence[int]) -> dict[str, str]:
+    """Sources and headers of :func:`estimator_library`."""
     names = model_names(NAME, model)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
@@ -228,4 +240,4 @@ def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int
     # A part of the library's own source: it uses the solver's linear algebra.
     files[f"{NAME}.c"] += render("estimate.c.in", words)
     files[LEAST_MISFIT] = resource("c", LEAST_MISFIT)
-    return EstimatorLibrary(to_compile(files), len(indices), measured.size1_out(0), model.size)
+    return dict(to_compile(files))

@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import (
@@ -73,8 +74,12 @@ def compiled_motion_stage(
     found = find_compiler(compiler)
     equations = f"{name}_equations"
     poses = f"{name}_poses"
-    texts = written_in_c(equations_functions(stage, equations, curvature), equations, progress)
-    texts |= written_in_c(poses_functions(stage, poses, curvature), poses, progress)
+
+    def write() -> dict[str, str]:
+        of_equations = written_in_c(equations_functions(stage, equations, curvature), equations, progress)
+        return of_equations | written_in_c(poses_functions(stage, poses, curvature), poses, progress)
+
+    texts = kept_texts(name, (compiled_motion_stage.__name__, stage, name, curvature), write)
     library = os.fspath(compiled_texts(name, texts, found, progress=progress))
     return CompiledMotionStage(StageEquations(ca.external(equations, library)), ca.external(poses, library))
 

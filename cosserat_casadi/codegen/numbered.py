@@ -33,15 +33,22 @@ class Value:
     @property
     def transposed(self) -> Value:
         """The transpose."""
+        if 1 in self.pattern.shape:
+            # The entries stay in their order.
+            return Value(self.pattern.T, self.numbers)
         return _of_matrix(self._matrix.T)
 
     def projected(self, pattern: ca.Sparsity) -> Value:
         """The entries of another pattern."""
+        if pattern == self.pattern:
+            return self
         return _of_matrix(ca.project(self._matrix, pattern))
 
     @property
     def dense(self) -> Value:
         """All entries."""
+        if self.pattern.is_dense():
+            return self
         return self.projected(ca.Sparsity.dense(*self.pattern.shape))
 
     @property
@@ -98,7 +105,8 @@ class Origins:
     def __init__(self) -> None:
         # Arrays of things with room for more, which is doubled when it is full.
         self._first = np.zeros(64, dtype=np.int64)
-        self._constant = np.zeros(64, dtype=np.bool_)
+        # Of every number the thing that it is an entry of; 0 for all constants.
+        self._owners = np.zeros(64, dtype=np.int64)
         self._values: list[list[float] | None] = []
         self.sizes: list[int] = []
         self._count = 0
@@ -107,15 +115,17 @@ class Origins:
     def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> Value:
         """Number the entries of one more thing, of constants with their values."""
         thing = len(self.sizes)
+        end = self._count + pattern.nnz()
         if thing == len(self._first):
             self._first = np.concatenate([self._first, np.zeros_like(self._first)])
-            self._constant = np.concatenate([self._constant, np.zeros_like(self._constant)])
+        if end > len(self._owners):
+            self._owners = np.concatenate([self._owners, np.zeros(max(len(self._owners), end), dtype=np.int64)])
         self._first[thing] = self._count
-        self._constant[thing] = constants is not None
         self._values.append(constants)
         self.sizes.append(pattern.nnz())
-        numbers = np.arange(self._count, self._count + pattern.nnz())
-        self._count += pattern.nnz()
+        numbers = np.arange(self._count, end)
+        self._owners[numbers] = 0 if constants is not None else thing
+        self._count = end
         if constants is not None:
             numbers[np.array(constants) == 0.0] = 0
         return Value(pattern, numbers)
@@ -127,7 +137,7 @@ class Origins:
 
     def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
         """Which of these are constants."""
-        return self._constant[self._things(numbers)]
+        return np.asarray(self._owners[numbers] == 0)
 
     def numbers(self, thing: int) -> Numbers:
         """Numbers of all entries of a thing."""
@@ -136,30 +146,27 @@ class Origins:
 
     def owners(self, numbers: Numbers) -> Numbers:
         """For each number the thing that it is an entry of; 0 for all constants."""
-        owners = self._things(numbers)
-        return np.where(self._constant[owners], 0, owners)
+        return np.asarray(self._owners[numbers])
 
     def holders(self, numbers: Numbers) -> list[int]:
         """The things that hold these entries, constants left out."""
-        return [owner for owner in np.unique(self.owners(numbers)).tolist() if owner]
-
-    def _things(self, numbers: Numbers) -> Numbers:
-        return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
+        return sorted(set(self.owners(numbers).tolist()) - {0})
 
     def is_whole(self, numbers: Numbers) -> bool:
         """Whether these are all entries of one thing in their order, or constants."""
         if len(numbers) == 0:
             return True
-        owners = self.owners(numbers)
-        owner = int(owners[0])
-        if np.any(owners != owner):
-            return False
-        return owner == 0 or (len(numbers) == self.sizes[owner] and bool(np.all(np.diff(numbers) == 1)))
+        owner = int(self._owners[numbers[0]])
+        if owner == 0:
+            return not self._owners[numbers].any()
+        first = self._first[owner]
+        return len(numbers) == self.sizes[owner] and numbers[0] == first and bool(np.all(np.diff(numbers) == 1))
 
     def constants(self, numbers: Numbers) -> list[float]:
         """Values of constants."""
         values = []
-        for thing, number in zip(self._things(numbers).tolist(), numbers.tolist(), strict=True):
+        things = np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
+        for thing, number in zip(things.tolist(), numbers.tolist(), strict=True):
             of_thing = self._values[thing]
             assert of_thing is not None, "asked for of constants alone"
             values.append(of_thing[number - int(self._first[thing])])

@@ -11,10 +11,11 @@ from functools import cache
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
-from cosserat_casadi.codegen.lanes import in_lanes
+from cosserat_casadi.codegen.lanes import in_lanes, lanes_files
 from cosserat_casadi.codegen.library import VERBATIM, library_sources
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
@@ -134,10 +135,18 @@ def row_library(
     Raises:
         ExportError: two things of the scene would have one name in C.
     """
-    names = model_names(NAME, model, estimate_errors=estimate_errors)
+    columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
+    made_from = (row_library.__name__, model, estimate_errors, stability, lanes)
+    files = kept_texts(NAME, made_from, lambda: _row_texts(model, columns, stability=stability, lanes=lanes))
+    in_rows = tuple(files.items())
+    return RowLibrary(in_rows, model.inputs.size, model.parameters.size, len(columns), lanes_files(NAME)[0] in files)
+
+
+def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes: bool) -> dict[str, str]:
+    """Sources and headers of the solver of a model with a function for rows."""
+    names = model_names(NAME, model, estimate_errors=ERRORS[0] in columns)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
-    columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
     side_by_side = in_lanes(model, names) if lanes else None
     files = {
         **library_sources(model, names, parts, generated, None, rows=side_by_side),
@@ -145,8 +154,7 @@ def row_library(
         **generated,
         f"{NAME}_rows.c": _rows_source(model, names, columns, lanes=side_by_side is not None),
     }
-    in_rows = to_compile(files)
-    return RowLibrary(in_rows, model.inputs.size, model.parameters.size, len(columns), side_by_side is not None)
+    return dict(to_compile(files))
 
 
 def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:

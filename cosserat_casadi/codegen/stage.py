@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import library_names
@@ -70,7 +71,12 @@ def compiled_stage(
     wanted = dict(sections or {})
     _check_wanted(model, wanted, actuators)
     found = find_compiler(compiler)
-    texts = written_in_c(stage_functions(model, name, curvature, wanted, actuators), name, progress)
+    made_from = (compiled_stage.__name__, model, name, curvature, wanted, actuators)
+    texts = kept_texts(
+        name,
+        made_from,
+        lambda: written_in_c(stage_functions(model, name, curvature, wanted, actuators), name, progress),
+    )
     return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
 
 

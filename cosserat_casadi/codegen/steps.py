@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -222,9 +223,17 @@ class _Reading:
 
     def _order(self, count: int, vectors: Sequence[Numbers]) -> Numbers:
         """An order of entries in which the fewest must be moved."""
-        candidates = [np.arange(count), *(np.argsort(numbers, kind="stable") for numbers in vectors)]
-        costs = [sum(self._cost(numbers[order]) for numbers in vectors) for order in candidates]
-        return candidates[int(np.argmin(costs))]
+        as_they_lie = np.arange(count)
+        least = sum(self._cost(numbers) for numbers in vectors)
+        best = as_they_lie
+        for numbers in vectors:
+            if least == 0:
+                break
+            order = np.argsort(numbers, kind="stable")
+            cost = sum(self._cost(vector[order]) for vector in vectors)
+            if cost < least:
+                least, best = cost, order
+        return best
 
     def _cost(self, numbers: Numbers) -> float:
         """Entries that must be moved to have them in this order."""
@@ -334,8 +343,13 @@ class _Reading:
 
 
 def entrywise(code: int, patterns: Sequence[ca.Sparsity]) -> ca.Function:
-    """An operation on columns and scalars, entry by entry."""
-    symbols = [ca.MX.sym("operand", pattern) for pattern in patterns]
+    """An operation on dense columns and scalars, entry by entry."""
+    return _entrywise(code, tuple(pattern.numel() for pattern in patterns))
+
+
+@cache
+def _entrywise(code: int, sizes: tuple[int, ...]) -> ca.Function:
+    symbols = [ca.MX.sym("operand", size) for size in sizes]
     result = ca.MX.unary(code, *symbols) if len(symbols) == 1 else ca.MX.binary(code, *symbols)
     return ca.Function("operation", symbols, [result])
 

@@ -35,5 +35,6 @@ def row_library(
     kind = (tuple(sections.items()), tuple(indices), constant.tobytes())
     kept: dict[object, EstimatorLibrary] = model.__dict__.setdefault("_row_libraries", {})
     if kind not in kept:
-        kept[kind] = estimator_library(model, differences(model, sections, indices, abscissae), indices)
+        measured = differences(model, sections, indices, abscissae)
+        kept[kind] = estimator_library(model, measured, indices, kind)
     return kept[kind]

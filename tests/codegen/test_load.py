@@ -16,7 +16,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, SceneError, build, discretise, export, load, solve
 from cosserat_casadi.codegen import compiler
-from cosserat_casadi.codegen.cache import cache_folder, library_name
+from cosserat_casadi.codegen.cache import cache_folder, file_name
 from cosserat_casadi.codegen.compiler import FLAGS
 from cosserat_casadi.codegen.manifest import MANIFEST
 from tests.scenes import WEIGHT, push, scene
@@ -189,7 +189,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     made: list[str] = []
 
     def pretend(compiler: str, sources: list[Path], folder: Path, stem: str, progress: object) -> Path:
-        library = folder / library_name(stem, b"")
+        library = folder / file_name(stem, b"")
         made.append(library.name)
         library.write_bytes(b"")
         return library

@@ -1,0 +1,100 @@
+"""A key of the origin of texts in C, under which they are kept: it is known before they are written.
+
+Models, scenes, options are records of numbers and words. The same records, read by the same sources with the same
+libraries, lead to the same texts. Other values have no key: a record or a model whose class comes from outside the
+package, since its mechanics are not known here, or an expression of CasADi.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.scene.records import Record
+from cosserat_casadi.sources import sources_hash
+
+PACKAGE = "cosserat_casadi"
+
+PLAIN = (type(None), bool, int, float, str, bytes)
+"""Classes of values that their own texts tell."""
+
+Tokens = tuple["str | Tokens", ...]
+"""Words, and groups of them."""
+
+
+class NoDataError(Exception):
+    """A value that no text tells wholly."""
+
+
+def key_of(*made_from: Any) -> str | None:
+    """A hash of values and of all else that texts depend on: the package's sources, CasADi, NumPy and the machine.
+
+    Returns:
+        None where a value is no data, or where the sources have changed since this process read them.
+    """
+    sources = sources_hash()
+    if sources is None:
+        return None
+    try:
+        tokens = _tokens(made_from)
+    except NoDataError:
+        return None
+    around = (sources, ca.__version__, np.__version__, platform.system(), platform.machine())
+    # The text of a tuple of words and tuples can be read in one way alone.
+    return hashlib.sha256(repr((around, tokens)).encode()).hexdigest()[:20]
+
+
+def _tokens(value: Any) -> Tokens:
+    """The name of the class of a value, and its content.
+
+    Raises:
+        NoDataError: the value, or one that it holds, is no data.
+    """
+    kind = type(value)
+    if kind in PLAIN:
+        return kind.__name__, repr(value)
+    if kind in (tuple, list):
+        return kind.__name__, *map(_tokens, value)
+    if isinstance(value, Mapping):
+        return "mapping", *[(_tokens(key), _tokens(entry)) for key, entry in value.items()]
+    if isinstance(value, np.ndarray | np.generic):
+        if value.dtype.hasobject:
+            raise NoDataError
+        return "array", str(value.dtype), repr(value.shape), value.tobytes().hex()
+    if not _is_of_package(kind):
+        raise NoDataError
+    name = f"{kind.__module__}.{kind.__qualname__}"
+    if isinstance(value, Enum):
+        return name, value.name
+    if any("__reduce__" in vars(base) for base in kind.__mro__[:-1]):
+        # How a model is made anew from its description, which pickle takes too.
+        made_by, arguments = value.__reduce__()
+        if not _is_of_package(made_by):
+            raise NoDataError
+        return name, f"{made_by.__module__}.{made_by.__qualname__}", _tokens(arguments)
+    return name, *[(field, _tokens(getattr(value, field))) for field in _fields(value)]
+
+
+def _fields(record: Any) -> list[str]:
+    """Names of the fields of a record.
+
+    Raises:
+        NoDataError: the value is no record.
+    """
+    if isinstance(record, Record):
+        return [*type(record).model_fields, "__pydantic_private__"]
+    if is_dataclass(record):
+        return [field.name for field in fields(record)]
+    raise NoDataError
+
+
+def _is_of_package(named: Any) -> bool:
+    """Whether a class or a function is one of this package."""
+    return str(named.__module__).partition(".")[0] == PACKAGE
