@@ -79,12 +79,7 @@ class JointGap:
 
 @dataclass(frozen=True)
 class UnloadedScene:
-    """Poses of rods and bodies where nothing acts.
-
-    Attributes:
-        scene: the scene.
-        rods: the discrete rods.
-    """
+    """Poses of rods and bodies where nothing acts."""
 
     scene: scenes.Scene
     rods: Mapping[str, DiscreteRod]

@@ -43,12 +43,7 @@ MOST_SECTIONS = 40
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a guard falls through zero.
-
-    Attributes:
-        time: s.
-        guard: its number.
-    """
+    """Where a guard falls through zero."""
 
     time: float
     guard: int
