@@ -93,7 +93,11 @@ class Model(ModelFunctions, MotionFunctions):
         return bound
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
-        """The model, without parameters, of a scene with other constraints, on the same modes and nodes."""
+        """The model, without parameters, of a scene with other constraints, on the same modes and nodes.
+
+        Args:
+            change: the scene ↦ the other scene, of the same rods.
+        """
         bound = self.at()
         nominal = build(change(bound.discrete.nominal.scene).baked(), self.discretisation)
         if bound.discrete.scaling is None:
