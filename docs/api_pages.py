@@ -185,7 +185,7 @@ CONCEPTS = (
             "codegen.compiled_motion.CompiledStep",
             "codegen.compiled_motion.StepSensitivity",
             "codegen.compiled_motion.LinearMotion",
-            "codegen.motion_status.MotionStatus",
+            "codegen.status.MotionStatus",
             "codegen.fmu.write_fmu",
             "page.page.export_page",
         ),

@@ -42,11 +42,7 @@ NODES_MARGIN = 1.2
 
 @dataclass(frozen=True)
 class Enough:
-    """The solution can serve as a reference.
-
-    Attributes:
-        resolution: its errors.
-    """
+    """The solution can serve as a reference."""
 
     resolution: Resolution
 

@@ -65,19 +65,6 @@ ROUNDING = 1e-9
 """Smallest excess of a grid that is told from rounding."""
 
 
-@dataclass(frozen=True)
-class Coarsened:
-    """A coarser discretisation of every rod, and where its equilibrium is.
-
-    Attributes:
-        discretisation: one for every rod.
-        start: its unknowns, near its equilibrium, shape (n,).
-    """
-
-    discretisation: dict[str, Discretisation]
-    start: FloatArray
-
-
 def alike_rods(model: Model) -> list[tuple[str, ...]]:
     """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
     discrete = model.discrete
@@ -107,8 +94,8 @@ class Coarsening:
     bound: float
     wave_modes: int = 0
 
-    def run(self) -> Coarsened:
-        """The cheapest discretisation found."""
+    def run(self) -> tuple[dict[str, Discretisation], FloatArray]:
+        """The cheapest discretisation of every rod, and unknowns near its equilibrium, shape (n,)."""
         no_shift = self.preview.no_shift
         uniform_modes = self._uniform_modes()
         first_modes = self._drop_modes(uniform_modes, no_shift, MODES_SHARE * self.bound)
@@ -119,7 +106,7 @@ class Coarsening:
         chosen = {name: replace(grid, modes=modes[name]) for name, grid in grids.items()}
         unknowns = self.preview.with_modes(modes)
         kept = self.preview.kept(modes)
-        return Coarsened(chosen, unknowns[kept])
+        return chosen, unknowns[kept]
 
     def rod_time(self, name: str, discretisation: Discretisation) -> float:
         """Foreseen time of one rod, µs."""

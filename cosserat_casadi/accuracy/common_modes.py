@@ -70,12 +70,7 @@ class LoadCase:
 
 @dataclass
 class Answers:
-    """Answers of cases on one discretisation.
-
-    Attributes:
-        chosen: discretisation of every rod.
-        solutions: by the number of the case.
-    """
+    """Answers of cases on one discretisation."""
 
     chosen: Chosen
     solutions: dict[int, Solution] = field(default_factory=dict)

@@ -59,11 +59,7 @@ class FinerShift:
 
 @dataclass(frozen=True)
 class Preview:
-    """A reference solution that foresees what coarser discretisations would give.
-
-    Attributes:
-        reference: a converged solution.
-    """
+    """A reference solution that foresees what coarser discretisations would give."""
 
     reference: Solution
     _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict, repr=False)

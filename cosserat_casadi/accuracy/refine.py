@@ -334,9 +334,9 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
     reference_error = resolution.tip_error
     for share in COARSENING_SHARES:
         bound = share * solver.tolerance - reference_error
-        coarsened = Coarsening(resolution.preview, bound, solver.wave_modes).run()
-        model = solver.build(coarsened.discretisation)
-        solution = corrected_from(model, coarsened.start, reference.inputs)
+        discretisation, start = Coarsening(resolution.preview, bound, solver.wave_modes).run()
+        model = solver.build(discretisation)
+        solution = corrected_from(model, start, reference.inputs)
         if solution is not None:
             solver.iterations += solution.iterations
         if solution is None or not solution.converged:

@@ -1,14 +1,79 @@
-"""Time that each effect of a scene costs: the compiled scene with it, and without it."""
+"""Times that effects cost: of loads and actuators in compiled C, of inertia and damping in CasADi's virtual machine."""
 
 from __future__ import annotations
 
 from contextlib import ExitStack, closing
+from dataclasses import dataclass, fields
+
+import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.bench.measurement import best_time
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.compiler import Progress
-from cosserat_casadi.model.build import build
-from cosserat_casadi.model.operation_cost import without_load
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.operation_cost import MotionPrice, price_of_motion, without_load
+
+TURNS = 5
+"""Times that each model is timed beside others."""
+
+
+@dataclass(frozen=True)
+class MotionTimes:
+    """Best times of a call in CasADi's virtual machine, µs.
+
+    Attributes:
+        residual: of statics.
+        jacobian: of statics, with the residual.
+        inverse_dynamics: residual of the equations of motion.
+        dynamics_jacobian: that with its derivatives with positions, velocities and accelerations.
+    """
+
+    residual: float
+    jacobian: float
+    inverse_dynamics: float
+    dynamics_jacobian: float
+
+
+@dataclass(frozen=True)
+class MotionCost:
+    """Times of the equations of motion of a model.
+
+    Attributes:
+        price: their scalar operations.
+        times: of a call, of the equations of statics too.
+    """
+
+    price: MotionPrice
+    times: MotionTimes
+
+
+def motion_costs(*models: Model) -> list[MotionCost]:
+    """Operations and times of models built for a motion, in their order.
+
+    They are timed in turn, and the best of several turns counts: what else the machine does comes to all of them.
+    """
+    turns = [[motion_times(model) for model in models] for _ in range(TURNS)]
+    costs = []
+    for model, of_model in zip(models, zip(*turns, strict=True), strict=True):
+        best = {entry.name: min(getattr(times, entry.name) for times in of_model) for entry in fields(MotionTimes)}
+        costs.append(MotionCost(price_of_motion(model), MotionTimes(**best)))
+    return costs
+
+
+def motion_times(model: Model) -> MotionTimes:
+    """Times of a model built for a motion, at rest in the unloaded shape: they are the same everywhere."""
+    x = model.unloaded()
+    inputs = model.pack()
+    still = np.zeros(model.size)
+    held = np.zeros(model.inputs.size)
+    in_motion = (x, still, still, inputs, held, held)
+    return MotionTimes(
+        residual=best_time(lambda: model.residual(x, inputs)),
+        jacobian=best_time(lambda: model.jacobian(x, inputs)),
+        inverse_dynamics=best_time(lambda: model.inverse_dynamics(*in_motion)),
+        dynamics_jacobian=best_time(lambda: model.dynamics_jacobian(*in_motion)),
+    )
 
 
 def effect_times(

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi.bench.effects import MotionCost
 from cosserat_casadi.bench.measurement import Measurement, front
-from cosserat_casadi.bench.motion_times import MotionCost
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
 from cosserat_casadi.model.operation_cost import Price

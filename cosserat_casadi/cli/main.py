@@ -16,7 +16,6 @@ from rich.markup import escape
 from cosserat_casadi.cli.command_group import CommandGroup
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.reports.format import print_plain
-from cosserat_casadi.cli.reports.problems import print_refusal
 from cosserat_casadi.cli.signals import (
     StoppedError,
     end_in_time,
@@ -30,6 +29,7 @@ from cosserat_casadi.cli.signals import (
 )
 from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence_output
 from cosserat_casadi.errors import CosseratError, ExportError, NoReferenceError, SceneError, WriteError
+from cosserat_casadi.spelling import counted
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
@@ -124,7 +124,7 @@ def _failed(console: Console, error: Exception) -> int:
         Exception: the error itself, where it is none that a user can do something about.
     """
     if isinstance(error, SceneError | ExportError):
-        print_refusal(console, error)
+        _print_refusal(console, error)
         _print_page(console, error)
         return REFUSED
     if isinstance(error, CosseratError):
@@ -168,6 +168,15 @@ def _system_sentence(error: OSError) -> str:
     if error.filename is None:
         return f"Standard output or a temporary file could not be written: {error.strerror}"
     return f"{error.filename}: {error.strerror}"
+
+
+def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
+    """Print every reason for which an input is refused."""
+    count = counted(len(error.problems), "problem")
+    print_plain(console, f"[bold red]Refused:[/] {count}.")
+    for problem in error.problems:
+        # Not wrapped: a path cut in two cannot be copied.
+        print_plain(console, f"  {escape(str(problem))}", soft_wrap=True)
 
 
 def _print_page(console: Console, error: CosseratError) -> None:

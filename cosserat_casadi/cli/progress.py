@@ -69,11 +69,7 @@ def progress_bar(*more: ProgressColumn) -> Progress:
 
 @contextmanager
 def solve_display(command: str) -> Iterator[SolveDisplay]:
-    """A bar for a solve; an interrupt inside ends the command with its exit code.
-
-    Args:
-        command: the work under way, such as "Solving".
-    """
+    """A bar for a solve; an interrupt inside ends the command with its exit code."""
     with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task("Building the model", total=1.0)
 

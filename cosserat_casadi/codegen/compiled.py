@@ -340,11 +340,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         return by_inputs, by_parameters
 
     def _casadi_function(self, entry: dict[str, Any]) -> ca.Function:
-        """A function of the library, with derivatives where the folder holds them.
-
-        Args:
-            entry: the function in the manifest.
-        """
+        """A function of the library, with derivatives where the folder holds them."""
         external = entry.get("external")
         if external and self.differentiable:
             return ca.external(external, str(self.library))

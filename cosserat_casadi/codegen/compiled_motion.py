@@ -14,9 +14,9 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
-from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
 from cosserat_casadi.codegen.parameter_values import ListedParameters
 from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.codegen.status import MOTION_STATUSES, MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -222,7 +222,7 @@ class _StepCall:
     @property
     def done(self) -> bool:
         """Whether the last step was taken."""
-        return STATUSES[self.info.status] is MotionStatus.DONE
+        return MOTION_STATUSES[self.info.status] is MotionStatus.DONE
 
 
 class CompiledMotion(ABC):
@@ -276,7 +276,7 @@ class CompiledMotion(ABC):
         state = np.zeros(3 * self.size)
         p = self.parameters.passed(parameters)
         status = self._motion_function("rest")(pointer(given), *p, pointer(start), pointer(state), self._workspace())
-        return self._unpacked(state) if STATUSES[status] is MotionStatus.DONE else None
+        return self._unpacked(state) if MOTION_STATUSES[status] is MotionStatus.DONE else None
 
     def step(
         self,
@@ -447,7 +447,7 @@ class CompiledMotion(ABC):
         """A step by one of the two functions in C, and what it returned."""
         call = self._prepared(word, state, dt, given, memory, options, results)
         status = call.take()
-        return self._end(call), STATUSES[status]
+        return self._end(call), MOTION_STATUSES[status]
 
     def _prepared(
         self,
@@ -487,7 +487,7 @@ class CompiledMotion(ABC):
         info = call.info
         return CompiledStep(
             state=self._unpacked(call.packed),
-            status=STATUSES[info.status],
+            status=MOTION_STATUSES[info.status],
             iterations=info.iterations,
             jacobians=info.jacobians,
             parts=info.parts,

@@ -16,10 +16,9 @@ from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.contact.sources import contact_files
-from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernel_files import external_sources, kernel_sources
-from cosserat_casadi.codegen.kernels import kernels
+from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest

@@ -76,13 +76,7 @@ GENERATOR = {"with_header": True}
 
 
 def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does.
-
-    Args:
-        kernels: the kernels.
-        names: of the library.
-        stem: of the file names.
-    """
+    """Source and header of the kernels by file name; they compute in float when the library does."""
     return _files(kernels, stem or f"{names.name}_kernels", "int", QUIET + OF_A_LIBRARY.format(macro=names.macro))
 
 

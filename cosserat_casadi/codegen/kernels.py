@@ -10,7 +10,7 @@ from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
-from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
+from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import Names
@@ -144,3 +144,16 @@ def scalar(function: ca.Function, name: str) -> ca.Function:
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     expressions = [ca.densify(expression) for expression in ca.cse(list(function.call(symbols)))]
     return ca.Function(name, symbols, expressions, function.name_in(), function.name_out())
+
+
+def differentiable(model: Model, names: Names) -> list[ca.Function]:
+    """Each function with its forward and reverse derivatives, and the forward derivative of the latter.
+
+    They are named as ``casadi.external`` looks for them.
+    """
+    functions = []
+    for entry in differentiable_functions(model, names):
+        plain = kernel(model, entry.function, entry.external)
+        reverse = plain.reverse(1)
+        functions += [plain, plain.forward(1), reverse, reverse.forward(1)]
+    return functions

@@ -60,12 +60,7 @@ def lanes_files(name: str) -> tuple[str, str]:
 
 
 def in_lanes(model: Model, names: Names) -> InLanes | None:
-    """Files and words that solve cases side by side; None for a model whose cases are solved one after the other.
-
-    Args:
-        model: the model.
-        names: of the library.
-    """
+    """Files and words that solve cases side by side; None for a model whose cases are solved one after the other."""
     # An assembly is eliminated rod after rod, which has no form for lanes.
     if assembled(model, names) is not None:
         return None

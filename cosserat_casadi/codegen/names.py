@@ -146,15 +146,6 @@ def library_names(
 ) -> Names:
     """Names of an exported library.
 
-    Args:
-        name: the library.
-        rods: names of the rods.
-        inputs: names of the inputs.
-        parameters: names of the parameters.
-        actuators: names of the actuators.
-        bodies: names of the rigid bodies.
-        functions: the named functions of the model.
-
     Raises:
         ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
             would have one name.

@@ -89,9 +89,9 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     kernels = list[ca.Function]()
     parts = list[Part]()
     for number, group in enumerate(alike(programs)):
-        made = shared_program([programs[i] for i in group], f"{name}_{number}")
-        kernels.append(_short_or_in_loops(made.program))
-        for i, constants in zip(group, made.constants, strict=True):
+        program, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
+        kernels.append(_short_or_in_loops(program))
+        for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
     return Parted(kernels, parts)
 

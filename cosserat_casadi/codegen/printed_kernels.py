@@ -171,12 +171,7 @@ class PrintedSources:
 
 
 def printed_sources(kernels: Sequence[PrintedKernel], stem: str) -> PrintedSources:
-    """Kernels in C, for any processor and for the wider vectors of newer ones.
-
-    Args:
-        kernels: the kernels.
-        stem: of the file names.
-    """
+    """Kernels in C, for any processor and for the wider vectors of newer ones."""
     public = kernels
     kernels = _with_called(kernels)
     callees = _callees(kernels, stem)

@@ -106,11 +106,7 @@ class Unit:
 
 
 class RoomOfKernel:
-    """The array that a kernel works in: places that are free again are taken before the array grows.
-
-    Attributes:
-        size: numbers in the array.
-    """
+    """The array that a kernel works in: places that are free again are taken before the array grows."""
 
     def __init__(self, size: int) -> None:
         self.size = size
@@ -141,11 +137,7 @@ class RoomOfKernel:
 
 
 class ConstantTables:
-    """Constant arrays of a kernel, each there once.
-
-    Attributes:
-        by_name: the arrays.
-    """
+    """Constant arrays of a kernel, each there once."""
 
     def __init__(self) -> None:
         self.by_name: dict[str, ConstantTable] = {}

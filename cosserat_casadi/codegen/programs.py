@@ -133,21 +133,8 @@ def alike(programs: Sequence[PartialProgram]) -> list[list[int]]:
     return list(groups.values())
 
 
-@dataclass(frozen=True, eq=False)
-class SharedProgram:
-    """One program for several.
-
-    Attributes:
-        program: it reads what each of them reads of the arguments, and constants.
-        constants: those of each.
-    """
-
-    program: Program
-    constants: list[list[float]]
-
-
-def shared_program(programs: Sequence[PartialProgram], name: str) -> SharedProgram:
-    """One program for those that compute alike."""
+def shared_program(programs: Sequence[PartialProgram], name: str) -> tuple[Program, list[list[float]]]:
+    """One program for those that compute alike, and the constants of each, which it reads beside its arguments."""
     return _Sharing(programs, name).result
 
 
@@ -249,7 +236,7 @@ class _Sharing:
         arguments.append(Argument("constants", total, pieces))
         whole = Program(name, self._origins, arguments, steps, {"entries": outputs})
         listed = [[value for values in self._pieces for value in values[i]] for i in range(len(programs))]
-        self.result = SharedProgram(whole, listed)
+        self.result = (whole, listed)
 
     def _given(self, numbers: Numbers, values: Sequence[tuple[float, ...]]) -> Numbers:
         """New numbers of the constants of an operand, whose values in all programs these are."""

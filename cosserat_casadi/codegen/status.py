@@ -1,10 +1,10 @@
-"""Statuses of the solver in C: the outcomes, in the order of their numbers."""
+"""Statuses of the solver in C, which are outcomes, and of steps of a motion, in the order of their numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import Enum
 
-from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -24,6 +24,26 @@ CONTACT_OUTCOMES = _without(Outcome.OUT_OF_RANGE)
 
 TUBE_OUTCOMES = _without(Outcome.PATH_VANISHED, Outcome.BEYOND_MATERIAL, Outcome.CONTACT_UNSETTLED)
 """Statuses of the solver of concentric tubes."""
+
+
+class MotionStatus(Enum):
+    """Every way a step in C can end; the value is the sentence that a user reads. New members come last."""
+
+    DONE = "Done: the equations of motion are solved to the tolerance."
+    NOT_SOLVED = "The equations of the step were not solved, in parts neither: take shorter steps, or move less in one."
+    NOT_FINITE = "A number that was given, or one that the equations gave, is not finite."
+    SINGULAR = "The equations of the step are singular; constraints may contradict or repeat each other."
+    BAD_STEP = "The length of the step is no positive number of seconds."
+    INCONSISTENT = "Supports, joints or cables are not closed: start from an equilibrium."
+
+    @property
+    def label(self) -> str:
+        """A word for a program."""
+        return self.name.lower()
+
+
+MOTION_STATUSES = tuple(MotionStatus)
+"""In the order of their numbers in C."""
 
 
 def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOLVER") -> dict[str, str]:
@@ -46,7 +66,7 @@ def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOL
 
 def motion_status_words(names: Names) -> dict[str, str]:
     """What the templates say of the statuses of motions."""
-    symbols = {status: f"{names.macro}_MOTION_{status.name}" for status in STATUSES}
+    symbols = {status: f"{names.macro}_MOTION_{status.name}" for status in MOTION_STATUSES}
     defined = [f"#define SOLVER_MOTION_{status.name} {symbol}" for status, symbol in symbols.items()]
     return {
         "motion_status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),

@@ -58,12 +58,7 @@ class _Linearised:
 
 
 def followed(problem: LiftedProblem, start: Solution) -> Inverse | None:
-    """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge.
-
-    Args:
-        problem: the problem.
-        start: equilibrium of its model.
-    """
+    """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge."""
     x = start.x
     change = problem.change(start.inputs)
     lower, upper = problem.ranges()

@@ -312,11 +312,6 @@ def change_with_following(solution: Solution, balance: RicherBalance, following:
     """Largest change of a watched pose or length by a correction whose last part is a step of the unknowns.
 
     What the step moves is taken on the answer's own modes and grid: the difference to richer ones is of second order.
-
-    Args:
-        solution: the answer.
-        balance: of the richer model before the step.
-        following: the step.
     """
     before = _watched_at(solution, solution.x)
     after = _watched_at(solution, solution.x + following)

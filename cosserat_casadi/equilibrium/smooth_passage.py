@@ -18,11 +18,7 @@ from cosserat_casadi.model.build import Model
 
 @dataclass(frozen=True)
 class SmoothBarriers:
-    """The smooth bars and balls of a scene.
-
-    Attributes:
-        model: of the scene.
-    """
+    """The smooth bars and balls of a scene."""
 
     model: Model
 

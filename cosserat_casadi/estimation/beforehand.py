@@ -111,12 +111,7 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
 
 
 def stacked_indices(entries: Sequence[UnknownEntry], inputs: int) -> list[int]:
-    """Places of numbers that are found among the stacked inputs and the parameters behind them.
-
-    Args:
-        entries: the unknowns.
-        inputs: size of the stacked inputs.
-    """
+    """Places of numbers that are found among the stacked inputs and the parameters behind them."""
     found = []
     for entry in entries:
         first = 0 if entry.of_input else inputs

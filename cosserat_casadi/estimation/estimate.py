@@ -41,9 +41,8 @@ from cosserat_casadi.estimation.consistency import Consistency, consistency
 from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, information_of
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
-from cosserat_casadi.estimation.row_library import row_library
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
-from cosserat_casadi.estimation.stacking import sections_of, sensor_names, stacked
+from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray

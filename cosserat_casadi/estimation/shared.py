@@ -72,21 +72,6 @@ class SharedLabels:
     units: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class _Reduced:
-    """The least costs of rows as functions of the shared numbers, each row with its own numbers at their best.
-
-    Attributes:
-        slope: sum of their derivatives, shape (q,).
-        curvature: sum of their second derivatives, shape (q, q).
-        moves: how the numbers of each row move with the shared ones, shape (cases, k, q); 0 where not found.
-    """
-
-    slope: FloatArray
-    curvature: FloatArray
-    moves: FloatArray
-
-
 def find_shared(
     search: Callable[[FloatArray], Searched], limits: Limits, names: SharedLabels, own: tuple[FloatArray, FloatArray]
 ) -> tuple[Searched, SharedNumbers, FloatArray]:
@@ -138,9 +123,7 @@ def _expansion(
     own: tuple[FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The rows' cost in the shared numbers to second order: slope, curvature; and how the rows move with them."""
-    reduced = _reduced(found[0], own)
-    slope = reduced.slope
-    curvature = reduced.curvature
+    slope, curvature, moves = _reduced(found[0], own)
     for k in range(len(values)):
         aside = []
         for sign in (-1.0, 1.0):
@@ -159,7 +142,7 @@ def _expansion(
         bend = 2 * (rates[1] - rates[0]) / (after - before)
         # Volumes may bend down; the sum must have a minimum all the same.
         curvature[k, k] += max(bend, -(curvature[k, k] + limits.weight[k] ** 2) / 2)
-    return slope, curvature, reduced.moves
+    return slope, curvature, moves
 
 
 def _volumes(found: Estimates, own: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -209,8 +192,13 @@ def _total(
     return float(of_rows[both].sum() + apart @ apart / 2)
 
 
-def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> _Reduced:
-    """The least costs as functions of the shared numbers, to second order."""
+def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The least costs of rows as functions of the shared numbers, to second order, each row with its own at their best.
+
+    Returns:
+        slope, the sum of their derivatives, shape (q,); the sum of their second derivatives, shape (q, q); and how the
+        numbers of each row move with the shared ones, shape (cases, k, q), 0 where not found.
+    """
     k = len(own[0])
     cases, numbers = found.unknowns.shape
     q = numbers - k
@@ -223,7 +211,7 @@ def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> _Reduced:
     curvature = information[:, k:, k:] + np.swapaxes(coupling, 1, 2) @ moved
     moves = np.zeros((cases, k, q))
     moves[rows] = moved
-    return _Reduced(found.gradient[rows, k:].sum(axis=0), curvature.sum(axis=0), moves)
+    return found.gradient[rows, k:].sum(axis=0), curvature.sum(axis=0), moves
 
 
 def _at_bound(values: FloatArray, limits: tuple[FloatArray, FloatArray]) -> npt.NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""Measured cases as arrays, and the differences of all measurements as one function."""
+"""Measured cases as arrays, the differences of all measurements as one function, and the library that answers rows."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.estimator import MeasuredCases
+from cosserat_casadi.codegen.estimator import EstimatorLibrary, MeasuredCases, estimator_library
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
@@ -129,3 +129,30 @@ def _words_of(record: scenes.Measurement) -> list[str]:
     distances = [word for word, unit in zip(record.entries, record.differences, strict=False) if unit != "rad"]
     angles = [f"about {axis}" for axis in AXES[3]][: len(record.differences) - len(distances)]
     return [*distances, *angles]
+
+
+def row_library(
+    model: Model, sections: dict[int, int], indices: Sequence[int], abscissae: FloatArray
+) -> EstimatorLibrary:
+    """The library for rows of these sections; the model keeps it.
+
+    Writing it takes a second or more, thousands of times as long as a row takes in C.
+
+    Args:
+        model: the measured model.
+        sections: rows of each measurement in one case, by its number.
+        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
+        abscissae: of all cases, shape (cases, sections); an abscissa that is the same in all cases is a constant of the
+            library.
+
+    Raises:
+        ExportError: two things of the scene would have one name in C.
+    """
+    same = np.ptp(abscissae, axis=0) == 0.0
+    constant = np.where(same, abscissae[0], np.nan)
+    kind = (tuple(sections.items()), tuple(indices), constant.tobytes())
+    kept: dict[object, EstimatorLibrary] = model.__dict__.setdefault("_row_libraries", {})
+    if kind not in kept:
+        measured = differences(model, sections, indices, abscissae)
+        kept[kind] = estimator_library(model, measured, indices, kind)
+    return kept[kind]

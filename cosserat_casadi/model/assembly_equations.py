@@ -67,11 +67,7 @@ TURN_ROWS = _turn_rows()
 
 @dataclass(frozen=True)
 class Assembly:
-    """Rods of a system with their constraints and the floating frames.
-
-    Attributes:
-        system: the rods and the arguments of the equations.
-    """
+    """Rods of a system with their constraints and the floating frames."""
 
     system: System
 

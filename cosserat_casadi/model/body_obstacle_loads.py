@@ -36,13 +36,7 @@ def borne_loads(system: System) -> Iterator[BorneLoad]:
 
 @dataclass(frozen=True)
 class BorneLoad:
-    """One load on a rod whose opposite a body bears. Wrenches are [moment; force], motions [δθ; δr].
-
-    Attributes:
-        system: rods and frames in their arguments.
-        rod: name of the rod.
-        load: the loaded sections.
-    """
+    """One load on a rod whose opposite a body bears. Wrenches are [moment; force], motions [δθ; δr]."""
 
     system: System
     rod: str

@@ -63,28 +63,8 @@ class FloatingFrame:
 
 
 @dataclass(frozen=True)
-class JointGap:
-    """Gap of a joint, without unit.
-
-    Attributes:
-        rows: displacements over the length along held directions, and sines of turns about them, shape (k,).
-        derivatives: by a turn of the body about its origin and its displacement over the length, world axes, (k, 6).
-        agrees: whether the axes that it holds point the same way.
-    """
-
-    rows: FloatArray
-    derivatives: FloatArray
-    agrees: bool
-
-
-@dataclass(frozen=True)
 class UnloadedScene:
-    """Poses of rods and bodies where nothing acts.
-
-    Attributes:
-        scene: the scene.
-        rods: the discrete rods.
-    """
+    """Poses of rods and bodies where nothing acts."""
 
     scene: scenes.Scene
     rods: Mapping[str, DiscreteRod]
@@ -210,23 +190,27 @@ class UnloadedScene:
         pose = mean
         for _ in range(MOST_CORRECTIONS):
             gaps = [self._gap(joint, pose, length) for joint in joints]
-            largest = max(float(np.abs(gap.rows).max(initial=0.0)) for gap in gaps)
-            if largest <= CLOSED:
-                return pose if all(gap.agrees for gap in gaps) else mean
-            rows = np.concatenate([gap.rows for gap in gaps])
-            derivatives = np.vstack([gap.derivatives for gap in gaps])
+            rows = np.concatenate([rows for rows, _, _ in gaps])
+            if float(np.abs(rows).max(initial=0.0)) <= CLOSED:
+                return pose if all(agrees for _, _, agrees in gaps) else mean
+            derivatives = np.vstack([derivatives for _, derivatives, _ in gaps])
             change, *_ = np.linalg.lstsq(derivatives, -rows, rcond=FLAT)
             position = pose.position + length * change[3:]
             pose = NumericPose(position, quaternion_product(_quaternion(change[:3]), pose.quaternion))
         return mean
 
-    def _gap(self, joint: scenes.Joint, pose: NumericPose, length: float) -> JointGap:
-        """Gap of a joint where its body has a pose.
+    def _gap(self, joint: scenes.Joint, pose: NumericPose, length: float) -> tuple[FloatArray, FloatArray, bool]:
+        """Gap of a joint where its body has a pose, without unit.
 
         Args:
             joint: the joint.
             pose: of the body.
             length: that displacements are divided by, m.
+
+        Returns:
+            displacements along held directions and sines of turns about them, shape (k,); their derivatives by a turn
+            of the body about its origin and its displacement over the length, world axes, (k, 6); and whether the
+            axes that the joint holds point the same way.
         """
         held = JOINT_KINDS[joint.kind].directions(joint)
         place = place_of(joint)
@@ -242,11 +226,10 @@ class UnloadedScene:
         # The sine of half a turn vanishes as well: what is held to agree has to point the same way.
         count = held.rotations.shape[1]
         weights = count * np.eye(3) - 2.0 * held.rotations @ held.rotations.T
-        return JointGap(
-            rows=np.concatenate([held.positions.T @ shift, held.rotations.T @ _axial(turned - turned.T) / 2.0]),
-            derivatives=np.vstack([held.positions.T @ of_position, held.rotations.T @ of_rotation]),
-            agrees=bool(abs(np.trace(weights @ turned) - np.trace(weights)) <= FLAT),
-        )
+        rows = np.concatenate([held.positions.T @ shift, held.rotations.T @ _axial(turned - turned.T) / 2.0])
+        derivatives = np.vstack([held.positions.T @ of_position, held.rotations.T @ of_rotation])
+        agrees = bool(abs(np.trace(weights @ turned) - np.trace(weights)) <= FLAT)
+        return rows, derivatives, agrees
 
     def _mean_pose(self, joints: list[scenes.Joint], length: float) -> NumericPose:
         """Pose of a body between those in which each tip alone would close its joint.

@@ -16,13 +16,7 @@ PriceProgress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Price:
-    """Scalar operations of a model's functions.
-
-    Attributes:
-        residual: of the residual.
-        jacobian: of the residual and its Jacobian together.
-        igm: of the Inverse Geometric Models of all rods.
-    """
+    """Scalar operations of a model's functions."""
 
     residual: Count
     jacobian: Count

@@ -198,13 +198,7 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
 
 @dataclass(frozen=True)
 class _Section:
-    """A section of a rod of the unloaded scene.
-
-    Attributes:
-        unloaded: the scene.
-        rod: name of the rod.
-        at: abscissa.
-    """
+    """A section of a rod of the unloaded scene."""
 
     unloaded: UnloadedScene
     rod: str

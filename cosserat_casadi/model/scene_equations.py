@@ -22,11 +22,7 @@ from cosserat_casadi.model.system import System
 
 @dataclass(frozen=True)
 class SceneEquations:
-    """The equations of a scene in given arguments.
-
-    Attributes:
-        system: rods, frames and constraints in these arguments.
-    """
+    """The equations of a scene in given arguments."""
 
     system: System
 

@@ -147,10 +147,10 @@ class SlackCables:
     ) -> tuple[FloatArray, Tautness]:
         """Velocities after a cable has snapped taut, and which cables are taut then: impulses only pull."""
         while True:
-            struck = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
-            pushing = [k for k, row in enumerate(self.rows) if phases[k] and struck.impulses[row] < 0.0]
+            v, impulses = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
+            pushing = [k for k, row in enumerate(self.rows) if phases[k] and impulses[row] < 0.0]
             if not pushing:
-                return struck.v, phases
+                return v, phases
             phases = _changed(phases, pushing)
 
     def _pushing(self, x: FloatArray, phases: Tautness) -> list[int]:

@@ -127,19 +127,6 @@ class CorrectedPoint:
 
 
 @dataclass(frozen=True)
-class Advance:
-    """A step along the curve that was taken.
-
-    Attributes:
-        point: where it leads.
-        corrections: steps of its correction.
-    """
-
-    point: ArcPoint
-    corrections: int
-
-
-@dataclass(frozen=True)
 class Curve:
     """A path with the monitor that is evaluated along it.
 
@@ -233,8 +220,8 @@ class Curve:
         within_load = limits.load_factor_change / rate
         return min(step, limits.longest, within_load)
 
-    def advance(self, current: ArcPoint, step: float) -> Advance | None:
-        """Take one step; None where it may lead to another branch."""
+    def advance(self, current: ArcPoint, step: float) -> tuple[ArcPoint, int] | None:
+        """The point one step on, and the steps of its correction; None where it may lie on another branch."""
         predicted = current.y + step * current.tangent
         corrected = self.correct(predicted, plane_through(predicted, current.tangent))
         if corrected is None:
@@ -250,7 +237,7 @@ class Curve:
         # Round a corner events would be passed unseen.
         if cosine < self.settings.min_cosine:
             return None
-        return Advance(point, corrected.steps)
+        return point, corrected.steps
 
 
 def plane_through(y: FloatArray, normal: FloatArray) -> Hyperplane:

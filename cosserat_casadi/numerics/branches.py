@@ -11,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Curve, plane_through
-from cosserat_casadi.numerics.directions import direction_in
+from cosserat_casadi.numerics.neutral import direction_in
 
 DISTANCES = (0.02, 0.05, 0.01, 0.1, 0.002)
 """Distances from the bifurcation at which the branch is looked for, one after the other."""

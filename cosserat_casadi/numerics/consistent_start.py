@@ -47,21 +47,6 @@ class ConsistentStart:
     massless: int
 
 
-@dataclass(frozen=True)
-class _ConstraintsInTime:
-    """Constraints along the motion x + τ v, with their derivatives at τ = 0.
-
-    Attributes:
-        values: g, shape (m,).
-        rates: dg/dt, shape (m,), 1/s.
-        accelerations: d²g/dt² without the part of a, shape (m,), 1/s².
-    """
-
-    values: FloatArray
-    rates: FloatArray
-    accelerations: FloatArray
-
-
 def consistent_start(
     equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float
 ) -> ConsistentStart:
@@ -81,13 +66,13 @@ def consistent_start(
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
     linearisation = equations.linearised(instant)
     constraints = _constraint_rows(linearisation, differential)
-    in_time = _in_time(equations, instant, constraints, interval)
+    values, rates, accelerations = _in_time(equations, instant, constraints, interval)
 
     matrix = _saddle(linearisation, differential, constraints)
     inverse, massless = _pseudo_inverse(matrix)
     for _ in range(CORRECTIONS):
         rows = equations.residual_at(instant)
-        rows[constraints] = in_time.accelerations + matrix[constraints] @ instant.a
+        rows[constraints] = accelerations + matrix[constraints] @ instant.a
         change = -inverse @ rows
         corrected_x = np.where(differential, instant.x, instant.x + change)
         corrected_a = np.where(differential, instant.a + change, 0.0)
@@ -96,8 +81,8 @@ def consistent_start(
     balance = equations.residual_at(instant)[~constraints]
     return ConsistentStart(
         instant=instant,
-        position_error=float(np.max(np.abs(in_time.values), initial=0.0)),
-        velocity_error=float(np.max(np.abs(in_time.rates), initial=0.0)),
+        position_error=float(np.max(np.abs(values), initial=0.0)),
+        velocity_error=float(np.max(np.abs(rates), initial=0.0)),
         balance_error=float(np.max(np.abs(balance), initial=0.0)),
         massless=massless,
     )
@@ -149,20 +134,9 @@ def shortly_after(
     return instant.a + answers[:, 0], answers[:, 1:]
 
 
-@dataclass(frozen=True)
-class Impact:
-    """Velocities after an impact that closes constraints at once, and its impulses.
-
-    Attributes:
-        v: velocities after it, shape (n,), 1/s.
-        impulses: integrals over the blow of the algebraic entries; zero of the others, shape (n,), s.
-    """
-
-    v: FloatArray
-    impulses: FloatArray
-
-
-def impact(equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float) -> Impact:
+def impact(
+    equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float
+) -> tuple[FloatArray, FloatArray]:
     """Velocities that satisfy the constraints, after impulses along them: nothing bounces.
 
     M Δv + (∂F/∂λ) Λ = 0 with the rates of all constraints zero after it: the projection of the velocities in the
@@ -175,6 +149,10 @@ def impact(equations: MotionEquations, time: float, x: FloatArray, v: FloatArray
         x: positions, on the constraints, shape (n,).
         v: velocities before it, shape (n,), 1/s.
         interval: time after it in which the equations are smooth, s.
+
+    Returns:
+        velocities after it, shape (n,), 1/s; and impulses, the integrals over the blow of the algebraic entries, zero
+        of the others, shape (n,), s.
     """
     differential = equations.differential
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
@@ -183,11 +161,12 @@ def impact(equations: MotionEquations, time: float, x: FloatArray, v: FloatArray
     matrix = _saddle(linearisation, differential, constraints)
     inverse, _ = _pseudo_inverse(matrix)
     wanted = np.zeros(equations.size)
-    wanted[constraints] = -_in_time(equations, instant, constraints, interval).rates
+    _, rates, _ = _in_time(equations, instant, constraints, interval)
+    wanted[constraints] = -rates
     change = np.zeros(equations.size)
     for _ in range(CORRECTIONS):
         change = change + inverse @ (wanted - matrix @ change)
-    return Impact(instant.v + np.where(differential, change, 0.0), np.where(differential, 0.0, change))
+    return instant.v + np.where(differential, change, 0.0), np.where(differential, 0.0, change)
 
 
 def _saddle(
@@ -209,8 +188,10 @@ def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.
 
 def _in_time(
     equations: MotionEquations, instant: Instant, constraints: npt.NDArray[np.bool_], interval: float
-) -> _ConstraintsInTime:
-    """Differentiate the constraints along the motion, by a polynomial through values after the start.
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Constraints g along the motion x + τ v, ġ in 1/s, and g̈ without the part of a in 1/s², at τ = 0, shape (m,) each.
+
+    They are differentiated by a polynomial through values after the start.
 
     Values before the start may belong to a piece in which the inputs moved otherwise.
     """
@@ -231,7 +212,7 @@ def _in_time(
         first = len(rates) - len(exact_rates)
         rates[first:] = exact_rates
         accelerations[first:] = exact_accelerations
-    return _ConstraintsInTime(values[0], rates, accelerations)
+    return values[0], rates, accelerations
 
 
 def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.directions import TIE, direction_in
+from cosserat_casadi.numerics.neutral import TIE, direction_in
 from cosserat_casadi.numerics.newton import length_of, relative_norm
 
 _GAUSS_NODES, _GAUSS_WEIGHTS = leggauss(4)

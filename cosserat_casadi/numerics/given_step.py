@@ -40,12 +40,7 @@ def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
 
 @dataclass(frozen=True)
 class Longest:
-    """The longest step that was solved.
-
-    Attributes:
-        share: of the given size.
-        solution: its stages.
-    """
+    """The longest step that was solved."""
 
     share: float
     solution: StageSolution

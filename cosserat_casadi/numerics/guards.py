@@ -8,7 +8,6 @@ and no interpolation.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -41,21 +40,8 @@ MOST_SECTIONS = 40
 """Golden sections of the time between two of them in which a guard may fall through zero and rise again."""
 
 
-@dataclass(frozen=True)
-class Crossing:
-    """Where a guard falls through zero.
-
-    Attributes:
-        time: s.
-        guard: its number.
-    """
-
-    time: float
-    guard: int
-
-
-def crossing(step: TimeStep, guards: Guards) -> Crossing | None:
-    """The first time in a step at which a guard falls through zero, by the dense output; None where none does.
+def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
+    """The first time, s, in a step at which a guard falls through zero, and its number; None where none does.
 
     One that falls through zero and rises again between two looks is found where it does so in one dip.
     """
@@ -77,9 +63,9 @@ def crossing(step: TimeStep, guards: Guards) -> Crossing | None:
                 if min(before[k], after[k]) > THROUGH and before[k] + after[k] < falls[k]:
                     fallen = _dip(step, guards, k, (earlier, later), falls[k] / (later - earlier))
             if fallen is not None:
-                found.append(_zero(step, guards, k, (earlier, before[k]), fallen))
+                found.append((_zero(step, guards, k, (earlier, before[k]), fallen), k))
         if found:
-            return min(found, key=lambda one: one.time)
+            return min(found)
     return None
 
 
@@ -122,9 +108,7 @@ def _dip(
     return None
 
 
-def _zero(
-    step: TimeStep, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]
-) -> Crossing:
+def _zero(step: TimeStep, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]) -> float:
     """Where one guard vanishes between two times of a step, given with its values there."""
 
     def value(time: float) -> float:
@@ -139,5 +123,5 @@ def _zero(
                 first = (time, risen)
                 break
         else:
-            return Crossing(float(first[0]), guard)
-    return Crossing(float(bracketed_zero(value, first, last)), guard)
+            return float(first[0])
+    return float(bracketed_zero(value, first, last))

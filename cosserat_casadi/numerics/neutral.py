@@ -1,4 +1,4 @@
-"""Matrices with directions that symmetry leaves neutral, and their inverses that move nothing along these."""
+"""Directions that symmetry leaves neutral: inverses that move nothing along them, and one direction among them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import SINGULAR
+
+TIE = 1e-6
+"""Relative difference below which two entries of a basis are equally large."""
 
 
 def regular(matrix: FloatArray) -> FloatArray:
@@ -26,3 +29,25 @@ def regular_inverse(matrix: FloatArray) -> FloatArray:
     if np.linalg.norm(matrix) * np.linalg.norm(inverse) < 1.0 / SINGULAR:
         return np.asarray(inverse)
     return np.asarray(np.linalg.inv(regular(matrix)))
+
+
+def direction_in(basis: FloatArray, leading: int | None = None) -> FloatArray:
+    """The direction of a space that is nearest to the largest coordinate in it, which grows along it.
+
+    A basis of eigenvectors or singular vectors is known but for rotations in the space, for one vector but for its
+    sign; this direction does not hang on them.
+
+    Args:
+        basis: orthonormal, one vector a column, shape (n, k).
+        leading: number of coordinates that are looked at; by default all.
+
+    Returns:
+        unit vector, shape (n,).
+    """
+    sizes = np.linalg.norm(basis[:leading], axis=1)
+    # The first of equals: which of two alike entries is larger by rounding must not decide.
+    among_largest = sizes >= (1 - TIE) * sizes.max()
+    largest = int(np.argmax(among_largest))
+    direction = basis @ basis[largest]
+    length = np.linalg.norm(direction)
+    return np.asarray(direction / length)

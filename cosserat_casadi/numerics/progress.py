@@ -24,8 +24,4 @@ class Report(Protocol):
     """A callback that a task of several stages calls at the start of each."""
 
     def __call__(self, stage: str, /) -> None:
-        """Take note of the stage.
-
-        Args:
-            stage: the work under way, a phrase for the user.
-        """
+        """Take note of the stage."""

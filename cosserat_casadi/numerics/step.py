@@ -68,9 +68,6 @@ class TimeStep:
         """The motion at a time of the step; its ends are those of the step, outside it is extrapolated.
 
         Positions have an error of order s + 2 in h, velocities of s + 1, accelerations and algebraic entries of s.
-
-        Args:
-            time: s.
         """
         if time == self.end.time:
             return self.end

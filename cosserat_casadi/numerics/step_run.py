@@ -234,13 +234,13 @@ class StepRun:
         found = crossing(whole, self.guards)
         if found is None:
             return False
-        self.guard = found.guard
+        time, self.guard = found
         self.steps.pop()
         wanted = self.size
         begin = self.now.time
         shortest = max(RESOLVED_TIME * max(abs(begin), abs(self.stop)), AT_START * whole.size)
-        if found.time - begin > shortest:
-            self._step_to(restricted(whole, found.time), found.guard)
+        if time - begin > shortest:
+            self._step_to(restricted(whole, time), self.guard)
         self.size = wanted
         return True
 

@@ -136,7 +136,8 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     advance = curve.advance(current, step)
     if advance is None:
         return _halved(traced, step, limits.shortest)
-    arc = Arc(curve, current, advance.point)
+    point, corrections = advance
+    arc = Arc(curve, current, point)
     events = events_between(arc)
     if events is None and step > SEPARATE:
         return _halved(traced, step, limits.shortest)
@@ -161,7 +162,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     traced.points.append(end)
     traced.events += passed
     traced.outcome = _outcome(traced, step, bifurcation_missing=leave_at != 0)
-    if advance.corrections <= limits.grow_below:
+    if corrections <= limits.grow_below:
         step *= GROWTH
     return step
 

@@ -266,11 +266,7 @@ class _Moving:
 
 
 class _Film:
-    """A figure that shows one time of a motion after the other.
-
-    Attributes:
-        figure: matplotlib.figure.Figure, of the first time.
-    """
+    """A figure that shows one time of a motion after the other."""
 
     def __init__(self, frames: AnimationFrames) -> None:
         shapes = moving_shapes(frames.model, np.arange(len(frames.x), dtype=float), frames.x, frames.inputs)

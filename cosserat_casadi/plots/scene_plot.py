@@ -8,10 +8,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import casadi as ca
+
 from cosserat_casadi.control.inverse_result import Inverse
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.plots.arrow_drawing import scene_arrows
+from cosserat_casadi.loads.load import Poses
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.arrow_records import LoadArrows
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
@@ -57,6 +61,24 @@ def plot_solution(solution: Solution) -> Any:
     add_title(figure, solution.model.scene.title)
     _draw_subtitle(canvas.axes, solution)
     return figure
+
+
+def scene_arrows(solution: Solution) -> list[Arrow]:
+    """Arrows of all loads of a solution, in world axes."""
+
+    def rod_poses(name: str, X: FloatArray) -> Poses:
+        return _columns(solution.pose(X, name))
+
+    def body_pose(name: str) -> Poses:
+        return _columns(solution.body(name))
+
+    arrows = LoadArrows(solution.model.discrete, ca.DM(solution.inputs), rod_poses, body_pose)
+    return arrows.all()
+
+
+def _columns(pose: SolvedPoses) -> Poses:
+    # Kernels take columns, (3, k); results hold a row for each section.
+    return pose.position.T, pose.rotation
 
 
 def plot_inverse(inverse: Inverse) -> Any:

@@ -78,7 +78,7 @@ PRESENTATIONS = {
         figure="plots.modes_plot:plot_modes",
     ),
     "Inverse": Presentation(
-        data="results.inverse_file:inverse_result",
+        data="results.solution_file:inverse_result",
         facts="results.facts:inverse_facts",
         figure="plots.scene_plot:plot_inverse",
     ),

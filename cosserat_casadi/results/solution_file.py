@@ -14,6 +14,7 @@ from cosserat_casadi.results.contact_entry import point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 
 if TYPE_CHECKING:
+    from cosserat_casadi.control.inverse_result import Inverse
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
@@ -114,3 +115,21 @@ def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:
     # Strains and internal forces may jump at a break: a reader finds it among the abscissae.
     evenly = np.linspace(0.0, 1.0, SAMPLES)
     return np.unique(np.concatenate([evenly, breaks]))
+
+
+def inverse_result(inverse: Inverse) -> dict[str, Any]:
+    """An inverse problem's end as the plain data of its file; a number that is not finite becomes null."""
+    targets = []
+    for target, gap in zip(inverse.targets, inverse.gaps, strict=True):
+        entry = {
+            "kind": target.kind,
+            "what": gap.what,
+            "position_gap": gap.position,
+            "angle_gap": gap.angle,
+            "position_error_estimate": gap.position_error,
+            "angle_error_estimate": gap.angle_error,
+        }
+        targets.append(entry)
+    data = {**result(inverse.solution), "targets_met": inverse.met, "targets": targets}
+    plain_data: dict[str, Any] = plain(data)
+    return plain_data

@@ -86,9 +86,6 @@ class MotionKernels:
 
     All take what the kernels of an interval at rest take of its turn, the Taylor coefficients of the turn with Ω and
     the factors of the derivatives; the rates of the coefficients; and the rotation of the section at which it begins.
-
-    Attributes:
-        intervals: the functions of an interval at rest.
     """
 
     intervals: IntervalKernels
@@ -126,11 +123,7 @@ class MotionKernels:
 
 
 class _MovingInterval:
-    """One interval in symbols, with the rates of its turn.
-
-    Attributes:
-        at_rest: symbols of the interval at rest.
-    """
+    """One interval in symbols, with the rates of its turn."""
 
     def __init__(self, kernels: IntervalKernels) -> None:
         self._kernels = kernels

@@ -123,9 +123,6 @@ class Kinds(dict[str, Any]):
     """The mechanics of the kinds of one family, or of several whose words differ, by these words.
 
     To look up a kind that is registered with the scene format alone raises a `SceneError`.
-
-    Attributes:
-        families: the families of the records.
     """
 
     def __init__(self, *families: Family[Any]) -> None:

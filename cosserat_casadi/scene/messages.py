@@ -152,11 +152,7 @@ def _description(path: Path, record: type[Record]) -> str:
 
 
 class _FileOrder:
-    """Where faults stand in a file.
-
-    Attributes:
-        tables: the scene as the file gives it.
-    """
+    """Where faults stand in a file."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables = tables

@@ -67,19 +67,6 @@ Holders = Mapping[str, Sequence[Holder]]
 
 
 @dataclass(frozen=True)
-class Tied:
-    """Numbers of a scene that follow others.
-
-    Attributes:
-        numbers: which.
-        ratios: what each is times the number that it follows, one for each cell.
-    """
-
-    numbers: NamedNumbers
-    ratios: tuple[float, ...]
-
-
-@dataclass(frozen=True)
 class NamedNumbers:
     """Numbers of a scene that have been named as one parameter.
 
@@ -91,7 +78,7 @@ class NamedNumbers:
         form: how the key holds its numbers.
         cells: which of the numbers of the key they are, column after column.
         default: their values in the scene, shape (components, places along the rod).
-        tied: other numbers that follow these.
+        tied: other numbers that follow these, each with its ratios to them, one for each cell.
     """
 
     name: str
@@ -101,12 +88,12 @@ class NamedNumbers:
     form: Form
     cells: tuple[Cell, ...]
     default: FloatArray
-    tied: tuple[Tied, ...] = ()
+    tied: tuple[tuple[NamedNumbers, tuple[float, ...]], ...] = ()
 
     @property
     def all_numbers(self) -> tuple[NamedNumbers, ...]:
         """These numbers, and numbers that follow them."""
-        return (self, *(other.numbers for other in self.tied))
+        return (self, *(numbers for numbers, _ in self.tied))
 
     @property
     def field(self) -> str:
@@ -183,7 +170,7 @@ def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
     first, *others = [named_numbers(name, holders) for name in names]
     if first is None or None in others:
         return None
-    tied = tuple(Tied(other, _ratios(first, other)) for other in others if other is not None)
+    tied = tuple((other, _ratios(first, other)) for other in others if other is not None)
     return replace(first, tied=tied)
 
 

@@ -169,11 +169,9 @@ inputs = ["push.force", "cable.tension"]
             values: one for each of its cells: numbers, which are not judged, or expressions.
         """
         scene = self._with_cells(numbers, values)
-        for tied in numbers.tied:
-            following = [
-                value if ratio == 1.0 else ratio * value for ratio, value in zip(tied.ratios, values, strict=True)
-            ]
-            scene = scene._with_cells(tied.numbers, following)
+        for tied, ratios in numbers.tied:
+            following = [value if ratio == 1.0 else ratio * value for ratio, value in zip(ratios, values, strict=True)]
+            scene = scene._with_cells(tied, following)
         return scene
 
     def _with_cells(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:

@@ -31,12 +31,7 @@ class VaryingValue:
 
 
 def varying_values(scene: Scene, tables: Mapping[str, Any]) -> list[VaryingValue]:
-    """All values of a scene that its file gives by more than one number along X, in the order of the format.
-
-    Args:
-        scene: the scene.
-        tables: the tables of the scene, overrides included.
-    """
+    """All values of a scene that its file gives by more than one number along X, in the order of the format."""
     return list(_of_record(scene, tables, ""))
 
 

@@ -31,11 +31,7 @@ class Answer(Protocol):
 
 @dataclass(frozen=True)
 class Parametrised:
-    """A library that takes parameters, as one that takes rows of inputs with parameters behind them.
-
-    Attributes:
-        library: the library.
-    """
+    """A library that takes parameters, as one that takes rows of inputs with parameters behind them."""
 
     library: RowLibrary
 

@@ -18,11 +18,7 @@ class QuestionError(Exception):
 
 @dataclass(frozen=True)
 class Question:
-    """Parts of a question, each checked when it is taken.
-
-    Attributes:
-        parts: of the question, by name.
-    """
+    """Parts of a question, each checked when it is taken."""
 
     parts: Mapping[str, Any]
 

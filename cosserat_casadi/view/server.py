@@ -158,11 +158,7 @@ def _digest(text: str) -> str:
 
 
 class RobotServer(ThreadingHTTPServer):
-    """A server of a session's page, ready to serve.
-
-    Attributes:
-        desk: who answers.
-    """
+    """A server of a session's page, ready to serve."""
 
     def __init__(self, session: ViewSession | ContactSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""

@@ -13,11 +13,10 @@ from rich.console import Console
 
 from cosserat_casadi import Scene, SceneError
 from cosserat_casadi.bench import session
-from cosserat_casadi.bench.effects import effect_times
+from cosserat_casadi.bench.effects import effect_times, motion_costs
 from cosserat_casadi.bench.figure import FIGURES
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.motion_times import motion_costs
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON

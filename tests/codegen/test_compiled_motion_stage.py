@@ -30,14 +30,19 @@ def quick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
 
 
-def held() -> Model:
+def held(*moved: str) -> Model:
     """A rod with multipliers, whose base, an input, moves: rates of inputs enter."""
     tables = FAMILIES["driven and held"]()
     tables["rods"] = [rod(base=tables["rods"][0]["base"])]
     tables["supports"][0]["position"] = [0.7, -0.2, 0.2]
-    tables["inputs"] = ["a.base.position", "a.base.quaternion"]
+    tables["inputs"] = ["a.base.position", *moved]
     tables["accuracy"] = {"modes": 1, "nodes": 2}
     return build(scene_from_dict(tables), moving=True)
+
+
+def turned() -> Model:
+    """As `held`, with a base that turns too: its Jacobian is six times as long."""
+    return held("a.base.quaternion")
 
 
 def somewhere(stage: MotionStage) -> list[FloatArray]:
@@ -58,8 +63,8 @@ def slopes_of(function: ca.Function, at: list[FloatArray]) -> list[ca.DM]:
 
 @pytest.mark.parametrize(
     ("make", "longest"),
-    mostly_slow([(arm, STRAIGHT), (arm, 0), (held, STRAIGHT)], quick=[(arm, 0), (held, STRAIGHT)]),
-    ids=["straight", "loops", "with constraint"],
+    mostly_slow([(arm, STRAIGHT), (arm, 0), (held, STRAIGHT), (turned, STRAIGHT)], quick=[(arm, 0), (held, STRAIGHT)]),
+    ids=["straight", "loops", "with constraint", "with a base that turns"],
 )
 def test_stage_vs_plain(make: Callable[[], Model], longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for module in (stage_module, motion_stage_module):

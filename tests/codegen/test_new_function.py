@@ -17,7 +17,6 @@ from cosserat_casadi import Compiled, ExportError, Model, build, discretise, exp
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function, table
-from tests.codegen.test_load import cached
 from tests.scenes import WEIGHT, push, rod, scene
 
 COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)
@@ -63,12 +62,11 @@ class Made:
     folder: Path
 
 
-@pytest.fixture(params=["one rod", pytest.param("two rods", marks=pytest.mark.slow)])
-def made(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Made:
-    cached(tmp_path / "cache", monkeypatch)
+@pytest.fixture(scope="module", params=["one rod", pytest.param("two rods", marks=pytest.mark.slow)])
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Made:
     wanted = scene({**push(), "rod": "left"}, WEIGHT, rods=RODS[request.param])
     model = WithMidpoint(build(wanted, discretise(wanted, 2, 4)).discrete)
-    return Made(model, export(model, tmp_path / "lib", derivatives=True))
+    return Made(model, export(model, tmp_path_factory.mktemp("new") / "lib", derivatives=True))
 
 
 def symbols(model: Model) -> dict[str, str]:

@@ -16,8 +16,10 @@ from tests.codegen.libraries import Exported, Recipe
 from tests.codegen.motions import EXACT
 from tests.codegen.test_parameters_in_c import RECIPES as AT_REST
 
+FEW_INPUTS = AT_REST["pwire"].scene.model_copy(update={"inputs": ("push.force", "pull.tension")})
+
 RECIPES = {
-    "moving_pwire": Recipe(AT_REST["pwire"].scene, 1, 4, dynamics=True),
+    "moving_pwire": Recipe(FEW_INPUTS, 1, 2, dynamics=True),
     "moving_probot": Recipe(AT_REST["probot"].scene, 2, 4, dynamics=True),
 }
 """A rod, and an assembly that is eliminated rod after rod."""

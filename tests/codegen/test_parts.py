@@ -83,7 +83,7 @@ def test_legs_of_any_length_share_one_kernel() -> None:
     ]
     joints = [{"body": "hand", "rod": f"leg_{i}", "kind": "fixed", "position": place} for i, place in enumerate(places)]
     wanted = scene(rods=legs, bodies=[{"name": "hand", "mass": 0.1}], joints=joints)
-    model = build(wanted, discretise(wanted, 4, 10, "magnus4"))
+    model = build(wanted, discretise(wanted, 2, 4, "magnus4"))
     parts = assembled(model, scene_names("legs", wanted))
     assert parts is not None
     # One for the legs, one for what belongs to none of them.

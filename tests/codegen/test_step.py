@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.codegen.compiled_motion import StepOptions, StepState
-from cosserat_casadi.codegen.motion_status import MotionStatus
+from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.numerics.consistent_start import consistent_start
 from tests import moving_scenes
 from tests.codegen.libraries import Exported

@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
-from cosserat_casadi.estimation import Estimate, estimate, row_library
+from cosserat_casadi.estimation import Estimate, estimate, stacking
 from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.model.operations import operations
 from cosserat_casadi.results.estimate_file import estimate_result, estimate_table
@@ -119,17 +119,17 @@ def test_the_library_of_a_model_is_written_once(monkeypatch: pytest.MonkeyPatch)
     model = build(felt().with_unknowns())
     rows = measured(model, pushes(np.zeros((2, 3))), 6)
     written: list[int] = []
-    write = row_library.estimator_library
+    write = stacking.estimator_library
 
     def counted(*arguments: Any) -> Any:
         written.append(1)
         return write(*arguments)
 
-    monkeypatch.setattr(row_library, "estimator_library", counted)
+    monkeypatch.setattr(stacking, "estimator_library", counted)
     found = [estimate(model, rows) for _ in range(3)]
     assert len(written) == 1
     assert_allclose(found[2].values, found[0].values, rtol=0, atol=0)
-    row_library.row_library(model, {0: 1}, [0, 1, 2], np.array([[0.5]]))
+    stacking.row_library(model, {0: 1}, [0, 1, 2], np.array([[0.5]]))
     assert len(written) == 2
 
 

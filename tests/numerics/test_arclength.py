@@ -245,9 +245,10 @@ def test_a_step_goes_its_length_along_the_tangent_and_not_around_a_corner() -> N
     assert circle.advance(start, 0.5) is None
     advanced = circle.advance(start, 0.2)
     assert advanced is not None
-    assert_allclose(advanced.point.y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
-    assert_allclose(advanced.point.tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
-    assert advanced.point.length == 0.2
+    point, _ = advanced
+    assert_allclose(point.y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
+    assert_allclose(point.tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
+    assert point.length == 0.2
 
 
 def test_a_correction_that_strays_is_refused() -> None:

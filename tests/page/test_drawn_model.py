@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Scene, Solution, build, solve
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.page.drawn_model import SECTIONS, DrawnModel, drawn_layout
-from cosserat_casadi.plots.arrow_drawing import scene_arrows
+from cosserat_casadi.plots.scene_plot import scene_arrows
 from cosserat_casadi.plots.scenery import actuator_routing
 from tests.codegen.libraries import RECIPES
 from tests.families import mostly_slow

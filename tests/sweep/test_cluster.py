@@ -7,6 +7,7 @@ import os
 import signal
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -29,24 +30,29 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
+@contextmanager
+def running(workers: int) -> Iterator[Any]:
+    """A cluster of processes."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         # What thousands of tests have left behind takes the collector seconds, in which no thread of dask begins.
         gc.collect()
         gc.freeze()
         with distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
-        ) as running:
-            yield running
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=":0"
+        ) as cluster:
+            yield cluster
         gc.unfreeze()
 
 
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    with running(1) as cluster:
+        yield cluster
+
+
 @pytest.mark.slow
-def test_a_worker_is_killed_and_every_row_comes_once(
-    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_worker_is_killed_and_every_row_comes_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows of a compiled library, whose stiffness is a parameter; a worker dies while both work."""
     rng = np.random.default_rng(1)
     stiffness = np.concatenate([np.full(4000, 1.4), rng.uniform(1.0, 2.0, 32)])
@@ -58,12 +64,13 @@ def test_a_worker_is_killed_and_every_row_comes_once(
         kept(store, number, results)
         added.append(number)
         if len(added) == 3:
-            killed.append(next(iter(cluster.workers.values())).process.pid)
+            killed.append(next(iter(two.workers.values())).process.pid)
             os.kill(killed[0], signal.SIGKILL)
 
     kept = Store.add
     monkeypatch.setattr(Store, "add", add)
-    sweep(PLANAR, table, tmp_path / "cluster.csv", scheduler=cluster.scheduler_address)
+    with running(2) as two:
+        sweep(PLANAR, table, tmp_path / "cluster.csv", scheduler=two.scheduler_address)
     assert killed
     assert sorted(added) == list(range(8))
     monkeypatch.undo()

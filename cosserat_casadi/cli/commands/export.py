@@ -12,7 +12,6 @@ from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
-from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay
@@ -29,11 +28,12 @@ from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.load_cases import case_layout
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
@@ -152,7 +152,7 @@ def export(
     layout = case_layout(exported_scene)
     asked = asked_ranges(ranges, exported_scene)
     if over is not None or (ranges and exported_scene.touches_exactly):
-        cases = load_cases(over, ranges or [], samples, layout)
+        cases = _load_cases(over, ranges or [], samples, layout)
         check_load_cases(exported_scene, cases)
     chosen_cases = None
     if over is not None and cases is not None:
@@ -212,6 +212,19 @@ def export(
         print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
     if missed or choice.locked:
         raise typer.Exit(NOT_FOUND)
+
+
+def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseLayout) -> FloatArray:
+    """Load cases of a file, or spread over ranges, shape (count, size of a case).
+
+    Raises:
+        SceneError: both or none stand in the command, or one of them is refused.
+    """
+    if over is not None and not ranges:
+        return read_load_cases(over, layout)
+    if over is None and ranges:
+        return spread(ranges, samples, layout)
+    raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:

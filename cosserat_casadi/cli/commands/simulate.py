@@ -120,12 +120,6 @@ def _check_scene(
 ) -> tuple[Scene, Solution | None]:
     """The scene, and the solution that the motion starts from where a file names one.
 
-    Args:
-        scene_file: the scene.
-        settings: values of it to change.
-        start: a result file.
-        problems: the refusals so far.
-
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.
     """
