@@ -116,7 +116,8 @@ def test_columns_of_an_assembly_take_less_code() -> None:
     parts = in_parts(model)
     path_jacobian = with_parameters_behind_inputs(model.path_jacobian)
     straight = parted(path_jacobian, parts.blocks.entry_owners, "straight")
-    longest = max(kernel.n_instructions() for kernel in straight.kernels)
+    # Instructions of the functions that the kernels call count too.
+    longest = max(kernel.expand().n_instructions() for kernel in straight.kernels)
     in_fours = max(kernel.n_instructions() for kernel in parts.in_fours.values())
     assert in_fours < 0.6 * longest
 
