@@ -6,6 +6,7 @@ and fresh points are tried, until none is beyond the tolerance (docs/theory.md, 
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -21,6 +22,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout
+
+LOG = logging.getLogger(__name__)
 
 SEED = 31
 """Of the random points, so that a choice can be repeated."""
@@ -250,6 +253,7 @@ class _Search:
         within = largest is not None and largest <= self.scene.accuracy.tolerance
         locked = self.modes.locked(answers)
         met = within and not locked and not (every and failed)
+        LOG.info("%d points, largest error %.1e, %d without equilibrium", len(self.points), error, len(failed))
         fixed = fixed_by_rod(self.scene, chosen, self.ranges.described)
         return Choice(
             scene=fixed,

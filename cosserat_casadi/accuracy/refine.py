@@ -15,6 +15,7 @@ inputs that excite most.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, overload
@@ -52,6 +53,8 @@ from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.rod.discretisation import Discretisation
+
+LOG = logging.getLogger(__name__)
 
 if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -269,6 +272,7 @@ def _refined(
         solution = _at_level(solver, level, coarser) if on_first is None else on_first.solution
         on_first = None
         verdict = assess(solution, tolerance, solver.wave_modes > 0)
+        LOG.info("level of %d modes, for an error of %.1e: %s", level.modes, tolerance, type(verdict).__name__)
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
             # Too few modes may have no equilibrium where the rod has one: some more levels are tried.

@@ -5,6 +5,7 @@ See docs/theory.md, sections 9 and 10.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,6 +30,8 @@ from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.rod.discretisation import Discretisation
+
+LOG = logging.getLogger(__name__)
 
 TIGHT = 1e-6
 """Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
@@ -117,6 +120,12 @@ class SceneSolver:
 
     def solve(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
         """Solution on a discretisation, from one with fewer modes where that is near, else from the unloaded scene."""
+        solution = self._solved(discretisation, coarser)
+        sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in discretisation.items()}
+        LOG.info("modes and intervals %s: %s, %d iterations so far", sizes, solution.outcome.label, self.iterations)
+        return solution
+
+    def _solved(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
         model = self.build(discretisation)
         if coarser is not None:
             # Stays on the branch of the coarser solution, and costs a few Newton steps only.

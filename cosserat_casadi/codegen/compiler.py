@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import logging
 import os
 import shlex
 import shutil
@@ -23,6 +24,8 @@ from cosserat_casadi.codegen.cache import (
 )
 from cosserat_casadi.codegen.processes import Processes
 from cosserat_casadi.errors import ExportError, Problem
+
+LOG = logging.getLogger(__name__)
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
@@ -62,7 +65,9 @@ def shared_object(
         kept = kept_file(folder, stem)
         if kept is not None:
             mark_used(kept)
+            LOG.info("%s was compiled before: %s", name, kept)
             return kept
+        LOG.info("%s: compiling %d files in %s", name, len(sources), folder)
         folder.mkdir(parents=True, exist_ok=True)
         library = _compile(compiler, sources, folder, stem, progress)
         keep_within(folder)

@@ -8,6 +8,7 @@ checked on the last. See docs/theory.md, section 11.
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -40,6 +41,8 @@ from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
+
+LOG = logging.getLogger(__name__)
 
 TIME_SHARE = 0.3
 """Share of the tolerance that the steps may use up."""
@@ -276,6 +279,7 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         search.levels.append(ResolvedMotion(simulator, history, found, rung, distance, unseen))
+        LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)

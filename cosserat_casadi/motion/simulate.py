@@ -6,6 +6,7 @@ distance of the paths of the tips estimates the error. See docs/theory.md, secti
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -39,6 +40,8 @@ from cosserat_casadi.motion.trajectory import (
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.scene.simulation import Simulation
+
+LOG = logging.getLogger(__name__)
 
 Tell = Callable[[MotionProgress], None]
 """A function that is called with the progress after every step."""
@@ -392,6 +395,8 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
     """The record of a motion: its rows at the times asked for, as far as it reached them."""
     model = simulator.model
     wanted = simulator.simulation.frame_times
+    for event in history.events:
+        LOG.info("%s of %s on %s at %.6g s", event.kind, event.owner, event.obstacle, event.time)
     times = wanted[wanted <= history.end.time]
     states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
