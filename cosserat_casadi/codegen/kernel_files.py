@@ -44,6 +44,16 @@ OF_A_LIBRARY = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) &
 #endif
 """
 
+HIDDEN = """/* Functions that CasADi's code calls are seen by the library alone. */
+#include <math.h>
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility push(hidden)
+#endif
+{text}#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility pop
+#endif
+"""
+
 OF_EXTERNALS = """#ifndef CASADI_SYMBOL_EXPORT
 #if defined(_WIN32)
 #define CASADI_SYMBOL_EXPORT __declspec(dllexport)
@@ -125,7 +135,8 @@ def _files(
     header = f"{BEGIN}{types}{sources.prototypes}{END}"
     if by_casadi:
         generated = _by_casadi(by_casadi, stem, integer)
-        source = generated[f"{stem}.c"] + source
+        text = generated[f"{stem}.c"]
+        source = (text if described else HIDDEN.format(text=text)) + source
         header = generated[f"{stem}.h"] + header
     return {f"{stem}.c": prologue + source, f"{stem}.h": header, **sources.included}
 

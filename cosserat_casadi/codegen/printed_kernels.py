@@ -98,9 +98,10 @@ class ConstantTable:
     numbers: tuple[str, ...]
 
     def text(self, name: str) -> str:
-        """The array in C, under a name."""
-        lines = textwrap.fill(", ".join(self.numbers), 119, initial_indent="  ", subsequent_indent="  ")
-        return f"static const {self.type} {name}[{len(self.numbers)}] = {{\n{lines}}};\n"
+        """The array in C, under a name; of no numbers one that is not read, since C has no empty arrays."""
+        numbers = self.numbers or ("0",)
+        lines = textwrap.fill(", ".join(numbers), 119, initial_indent="  ", subsequent_indent="  ")
+        return f"static const {self.type} {name}[{len(numbers)}] = {{\n{lines}}};\n"
 
 
 @dataclass(frozen=True, eq=False)

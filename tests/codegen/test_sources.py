@@ -61,6 +61,9 @@ def test_solver_passes_every_lint_in_both_languages(library: Library, name: str,
     run(*compiler, f"-std={language}", "-w", *chosen, "-fsyntax-only", made.folder / f"{name}_kernels.c")
 
 
+BY_CASADI = ("loops",)
+"""Recipes with kernels that CasADi's own generator writes."""
+
 CORTEX = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard")
 
 
@@ -90,6 +93,9 @@ def test_shared_library_shows_the_functions_of_the_header_alone(library: Library
     declared = set(re.findall(rf"\b({name}_\w+)\(", (made.folder / f"{name}.h").read_text()))
     assert exported - {"_init", "_fini"} == declared
     kernels = (made.folder / f"{name}_kernels.h").read_text()
+    if name in BY_CASADI:
+        # Its generator writes more functions than are needed; they are hidden.
+        return
     assert not re.search(r"_(checkout|incref|decref|n_in|name_out|sparsity_in|work)\(", kernels)
 
 

@@ -14,7 +14,7 @@ from cosserat_casadi import ExportError, Model, build, discretise
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen import stage as stage_module
 from cosserat_casadi.codegen.kernel_files import external_sources
-from cosserat_casadi.codegen.stage import compiled_stage, stage_functions
+from cosserat_casadi.codegen.stage import compiled_stage, stage_functions, written
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
 from tests.families import mostly_slow
@@ -183,3 +183,14 @@ def test_progress_tells_of_what_is_written_and_compiled() -> None:
     compiled_stage(wire(), "told_stage", progress=lambda *report: told.append(report))
     assert told[:4] == [("Writing told_stage in C", done, 4) for done in range(4)]
     assert told[4:] == [("Compiling told_stage", done, 4) for done in range(5)]
+
+
+def test_a_long_function_is_not_wrapped_in_one_of_its_own_name() -> None:
+    """Two functions of one name cannot both be printed: only another name asks for a function around."""
+    x = ca.SX.sym("x")
+    value = x
+    for _ in range(STRAIGHT):
+        value = ca.sin(value)
+    long = ca.Function("long", [x], [value])
+    assert written(long, "long") is long
+    assert written(long, "other").name() == "other"
