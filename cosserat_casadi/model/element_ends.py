@@ -1,4 +1,4 @@
-"""Where the elements of rods end: where a load, an actuator or a carried rod makes a jump.
+"""Where the elements of rods end: where a load, an actuator, a body or a carried rod makes a jump.
 
 A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
 of the scene's own numbers, so that the order of the places along a rod must stay as well.
@@ -40,6 +40,8 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
             places.extend(member.breaks(record))
     # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
     places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
+    # So is that of a body.
+    places.extend(joint.at for joint in scene.joints if joint.rod == rod)
     return places
 
 

@@ -64,7 +64,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
     outlines = {}
     followed = {}
-    carrying = {joint.rod for joint in model.scene.joints}
+    carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
     held = {support.rod for support in model.scene.supports}
     for name, lines in rods.items():
         if name in held:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
-from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, tips_held_twice
+from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, sections_held_twice
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
@@ -325,7 +325,7 @@ RULES: tuple[Rule, ...] = (
     dangling_names,
     bases_on_nothing,
     bodies_that_nobody_holds,
-    tips_held_twice,
+    sections_held_twice,
     weightless_rods,
     overlapping_supports,
     own_rules,

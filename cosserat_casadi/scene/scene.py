@@ -100,7 +100,7 @@ inputs = ["push.force", "cable.tension"]
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons, pressurised chambers and muscles")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
-    joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
+    joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
@@ -179,6 +179,12 @@ inputs = ["push.force", "cable.tension"]
         records = list(getattr(self, holder.table))
         records[holder.index] = numbers.written(records[holder.index], values)
         return self.model_copy(update={holder.table: tuple(records)})
+
+    @property
+    def rods_held_at_tips(self) -> set[str]:
+        """Names of the rods whose tips a support or a joint holds."""
+        joints = [joint for joint in self.joints if joint.at == 1.0]
+        return {holder.rod for holder in (*self.supports, *joints)}
 
     @property
     def touches_exactly(self) -> bool:
