@@ -34,7 +34,7 @@ from cosserat_casadi.model.scene_constraints import (
     placed_constraints,
     written_constraints,
 )
-from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -415,7 +415,7 @@ def discrete_scene(
     """Constant matrices of every rod of a scene."""
     rods = {}
     for rod in scene.rods:
-        properties = rod_properties(rod)
+        properties = replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name))
         rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
     return DiscreteScene(scene, layout, rods)
 
@@ -433,7 +433,8 @@ def with_numbers(
     rods = {}
     for rod in scene.rods:
         scaling = nominal.rods[rod.name]
-        properties = rod_properties(rod, scaling.properties)
+        own = rod_properties(rod, scaling.properties)
+        properties = replace(own, fixed_masses=fixed_masses(scene, rod.name))
         ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
         rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)
     return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)

@@ -1,4 +1,4 @@
-"""Where the elements of rods end: where a load, an actuator, a body or a carried rod makes a jump.
+"""Where the elements of rods end: where a load, an actuator, a body, a disk or a carried rod makes a jump.
 
 A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
 of the scene's own numbers, so that the order of the places along a rod must stay as well.
@@ -42,6 +42,7 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
     places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
     # So is that of a body.
     places.extend(joint.at for joint in scene.joints if joint.rod == rod)
+    places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
     return places
 
 

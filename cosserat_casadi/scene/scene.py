@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from cosserat_casadi.scene.accuracy import Accuracy
 from cosserat_casadi.scene.actuator_records import Actuator
 from cosserat_casadi.scene.constraint_records import Body, Joint, Support
+from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
@@ -101,6 +102,7 @@ inputs = ["push.force", "cable.tension"]
     actuators: tuple[Actuator, ...] = Field((), description="tendons, pressurised chambers and muscles")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
+    disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
