@@ -88,7 +88,7 @@ def _with_fixed(masses: Numbers, added: Scalar, fixed: FixedMass, rod: DiscreteR
     length = rod.node_lengths[node] if ratio is None else rod.node_lengths[node] * ratio
     density = added / length
     if not any_symbolic([masses, density]):
-        return known(masses) + np.asarray(density) * np.eye(rod.grid.size)[node]
+        return np.asarray(known(masses) + np.asarray(density) * np.eye(rod.grid.size)[node])
     at_node = ca.DM(ca.Sparsity.triplet(rod.grid.size, 1, [node], [0]), 1.0)
     total: Matrix = as_matrix(masses) + at_node * density
     return total

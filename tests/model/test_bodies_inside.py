@@ -63,6 +63,27 @@ def test_jacobian_vs_ad() -> None:
     assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
 
 
+def test_a_ball_inside_a_rod_rests_on_a_floor() -> None:
+    """The floor bears what the two stretches of the rod leave it: the ball is at its radius above."""
+    lying = {"position": [0, 0, 0.1], "tangent": [1, 0, 0]}
+    tables = {
+        "schema": 1,
+        "accuracy": FINE,
+        "rods": [rod("a", 1.0, base=lying)],
+        "bodies": [{"name": "ball", "mass": 0.3, "radius": 0.07}],
+        "joints": [{"body": "ball", "rod": "a", "at": 0.5, "kind": "fixed"}],
+        "loads": [{"name": "w", "kind": "gravity", "acceleration": [0, 0, -4.0]}],
+        "obstacles": [{"name": "floor", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "bodies": ["ball"]}],
+    }
+    solution = solve(build(scene_from_dict(tables)))
+    assert solution.converged
+    (contact,) = solution.contacts
+    assert contact.owner == "ball"
+    assert_allclose(solution.body("ball").position[0, 2], 0.07, rtol=0, atol=1e-9)
+    # The clamp and the floor carry all of the weight.
+    assert_allclose(solution.base_wrench("a").force[2] + contact.force[2], 4.0 * (0.7 + 0.3), rtol=0, atol=1e-9)
+
+
 def test_the_place_of_a_joint_as_a_parameter() -> None:
     """The body at 0.3 moved to 0.4 is that of a scene with the joint there."""
     model = build(whole(parameters=["joints[0].at"]))

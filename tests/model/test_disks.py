@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, SceneError, build, export, load, modes_of, scene_from_dict, solve
+from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.scene.writing import scene_text
 from tests.model.test_assembly import rod
 
@@ -82,6 +83,17 @@ def test_digits_of_c(tmp_path: Path) -> None:
     model = build(scene(ROW, rods=[rod("a", 1.0, "planar")], loads=[WEIGHT, PUSH], accuracy=few))
     compiled = load(export(model, tmp_path / "disks", "disks"))
     assert_allclose(compiled.solve().x, solve(model).x, rtol=0, atol=1e-10)
+
+
+def test_figure_shows_the_rims() -> None:
+    """Of the first disk: all points of both faces as far from its centre as a corner is, square to the tangent."""
+    solution = solve(build(scene(ROW, loads=[WEIGHT])))
+    (first,) = [line for line in plot_solution(solution).axes[0].get_lines() if line.get_label() == "spacers"]
+    rim = np.array(first.get_data_3d()).T
+    centre = solution.pose(0.3).position[0]
+    tangent = solution.pose(0.3).rotation[0][:, 2]
+    assert_allclose(np.linalg.norm(rim - centre, axis=1), np.hypot(0.2, 0.05), rtol=1e-12, atol=0)
+    assert_allclose(np.abs((rim - centre) @ tangent), 0.05, rtol=0, atol=1e-12)
 
 
 def test_text_of_a_row() -> None:
