@@ -115,7 +115,7 @@ class RodLoads:
         return [*lines, *self._on_fixed_masses(kernel, force)]
 
     def _on_fixed_masses(self, kernel: TracedLoad, force: Matrix | None) -> Iterator[WrenchAt]:
-        """A force per mass on what is fixed to sections."""
+        """A force per mass on the masses that are fixed to sections."""
         if force is None or not kernel.member.per_mass:
             return
         for fixed in self.discrete.rods[self.rod].properties.fixed_masses:

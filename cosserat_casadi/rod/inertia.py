@@ -62,7 +62,7 @@ class SectionMasses:
 
 
 def section_masses(rod: DiscreteRod, ratio: Ratio = None) -> SectionMasses | None:
-    """Mass and second moments of a rod's sections and of what is fixed to them; None where nothing has mass.
+    """Mass and second moments of a rod's sections and of masses fixed to them; None where nothing has mass.
 
     In sums over the nodes, a mass that is fixed to a node is a mass per length over the length of the node.
 
