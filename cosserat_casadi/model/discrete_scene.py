@@ -39,6 +39,7 @@ from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
 
 NO_SOFTNESS = 1e-9
@@ -69,7 +70,7 @@ class CableOfLength:
         return Compliance(power=1, scale=-self.softness)
 
 
-def _softness(rod: DiscreteRod, routing: Routing) -> float:
+def _softness(rod: DiscreteRod, routing: Routing | HoleRouting) -> float:
     """Length, relative to the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
 
     One where the unloaded rod does not yield at all, as to a cable along the axis of a rod that does not stretch.

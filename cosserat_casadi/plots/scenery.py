@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
@@ -136,8 +136,7 @@ ACTUATOR_STYLES: dict[str, dict[str, Any]] = {
 
 def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
     """Points of an actuator's routing in world axes, shape (len(SAMPLES), 3), m: r + R D."""
-    start, end = actuator.span
-    X = start + (end - start) * SAMPLES
+    X = drawn_places(actuator, SAMPLES)
     pose = solution.pose(X, actuator.rod)
     offset = known(offset_at(actuator, X)[0])
     # A routing is given by two offsets, along the axes x and y of its sections.

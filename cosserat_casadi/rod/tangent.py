@@ -262,12 +262,16 @@ class Tangent:
             # One section: no product with all of S.
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
+        return self.motion_of(load.nodes)
+
+    def motion_of(self, nodes: list[int]) -> Matrix:
+        """[δr; δθ] of the sections of k nodes, stacked component by component, 6k×n, m and rad."""
         grid = self.rod.grid
-        integrate = ca.DM(grid.integration_matrix[load.nodes])
+        integrate = ca.DM(grid.integration_matrix[nodes])
         moved = [integrate @ component for component in ca.vertsplit(self.tangent, grid.size)]
         turned = self.rotation
-        if not load.everywhere:
-            turned = ca.vertcat(*[component[load.nodes, :] for component in ca.vertsplit(turned, grid.size)])
+        if len(nodes) < grid.size:
+            turned = ca.vertcat(*[component[nodes, :] for component in ca.vertsplit(turned, grid.size)])
         return ca.vertcat(*moved, self._with_linear_columns(turned))
 
     def wrench_variation(self, load: LoadedSections) -> Matrix:
@@ -281,7 +285,7 @@ class Tangent:
         elastic = self.rod.stiffness_matrix
         if self.shape.ratio is not None:
             elastic = elastic / self.shape.ratio
-        matrix = elastic + self._wrenches()
+        matrix = elastic + self.wrench_stiffness
         for part in (self._pose_stiffness(), actuation_stiffness(self.igm)):
             if part is not None:
                 matrix = matrix + part
@@ -297,7 +301,8 @@ class Tangent:
         linear = ca.DM(angular.shape[0], self._linear_size)
         return ca.horzcat(angular, linear)
 
-    def _wrenches(self) -> Matrix:
+    @cached_property
+    def wrench_stiffness(self) -> Matrix:
         """Stiffness of the wrenches, taken as dead or following ones, n×n; zero between two linear strains."""
         if not self.moments_pass:
             return ca.DM(self.rod.size, self.rod.size)

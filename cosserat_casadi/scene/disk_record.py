@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
 from cosserat_casadi.scene.faults import Fault, Table, shown
-from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.values import (
     ABOVE_BASE,
     Name,
@@ -21,6 +21,27 @@ from cosserat_casadi.scene.values import (
     above_base,
     numbers_of,
 )
+
+
+def lead_through_disks(tables: dict[str, Any]) -> None:
+    """Write the holes of tendons that run through disks: places of the disks of their rods within their spans."""
+    for tendon in _tables(tables, "actuators"):
+        if tendon.get("routing") != "disks" or "holes" in tendon:
+            continue
+        span = numbers_of(tendon.get("span", [0.0, 1.0]))
+        rows = [sound(Disks, row) for row in _tables(tables, "disks") if row.get("rod") == tendon.get("rod")]
+        places = sorted({at for row in rows if row is not None for at in row.places})
+        holes = [at for at in places if len(span) == 2 and span[0] <= at <= span[1]]
+        if holes:
+            tendon["holes"] = holes
+            del tendon["routing"]
+
+
+def _tables(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables of a list, which may be faulty."""
+    listed = tables.get(key)
+    return [table for table in listed if isinstance(table, dict)] if isinstance(listed, list) else []
+
 
 Section = Annotated[Number, above_base("at its base a rod does not move: leave that disk out"), ABOVE_BASE]
 
