@@ -118,9 +118,10 @@ def _tendons(**cable: Any) -> Tables:
     return scene(rod(strain="reissner"), loads=[WEIGHT], actuators=[tendon, cell])
 
 
-def _driven(*fields: str, **more: Any) -> Tables:
+def _driven(*fields: str, course: Tables | None = None, **more: Any) -> Tables:
     """A rod whose base, or length, is an input; chambers and tendons on it."""
     cable = {"name": "cable", "kind": "tendon", "rod": "a", "tension": 0.5, "offset": [[0.06, -0.03], 0.01]}
+    cable |= course or {}
     inputs = [f"a.{field}" for field in fields]
     place = {"position": [0.1, -0.2, 0.05], "quaternion": [0.6, 0, 0.8, 0]}
     bent = {"curvature": [0.3, [-0.4, 0.2], 0.2]}
@@ -150,6 +151,7 @@ FAMILIES: dict[str, Callable[[], Tables]] = {
     "body inside": lambda: scene(rod(), loads=[WEIGHT, PULL], bodies=[PLATE], joints=[joint("a", at=0.4)]),
     "disks": _with_disks,
     "disks drawn out": lambda: _driven("length", disks=[dict(DISKS)]),
+    "through holes": lambda: _driven("length", course={"holes": [0.4, 1.0], "friction": 0.2}),
     "tendons": partial(_tendons, tension=1.5),
     "given length": partial(_tendons, length=0.78),
     "slack": partial(_tendons, length=0.83, slack=True),

@@ -76,7 +76,7 @@ def _faults_of_holes(given: Table) -> Iterator[Fault]:
     if len(ends) == 2:
         for i, at in enumerate(places):
             if not ends[0] <= at <= ends[1]:
-                yield Fault(("holes", i), f"must be within its span, {shown(ends)}, got {shown(at)}")
+                yield Fault(("holes", i), f"must be within its span, {ends[0]:g} to {ends[1]:g}, got {shown(at)}")
 
 
 def _direction_of_pull(value: Any) -> Any:
