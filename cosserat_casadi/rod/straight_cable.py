@@ -2,13 +2,13 @@
 
 Hole k is at p_k = r_k + R_k D_k, so that span j is the chord c_j = p_{j+1} − p_j and the length L = Σ |c_j|. With the
 tension s_j in a span for one at the base, the cable does the work −Σ s_j δ|c_j|: it pulls at hole k with the force
-g_k = s_{k−1} ĉ_{k−1} − s_k ĉ_k and at the section there with the moment R_k D_k × g_k. These wrenches balance, and the
-backward sweep makes the generalised force of them that it makes of loads. Where the cable rubs, s falls at each hole by
-the angle φ between two chords, s_k = s_{k−1} exp(−μ p φ_k), the law of the capstan. In the derivative of that force
+f_k = s_k ĉ_k − s_{k−1} ĉ_{k−1} and at the section there with the moment R_k D_k × f_k. These wrenches balance, and the
+sweeps take them among the loads. Where the cable rubs, s falls at each hole by the angle φ between two chords,
+s_k = s_{k−1} exp(−μ p φ_k), the law of the capstan. With Q the generalised force of a unit of tension,
 
-    ∂Q/∂q = (frozen wrenches) + Σ δθᵀ (g^ (R D)^) δθ + Σ δcᵀ ∂(s ĉ)/∂c δc
+    ∂Q/∂q = (frozen wrenches) − Σ δθᵀ (f^ (R D)^) δθ + Σ δcᵀ ∂(s ĉ)/∂c δc,
 
-the first part is that of tangent.py. See docs/theory.md, section 6.
+the first part as of loads in tangent.py. See docs/theory.md, section 6.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ from cosserat_casadi.rod.cable import Cable
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import LineWrench
 
 STRAIGHT = 1e-6
@@ -102,7 +101,7 @@ class StraightCable(Cable):
     @cached_property
     def arms(self) -> Matrix:
         """R D, from the centre of the sections to the holes, 3×k, m."""
-        nodes = self._nodes
+        nodes = self.wrench_nodes
         rows = ca.vertsplit(as_matrix(self.routing.offset))
         total: Matrix = ca.DM(3, len(nodes))
         for director, row in zip(self.shape.directors, rows, strict=False):
@@ -113,7 +112,7 @@ class StraightCable(Cable):
     @cached_property
     def chords(self) -> Matrix:
         """Spans between the holes, 3×(k − 1), m, base axes."""
-        holes = self.shape.position[:, self._nodes] + self.arms
+        holes = self.shape.position[:, self.wrench_nodes] + self.arms
         return holes[:, 1:] - holes[:, :-1]
 
     @property
@@ -138,17 +137,24 @@ class StraightCable(Cable):
         return
 
     @cached_property
-    def further_stiffness(self) -> Matrix:
-        """∂ pull/∂q, n×n, m."""
-        pulls = self._results[2].T
-        frozen = Tangent(self._model_of(pulls))
-        moved, turned = (ca.vertcat(*parts) for parts in self._motion_of_holes(frozen))
+    def wrench(self) -> LineWrench:
+        """Wrenches of a unit of tension at the base on the sections with holes."""
+        return self._wrench_of(self._results[2].T)
+
+    @property
+    def wrench_nodes(self) -> list[int]:
+        """Nodes of the sections with holes."""
+        return list(map(int, self.routing.nodes))
+
+    @cached_property
+    def section_stiffness(self) -> Matrix:
+        """Change of minus the wrench with [δr; δθ], 6k×6k: holes turn with sections, and spans with holes."""
         arms = hat_operator(self.arms)
-        at_holes = hat_operator(self._at_holes(pulls)) @ arms
-        to_spans = ca.kron(ca.DM.eye(3), ca.DM(np.diff(np.eye(len(self._nodes)), axis=0)))
-        stretched = to_spans @ (moved - arms @ turned)
-        of_wrenches = -self.shape.rod.energy_unit * frozen.wrench_stiffness
-        return of_wrenches + turned.T @ (at_holes @ turned) + stretched.T @ (self._results[3] @ stretched)
+        levers = hat_operator(self._at_holes(self._results[2].T)) @ arms
+        to_spans = ca.kron(ca.DM.eye(3), ca.sparsify(ca.DM(np.diff(np.eye(len(self.wrench_nodes)), axis=0))))
+        stretched = ca.horzcat(to_spans, -(to_spans @ arms))
+        none = ca.DM(*levers.shape)
+        return stretched.T @ (self._results[3] @ stretched) - ca.diagcat(none, levers)
 
     @property
     def mean_share(self) -> Matrix | None:
@@ -164,37 +170,29 @@ class StraightCable(Cable):
         """Rate of the length that the tension at the base works on, 1×1."""
         return ca.dot(self._results[2].T, rate_of(self.chords))
 
-    @property
-    def _nodes(self) -> list[int]:
-        return list(map(int, self.routing.nodes))
-
     @cached_property
     def _results(self) -> list[Matrix]:
         friction = self.routing.friction
-        kernel = _spans(len(self._nodes) - 1, friction is not None)
+        kernel = _spans(len(self.wrench_nodes) - 1, friction is not None)
         return list(kernel.call([self.chords.T, ca.DM(0.0) if friction is None else friction]))
 
     def _at_holes(self, pulls: Matrix) -> Matrix:
-        """Forces on the holes, 3×k, of what pulls in the spans, 3×(k − 1)."""
+        """Forces on the holes, 3×k, of pulls in the spans, 3×(k − 1)."""
         none = ca.DM(3, 1)
-        return ca.horzcat(none, pulls) - ca.horzcat(pulls, none)
+        return ca.horzcat(pulls, none) - ca.horzcat(none, pulls)
 
-    def _model_of(self, pulls: Matrix) -> InverseGeometricModel:
-        """The rod under the wrenches of pulls in the spans, 3×(k − 1), alone."""
+    def _wrench_of(self, pulls: Matrix) -> LineWrench:
+        """Wrenches of pulls in the spans, 3×(k − 1), on the sections with holes."""
         forces = self._at_holes(pulls)
         size = self.shape.rod.grid.size
-        nodes = self._nodes
+        nodes = self.wrench_nodes
         # At a node, a force is one per length over the length of the node.
         lengths = ca.repmat(as_matrix(self.shape.rod.node_lengths)[nodes].T, 3, 1)
         to_nodes = ca.DM(ca.Sparsity.triplet(len(nodes), size, list(range(len(nodes))), nodes), 1.0)
         force, moment = ((part / lengths) @ to_nodes for part in (forces, cross(self.arms, forces)))
-        return InverseGeometricModel(Statics(self.shape, [LineWrench(force, moment, None, follower=False)]))
+        return LineWrench(force, moment, None, follower=False)
 
     def _work_of(self, pulls: Matrix) -> Matrix:
         """Σ pull·∂c/∂q of pulls in the spans, 3×(k − 1), n×1."""
-        return -self.shape.rod.energy_unit * self._model_of(pulls).generalised_force
-
-    def _motion_of_holes(self, tangent: Tangent) -> tuple[list[Matrix], list[Matrix]]:
-        """δr and δθ of the sections with holes, by component, k×n each."""
-        rows = ca.vertsplit(tangent.motion_of(self._nodes), len(self._nodes))
-        return rows[:3], rows[3:]
+        alone = InverseGeometricModel(Statics(self.shape, [self._wrench_of(pulls)]))
+        return self.shape.rod.energy_unit * alone.generalised_force
