@@ -9,6 +9,7 @@ docs/theory.md section 6.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,7 +50,7 @@ class Routing:
 
 
 @dataclass(frozen=True)
-class Cable(Lossless):
+class Cable(Lossless, ABC):
     """A cable through a deformed rod, whose quantity is its length.
 
     Attributes:
@@ -57,6 +58,20 @@ class Cable(Lossless):
     """
 
     shape: Shape
+
+    @property
+    @abstractmethod
+    def value(self) -> Matrix:
+        """Length L, 1×1, m."""
+
+    @property
+    @abstractmethod
+    def gradient(self) -> Matrix:
+        """∂L/∂q, n×1, m."""
+
+    @abstractmethod
+    def curvature(self, a: int, b: int) -> Row:
+        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
 
     @property
     def mean_share(self) -> Matrix | None:

@@ -54,9 +54,14 @@ class InverseGeometricModel:
         parts = [(effort, conjugate.wrench) for effort, conjugate in self.efforts if conjugate.wrench is not None]
         if not parts:
             return self.statics
-        forces = [effort * wrench.force for effort, wrench in parts]
-        moments = [effort * wrench.moment for effort, wrench in parts]
-        total = LineWrench(sum(forces[1:], forces[0]), sum(moments[1:], moments[0]), None, follower=False)
+        force: Matrix = ca.DM(3, self.rod.grid.size)
+        moment: Matrix = ca.DM(3, self.rod.grid.size)
+        for effort, wrench in parts:
+            assert wrench.force is not None, "cables pull"
+            assert wrench.moment is not None, "cables pull off the centreline"
+            force = force + effort * wrench.force
+            moment = moment + effort * wrench.moment
+        total = LineWrench(force, moment, None, follower=False)
         # Loads that depend on poses have been evaluated.
         return Statics(self.shape, [*self.statics.fixed_wrenches, total], self.statics.pose_loads)
 
