@@ -39,7 +39,7 @@ STRAIGHT = 1e-6
 def _spans(count: int, rubs: bool) -> ca.Function:
     """Chords, a row each, and μ p ↦ mean of the tension, and of all spans the pull s ĉ with its derivative.
 
-    The derivatives are those with the chords, one component after the other.
+    Derivatives are taken with the chords, one component after the other.
     """
     chords = ca.SX.sym("chords", count, 3)
     friction = ca.SX.sym("friction")

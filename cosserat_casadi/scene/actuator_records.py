@@ -192,7 +192,7 @@ offset = [1.5e-3, 0.0]
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """What runs straight between holes needs the rotations of their sections."""
+        """A course between holes needs the rotations of their sections."""
         accuracy = scene.get("accuracy")
         if "holes" in given and isinstance(accuracy, Mapping) and accuracy.get("rotation") == "permuted":
             problem = "does not go with accuracy.rotation = 'permuted'"
