@@ -101,15 +101,17 @@ def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator
     """
     for rod in nominal.rods:
         before = places_on(nominal, rod.name)
-        for place, written in zip(before, places_on(scene, rod.name), strict=True):
+        after = places_on(scene, rod.name)
+        for place, written in zip(before, after, strict=True):
             if not is_symbolic(written):
                 continue
+            together = [other for was, other in zip(before, after, strict=True) if was == place]
             if place in (0.0, 1.0):
                 problem = f"is at the end X = {place:g} of {rod.name!r}, which does not move along it"
                 yield Problem(name, problem, "give a place inside the rod, which is the default")
-            elif before.count(place) > 1:
+            elif not all(is_symbolic(other) and ca.is_equal(other, written) for other in together):
                 problem = f"is at X = {place:g} of {rod.name!r}, where something else is that does not move with it"
-                yield Problem(name, problem, "give the two different places: an element lies between them")
+                yield Problem(name, problem, "tie the two together, or give them places with an element between them")
 
 
 @dataclass(frozen=True)

@@ -148,6 +148,20 @@ def test_digits_of_c(tmp_path: Path) -> None:
     assert_allclose(compiled.solve().x, solve(model).x, rtol=0, atol=1e-10)
 
 
+def test_a_hole_moves_with_its_disk() -> None:
+    """Places that are tied are one parameter."""
+    tables = scene(accuracy={"modes": 4, "nodes": 7}).model_dump(by_alias=True, exclude_unset=True)
+    moved = {**tables["actuators"][0], "holes": [0.4, 0.65, 1.0]}
+    disks = {"name": "d", "rod": "a", "at": [0.3, 0.65], "radius": 0.1, "mass": 0.1}
+    tied = scene_from_dict({**tables, "disks": [disks], "parameters": [["d.at[0]", "c.holes[0]"]]})
+    there = scene_from_dict({**tables, "actuators": [moved], "disks": [{**disks, "at": [0.4, 0.65]}]})
+    solution = solve(build(tied), parameters={"d.at[0]": 0.4})
+    assert solution.converged
+    assert_allclose(solution.tip().position, solved(there).tip().position, rtol=0, atol=1e-12)
+    with pytest.raises(SceneError, match="tie the two together"):
+        build(scene_from_dict({**tables, "disks": [disks], "parameters": ["d.at[0]"]}))
+
+
 def test_routing_through_disks_is_read_as_holes() -> None:
     tables = scene().model_dump(by_alias=True, exclude_unset=True)
     tendon = {key: value for key, value in TENDON.items() if key != "holes"} | {"tension": 4.0, "routing": "disks"}
