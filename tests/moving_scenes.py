@@ -49,6 +49,7 @@ IN_PLANE = {"name": "push", "kind": "tip_wrench", "rod": "a", "force": [0.4, 0.0
 
 # Products of inertia, and a centre of mass off the origin.
 INERTIA = [[3e-2, 4e-3, -2e-3], [4e-3, 5e-2, 6e-3], [-2e-3, 6e-3, 4e-2]]
+DISKS = {"rod": "a", "at": [0.5, 1.0], "mass": 0.2, "radius": 0.3, "thickness": 0.2}
 PLATE = {"name": "plate", "mass": 0.3, "centre_of_mass": [0.1, 0.02, 0.03], "inertia": INERTIA}
 
 
@@ -117,15 +118,22 @@ def _tendons(**cable: Any) -> Tables:
     return scene(rod(strain="reissner"), loads=[WEIGHT], actuators=[tendon, cell])
 
 
-def _driven(*fields: str, **more: Any) -> Tables:
+def _driven(*fields: str, course: Tables | None = None, **more: Any) -> Tables:
     """A rod whose base, or length, is an input; chambers and tendons on it."""
     cable = {"name": "cable", "kind": "tendon", "rod": "a", "tension": 0.5, "offset": [[0.06, -0.03], 0.01]}
+    cable |= course or {}
     inputs = [f"a.{field}" for field in fields]
     place = {"position": [0.1, -0.2, 0.05], "quaternion": [0.6, 0, 0.8, 0]}
     bent = {"curvature": [0.3, [-0.4, 0.2], 0.2]}
     driven = rod(strain="reissner", base=place, intrinsic=bent)
     loads = [WEIGHT, PUSH, FOLLOW, WIND, BREEZE]
     return scene(driven, loads=loads, inputs=inputs, actuators=[cable], **more)
+
+
+def _with_disks() -> Tables:
+    """A free rod with disks on it."""
+    start = {"position": [0.1, 0.2, 0.3], "quaternion": [0.6, 0, 0.8, 0], "free": True}
+    return scene(rod(strain="reissner", base=start), loads=[WEIGHT, PUSH], disks=[dict(DISKS)])
 
 
 FAMILIES: dict[str, Callable[[], Tables]] = {
@@ -140,6 +148,10 @@ FAMILIES: dict[str, Callable[[], Tables]] = {
     "carried": _carried,
     "free": _free,
     "free with body": _free_with_body,
+    "body inside": lambda: scene(rod(), loads=[WEIGHT, PULL], bodies=[PLATE], joints=[joint("a", at=0.4)]),
+    "disks": _with_disks,
+    "disks drawn out": lambda: _driven("length", disks=[dict(DISKS)]),
+    "through holes": lambda: _driven("length", course={"holes": [0.4, 1.0], "friction": 0.2}),
     "tendons": partial(_tendons, tension=1.5),
     "given length": partial(_tendons, length=0.78),
     "slack": partial(_tendons, length=0.83, slack=True),

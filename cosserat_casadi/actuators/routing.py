@@ -21,7 +21,9 @@ from cosserat_casadi.maths.numbers import (
     stacked_rows,
 )
 from cosserat_casadi.maths.polynomials import power_table
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.cable import Routing
+from cosserat_casadi.rod.straight_cable import HoleRouting
 
 
 def routing(actuator: Any, grid: Grid) -> Routing:
@@ -29,6 +31,33 @@ def routing(actuator: Any, grid: Grid) -> Routing:
     nodes = grid.nodes_in(*actuator.span)
     offset, slope = offset_at(actuator, grid.nodes_at(nodes))
     return Routing(nodes, offset, slope)
+
+
+def holes(actuator: Any) -> tuple[Scalar, ...] | None:
+    """Abscissae of the holes that a tendon is straight between, from where it enters on; None of a continuous one."""
+    inside = getattr(actuator, "holes", None)
+    if inside is None:
+        return None
+    start, end = actuator.span
+    return (start, *(at for at in inside if at not in (start, end)), end)
+
+
+def drawn_places(actuator: Any, samples: FloatArray) -> FloatArray:
+    """Abscissae at which the course of an actuator is drawn: its holes, or samples of its span, shape (k,)."""
+    through = holes(actuator)
+    if through is not None:
+        return known(as_vector(through))
+    start, end = actuator.span
+    return np.asarray(start + (end - start) * samples)
+
+
+def straight_routing(actuator: Any, grid: Grid, friction: Matrix | None = None) -> HoleRouting:
+    """Holes of a tendon that is straight between them; ``friction``: μ p of one that rubs."""
+    through = holes(actuator)
+    assert through is not None, "asked for of a tendon with holes"
+    nodes = np.array([0 if not is_symbolic(at) and at == 0.0 else grid.node_at(at) for at in through])
+    offset, _ = offset_at(actuator, as_vector(through))
+    return HoleRouting(nodes, offset, friction)
 
 
 def offset_at(actuator: Any, X: Numbers) -> tuple[Numbers, Numbers]:

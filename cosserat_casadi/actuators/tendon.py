@@ -7,12 +7,14 @@ from typing import final
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
-from cosserat_casadi.actuators.routing import routing
+from cosserat_casadi.actuators.routing import routing, straight_routing
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, is_zero
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.actuation import ShapeQuantity
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.rubbing_cable import RubbingRouting
+from cosserat_casadi.rod.straight_cable import HoleRouting
 
 
 @final
@@ -26,17 +28,24 @@ class TendonActuator(Actuator[scenes.Tendon]):
     energy_sign = 1.0
     drawn_as = "cable"
 
-    def quantity(self, actuator: scenes.Tendon, grid: Grid) -> Routing:
+    def quantity(self, actuator: scenes.Tendon, grid: Grid) -> Routing | HoleRouting:
         """The routing, whose length the tension works on."""
+        if actuator.holes is not None:
+            return straight_routing(actuator, grid)
         return routing(actuator, grid)
 
-    def worked_on(self, actuator: scenes.Tendon, grid: Grid, values: Mapping[str, Matrix]) -> Routing | RubbingRouting:
+    def worked_on(self, actuator: scenes.Tendon, grid: Grid, values: Mapping[str, Matrix]) -> ShapeQuantity:
         """The routing, on which a cable with friction rubs."""
-        course = routing(actuator, grid)
         friction = actuator.friction * values["pull"]
         if is_zero(friction) or is_zero(actuator.friction):
-            return course
-        return RubbingRouting(course, friction)
+            return self.quantity(actuator, grid)
+        if actuator.holes is not None:
+            return straight_routing(actuator, grid, friction)
+        return RubbingRouting(routing(actuator, grid), friction)
+
+    def breaks(self, actuator: scenes.Tendon) -> tuple[Scalar, ...]:
+        """The ends of its span, and its holes."""
+        return (*super().breaks(actuator), *(actuator.holes or ()))
 
     def compliance(self, actuator: scenes.Tendon) -> tuple[Scalar, Scalar]:
         """1/EA, 1/N, and 1/k, m/N."""

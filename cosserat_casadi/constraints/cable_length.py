@@ -16,7 +16,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.numbers import Scalar, is_zero
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.cable import Cable
 
 SMOOTHING = 1e-10
 """ε, relative to the rod's length: at the corner, where both would vanish, a τ and the sag are this small."""
@@ -56,7 +56,7 @@ class CableLength:
         smoothing: ε, 1×1; larger on the way to the scene, where a corner would stop the continuation.
     """
 
-    cable: RoutedCable
+    cable: Cable
     elasticity: Elasticity
     wanted: Matrix
     tension: Matrix

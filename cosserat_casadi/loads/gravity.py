@@ -20,6 +20,7 @@ class GravityLoad(Load[scenes.Gravity]):
     """A uniform field of acceleration (m/s²) on the rods and bodies it names, or on all."""
 
     record = scenes.Gravity
+    per_mass = True
 
     def acts_on(self, load: scenes.Gravity, rod: str) -> bool:
         """Every rod, unless the load names some rods or bodies."""

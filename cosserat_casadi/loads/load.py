@@ -127,12 +127,14 @@ class Load(Kind, ABC, Generic[RecordType]):
         record: the record of the scene, whose word, inputs and units are those of the load.
         kind: the word of the scene format.
         growth: power of the load factor by which a load that hangs on the pose grows from the unloaded scene.
+        per_mass: whether its force is one per mass, which acts on masses that are fixed to sections as well.
     """
 
     record: ClassVar[type[LoadRecord]]
     family = LOADS
     kinds = EFFECTS
     growth: ClassVar[int] = 1
+    per_mass: ClassVar[bool] = False
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.

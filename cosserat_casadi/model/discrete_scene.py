@@ -34,11 +34,12 @@ from cosserat_casadi.model.scene_constraints import (
     placed_constraints,
     written_constraints,
 )
-from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
 
 NO_SOFTNESS = 1e-9
@@ -69,7 +70,7 @@ class CableOfLength:
         return Compliance(power=1, scale=-self.softness)
 
 
-def _softness(rod: DiscreteRod, routing: Routing) -> float:
+def _softness(rod: DiscreteRod, routing: Routing | HoleRouting) -> float:
     """Length, relative to the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
 
     One where the unloaded rod does not yield at all, as to a cable along the axis of a rod that does not stretch.
@@ -415,7 +416,7 @@ def discrete_scene(
     """Constant matrices of every rod of a scene."""
     rods = {}
     for rod in scene.rods:
-        properties = rod_properties(rod)
+        properties = replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name))
         rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
     return DiscreteScene(scene, layout, rods)
 
@@ -433,7 +434,8 @@ def with_numbers(
     rods = {}
     for rod in scene.rods:
         scaling = nominal.rods[rod.name]
-        properties = rod_properties(rod, scaling.properties)
+        own = rod_properties(rod, scaling.properties)
+        properties = replace(own, fixed_masses=fixed_masses(scene, rod.name))
         ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
         rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)
     return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)

@@ -1,4 +1,4 @@
-"""Where the elements of rods end: where a load, an actuator or a carried rod makes a jump.
+"""Where the elements of rods end: where a load, an actuator, a body, a disk or a carried rod makes a jump.
 
 A parameter may move such a place. The elements that end there move with it: their number, modes and nodes stay those
 of the scene's own numbers, so that the order of the places along a rod must stay as well.
@@ -40,6 +40,9 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
             places.extend(member.breaks(record))
     # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
     places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
+    # So is that of a body.
+    places.extend(joint.at for joint in scene.joints if joint.rod == rod)
+    places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
     return places
 
 
@@ -98,15 +101,17 @@ def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator
     """
     for rod in nominal.rods:
         before = places_on(nominal, rod.name)
-        for place, written in zip(before, places_on(scene, rod.name), strict=True):
+        after = places_on(scene, rod.name)
+        for place, written in zip(before, after, strict=True):
             if not is_symbolic(written):
                 continue
+            together = [other for was, other in zip(before, after, strict=True) if was == place]
             if place in (0.0, 1.0):
                 problem = f"is at the end X = {place:g} of {rod.name!r}, which does not move along it"
                 yield Problem(name, problem, "give a place inside the rod, which is the default")
-            elif before.count(place) > 1:
+            elif not all(is_symbolic(other) and ca.is_equal(other, written) for other in together):
                 problem = f"is at X = {place:g} of {rod.name!r}, where something else is that does not move with it"
-                yield Problem(name, problem, "give the two different places: an element lies between them")
+                yield Problem(name, problem, "tie the two together, or give them places with an element between them")
 
 
 @dataclass(frozen=True)

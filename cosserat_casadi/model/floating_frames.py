@@ -179,8 +179,8 @@ class UnloadedScene:
     def _closed(self, joints: list[scenes.Joint], length: float, mean: NumericPose) -> NumericPose:
         """Pose of a body next to a mean one in which all its joints are closed; the mean where there is none.
 
-        What a joint leaves free, as the turn about its axis, is not asked to agree with the tip. Newton's method with
-        the smallest change of the pose that closes the linearised joints.
+        What a joint leaves free, as the turn about its axis, is not asked to agree with the section. Newton's method
+        with the smallest change of the pose that closes the linearised joints.
 
         Args:
             joints: those of the body.
@@ -214,15 +214,15 @@ class UnloadedScene:
         """
         held = JOINT_KINDS[joint.kind].directions(joint)
         place = place_of(joint)
-        tip = self.section(joint.rod, 1.0)
+        section = self.section(joint.rod, joint.at)
         arm = pose.rotation @ place.position
-        to_tip = tip.rotation.T
-        shift = to_tip @ (pose.position + arm - tip.position) / length
-        # The pose that the body wants of the tip, in the axes of the tip: the identity where nothing is turned.
-        turned = to_tip @ pose.rotation @ place.rotation
+        to_section = section.rotation.T
+        shift = to_section @ (pose.position + arm - section.position) / length
+        # The pose that the body wants of the section, in the axes of the section: the identity where nothing is turned.
+        turned = to_section @ pose.rotation @ place.rotation
         by_turn = [_axial(cross @ turned + turned.T @ cross) / 2.0 for cross in map(_cross, np.eye(3))]
-        of_position = np.hstack([to_tip @ _cross(-arm) / length, to_tip])
-        of_rotation = np.hstack([np.column_stack(by_turn) @ to_tip, np.zeros((3, 3))])
+        of_position = np.hstack([to_section @ _cross(-arm) / length, to_section])
+        of_rotation = np.hstack([np.column_stack(by_turn) @ to_section, np.zeros((3, 3))])
         # The sine of half a turn vanishes as well: what is held to agree has to point the same way.
         count = held.rotations.shape[1]
         weights = count * np.eye(3) - 2.0 * held.rotations @ held.rotations.T
@@ -232,27 +232,27 @@ class UnloadedScene:
         return rows, derivatives, agrees
 
     def _mean_pose(self, joints: list[scenes.Joint], length: float) -> NumericPose:
-        """Pose of a body between those in which each tip alone would close its joint.
+        """Pose of a body between those in which each section alone would close its joint.
 
         The rotation is the one that turns the arms of all joints, and the orientations of joints that hold one,
-        nearest to the tips in the sense of least squares: G. Wahba, *SIAM Review* 7 (1965) 409, solved by a singular
-        value decomposition.
+        nearest to the sections in the sense of least squares: G. Wahba, *SIAM Review* 7 (1965) 409, solved by a
+        singular value decomposition.
 
         Args:
             joints: those of the body.
             length: weight of an orientation against an arm, m.
         """
-        tips = [self.section(joint.rod, 1.0) for joint in joints]
+        sections = [self.section(joint.rod, joint.at) for joint in joints]
         arms = np.array([joint.position for joint in joints])
-        points = np.array([tip.position for tip in tips])
+        points = np.array([section.position for section in sections])
         mean_arm = arms.mean(axis=0)
         mean_point = points.mean(axis=0)
         correlation = (points - mean_point).T @ (arms - mean_arm)
-        for joint, tip in zip(joints, tips, strict=True):
+        for joint, section in zip(joints, sections, strict=True):
             # A joint that leaves the orientation free counts by its arm alone.
             if JOINT_KINDS[joint.kind].directions(joint).rotations.size:
-                tip_in_body = NumericPose(np.zeros(3), place_of(joint).quaternion)
-                wanted = tip.then(tip_in_body.inverse)
+                in_body = NumericPose(np.zeros(3), place_of(joint).quaternion)
+                wanted = section.then(in_body.inverse)
                 correlation = correlation + length**2 * wanted.rotation
         rotation = _nearest_rotation(correlation)
         position = mean_point - rotation @ mean_arm

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -111,7 +111,15 @@ class RodLoads:
         # Profiles of force and of moment may differ: a line wrench for each.
         force_line = self._line_wrench(kernel, site, force, None)
         moment_line = self._line_wrench(kernel, site, None, moment)
-        return [line for line in (force_line, moment_line) if line is not None]
+        lines: list[RodLoad] = [line for line in (force_line, moment_line) if line is not None]
+        return [*lines, *self._on_fixed_masses(kernel, force)]
+
+    def _on_fixed_masses(self, kernel: TracedLoad, force: Matrix | None) -> Iterator[WrenchAt]:
+        """A force per mass on the masses that are fixed to sections."""
+        if force is None or not kernel.member.per_mass:
+            return
+        for fixed in self.discrete.rods[self.rod].properties.fixed_masses:
+            yield WrenchAt(fixed.at, fixed.mass * force, None, kernel.follower)
 
     def _line_wrench(
         self, kernel: TracedLoad, site: Site, force: Matrix | None, moment: Matrix | None

@@ -25,6 +25,7 @@ from cosserat_casadi.model.body_obstacle_loads import BorneLoad
 from cosserat_casadi.model.load_potential import is_dead_force
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import MotionArguments, System
+from cosserat_casadi.rod.inertia import RodInertia, masses_along
 from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
@@ -268,9 +269,10 @@ class MotionEnergy:
         viscosity = self.system.viscosities.get(rod)
         if viscosity is not None:
             powers.append(viscosity.shrinking_power)
-        inertia = self.system.inertias.get(rod)
-        if inertia is not None:
-            # The rod that comes along has the speed of its section already.
+        masses = masses_along(igm.rod)
+        if masses is not None:
+            # The rod that comes along has the speed of its section already; what is fixed to it is there for good.
+            inertia = RodInertia(self.system.motions[rod], masses)
             powers.append(inertia.kinetic_energy / inertia.ratio * rates.ratio_rate)
         return _sum(powers)
 

@@ -14,6 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.rod.properties import RodProperties
 
 LOOKED_AT = np.linspace(0.0, 1.0, 201)
 """Abscissae whose radius an obstacle is held against."""
@@ -72,12 +73,14 @@ def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
                 yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
 
 
-def _held_by(scene: scenes.Scene, body: str, rod: scenes.Rod, radius: float) -> dict[str, tuple[FloatArray, float]]:
-    """How a rod is held by a body: the place of its tip in the axes of the body, and the radius of it."""
+def _held_by(scene: scenes.Scene, body: str, rod: RodProperties) -> dict[str, tuple[FloatArray, float]]:
+    """How a rod is held by a body: places of its sections in the axes of the body, and their radii."""
     held = {}
     for joint in scene.joints:
         if (joint.body, joint.rod) == (body, rod.name):
-            held["is held by its body"] = (np.asarray(joint.position, dtype=float), radius)
+            (radius,) = section_radius(rod, np.array([joint.at])).tolist()
+            where = "" if joint.at == 1.0 else f" at X = {joint.at:g}"
+            held[f"is held by its body{where}"] = (np.asarray(joint.position, dtype=float), radius)
     return held
 
 
@@ -100,7 +103,7 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
             held = in_world
             if obstacle.body is not None:
                 # Where the body comes to be is not known before it is solved; what it carries goes with it.
-                held = _held_by(discrete.scene, obstacle.body, rod, float(radii[-1]))
+                held = _held_by(discrete.scene, obstacle.body, properties)
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])
                 if depth > TOUCHING * properties.length:

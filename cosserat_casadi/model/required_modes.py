@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.actuators.routing import holes
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.element_ends import element_ends
@@ -44,7 +45,8 @@ def signal_modes(scene: scenes.Scene) -> int:
         rod = rod_properties(record)
         breaks = element_ends(scene, record.name)
         for actuator in scene.actuators:
-            if EFFECTS[actuator.kind].acts_on(actuator, record.name):
+            # Between its holes a straight cable pulls with one force: there are no waves.
+            if EFFECTS[actuator.kind].acts_on(actuator, record.name) and holes(actuator) is None:
                 degree = _actuator_degree(actuator, rod, breaks)
                 degrees.append(degree)
         degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in rod.intrinsic]

@@ -21,7 +21,7 @@ from cosserat_casadi.model.homotopy import LoadFactor, scaled_effort, smoothing_
 from cosserat_casadi.model.inputs import input_value, input_values, load_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation, Conjugate, ShapeQuantity
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.cable import Cable
 from cosserat_casadi.rod.kinematics import Shape, shape
 
 CORNER = 0.01
@@ -111,7 +111,7 @@ class SceneActuators:
         member = EFFECTS[tendon.kind]
         by_length, at_base = member.compliance(tendon)
         _, routed = self.conjugate(tendon.name)
-        assert isinstance(routed, RoutedCable), "only cables have a length"
+        assert isinstance(routed, Cable), "only cables have a length"
         return CableLength(
             cable=routed,
             elasticity=Elasticity(by_length, at_base, member.resting_effort(tendon)),

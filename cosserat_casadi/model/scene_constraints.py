@@ -100,8 +100,9 @@ def written_constraints(
     """
     before = _given_places(nominal)
     after = _given_places(scene)
-    # The section of a carrier moves along it; all others are tips.
-    carriers = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
+    # Sections of carriers and of joints move along their rods; supports hold tips.
+    sections = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
+    sections |= {f"joints[{i}]": joint.at for i, joint in enumerate(scene.joints)}
     axes_before = _axes(nominal)
     axes = _axes(scene)
     constraints = []
@@ -117,7 +118,7 @@ def written_constraints(
             pose = Pose(pose.position, sign * pose.quaternion)
         else:
             pose = NumericPose(pose.position, sign * pose.quaternion)
-        at = carriers.get(entry.where, entry.constraint.at)
+        at = sections.get(entry.where, entry.constraint.at)
         turn = None
         if entry.where in axes_before:
             turn = _turn_of_axis(start, axes_before[entry.where], pose, axes[entry.where])
@@ -280,14 +281,15 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """The tip of a rod at a body."""
+    """A section of a rod at a body."""
     joint = unloaded.scene.joints[index]
     frame = FrameName("body", joint.body)
-    words = (f"joints[{index}]", f"the tip of {joint.rod!r} at {joint.body!r}")
-    tip = _Section(unloaded, joint.rod)
-    target = tip.nearer_sign(place_of(joint), frame)
+    held = "the tip" if joint.at == 1.0 else f"X = {joint.at:g}"
+    words = (f"joints[{index}]", f"{held} of {joint.rod!r} at {joint.body!r}")
+    section = _Section(unloaded, joint.rod, joint.at)
+    target = section.nearer_sign(place_of(joint), frame)
     directions = _joint_directions(unloaded, joint)
-    return tip.held_to(target, directions, frame, words)
+    return section.held_to(target, directions, frame, words)
 
 
 def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
@@ -317,7 +319,7 @@ def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.J
 
 
 def _moves_in_plane(joint: scenes.Joint) -> bool:
-    """Whether a joint leaves its body in the x–z plane of the tip: a hinge about its normal, a slide along it."""
+    """Whether a joint leaves its body in the x–z plane of the rod: a hinge about its normal, a slide along it."""
     return keeps_plane(JOINT_KINDS[joint.kind].directions(joint))
 
 

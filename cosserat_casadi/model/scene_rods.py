@@ -16,6 +16,7 @@ from cosserat_casadi.maths.numbers import (
     any_symbolic,
     as_vector,
     is_symbolic,
+    is_zero,
     known,
     side_by_side,
 )
@@ -23,7 +24,7 @@ from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.materials import LAWS, LawOfRod, coupled_stiffness
 from cosserat_casadi.model.sections import SHAPES, along, linear, sizes_along, sizes_of
-from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, RodProperties
+from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, FixedMass, RodProperties
 from cosserat_casadi.rod.section import SectionShape
 from cosserat_casadi.rod.section import hooke as hooke_tensor
 from cosserat_casadi.scene.material_records import INCOMPRESSIBLE
@@ -66,6 +67,18 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
     if nominal is None:
         _refuse_out_of_range(properties)
     return properties
+
+
+def fixed_masses(scene: scenes.Scene, rod: str) -> tuple[FixedMass, ...]:
+    """Masses of the disks on a rod, those of solid cylinders."""
+    masses = []
+    for row in scene.disks:
+        if row.rod != rod or is_zero(row.mass):
+            continue
+        across = row.mass * row.radius**2 / 4
+        along = row.mass * row.thickness**2 / 12
+        masses += [FixedMass(at, row.mass, across, along) for at in row.places]
+    return tuple(masses)
 
 
 def _refuse_out_of_range(properties: RodProperties) -> None:

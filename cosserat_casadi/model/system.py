@@ -144,7 +144,7 @@ class System:
         """Inertia of every rod in motion that has a mass, in its base frame."""
         inertias = {}
         for name, motion in self.motions.items():
-            masses = section_masses(motion.rod)
+            masses = section_masses(motion.rod, motion.shape.ratio)
             if masses is not None:
                 inertias[name] = RodInertia(motion, masses)
         return inertias

@@ -95,9 +95,7 @@ def watched_sections(scene: scenes.Scene, rod: str) -> FloatArray:
     """Abscissae of the sections of a rod whose poses must be right to the tolerance, shape (k,)."""
     if scene.accuracy.shape:
         return np.asarray(SAMPLES[EVERY::EVERY])
-    holders = (*scene.supports, *scene.joints)
-    held = any(holder.rod == rod for holder in holders)
-    if held:
+    if rod in scene.rods_held_at_tips:
         return np.array(BETWEEN)
     return np.array([1.0])
 

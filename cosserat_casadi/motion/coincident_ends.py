@@ -53,7 +53,8 @@ def _pairs(scene: scenes.Scene) -> Iterator[set[RodEnd]]:
         if base.rod is not None and base.at == TIP and not any(base.position):
             yield {RodEnd(base.rod, TIP), RodEnd(rod.name, BASE)}
     # A tip that slides in its body is not at one point.
-    points = [joint for joint in scene.joints if not JOINT_KINDS[joint.kind].directions(joint).slides]
+    tips = [joint for joint in scene.joints if joint.at == TIP]
+    points = [joint for joint in tips if not JOINT_KINDS[joint.kind].directions(joint).slides]
     for number, joint in enumerate(points):
         for other in points[:number]:
             if joint.body == other.body and joint.position == other.position:

@@ -13,7 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Sort
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
@@ -135,8 +135,7 @@ class _Picture:
 
     def routing(self, actuator: Any) -> Matrix:
         """Points of an actuator's routing in world axes, 3×k: r + R D."""
-        start, end = actuator.span
-        X = start + (end - start) * SECTIONS
+        X = drawn_places(actuator, SECTIONS)
         offset, _ = offset_at(actuator, X)
         position, rotations = self._rod_poses(actuator.rod, X)
         points = [position[:, k] + rotations[k][:, :2] @ ca.DM(offset[:, k]) for k in range(len(X))]

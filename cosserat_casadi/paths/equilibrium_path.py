@@ -160,8 +160,7 @@ class EquilibriumPath(Result):
         """
         name = self.model.rod_name(rod)
         scene = self.model.scene
-        tip_is_free = all(holder.rod != name for holder in (*scene.supports, *scene.joints))
-        if tip_is_free:
+        if name not in scene.rods_held_at_tips:
             return 1.0
         # The tip of a held rod does not move, so that its way tells nothing.
         load_name = next(entry.owner for entry, _ in self.model.inputs if entry.name == self.name)

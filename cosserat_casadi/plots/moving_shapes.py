@@ -1,4 +1,4 @@
-"""Where the rods and bodies of a motion lie over time: what its figure and its animation are drawn from."""
+"""Where the rods, bodies and disks of a motion lie over time: what its figure and its animation are drawn from."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.scene_view import View, view_of
-from cosserat_casadi.plots.scenery import body_corners
+from cosserat_casadi.plots.scenery import body_corners, disk_rim
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
 """Abscissae at which rods are drawn."""
@@ -25,7 +25,7 @@ class MovingShapes:
     Attributes:
         times: shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
-        outlines: closed outlines of bodies, by body, shape (T, k, 3), m.
+        outlines: closed outlines of bodies, and rims of disks, by what a legend calls them, shape (T, k, 3), m.
         followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
     """
 
@@ -53,7 +53,7 @@ class MovingShapes:
 
 
 def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatArray) -> MovingShapes:
-    """Lines of all rods and bodies.
+    """Lines of all rods, bodies and disks.
 
     Args:
         model: the model.
@@ -64,7 +64,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
     outlines = {}
     followed = {}
-    carrying = {joint.rod for joint in model.scene.joints}
+    carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
     held = {support.rod for support in model.scene.supports}
     for name, lines in rods.items():
         if name in held:
@@ -80,4 +80,12 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
         closed = np.concatenate([corners, corners[:1]])
         outlines[body.name] = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, closed)
         followed[body.name] = poses.position
+    for number, row in enumerate(model.scene.disks):
+        sections = section_poses(model, row.rod, np.array(row.places), x, inputs)
+        for disk in range(len(row.places)):
+            world_R_section = rotations(sections.quaternion[:, disk])
+            rim = np.einsum("tij,kj->tki", world_R_section, disk_rim(row))
+            # A legend leaves out what begins with an underscore: it names a row once.
+            name = f"_{number}_{disk}" if disk else row.name or "disks"
+            outlines[name] = sections.position[:, disk, None, :] + rim
     return MovingShapes(times, rods, outlines, followed)

@@ -23,7 +23,14 @@ from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
-from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
+from cosserat_casadi.plots.scenery import (
+    draw_actuators,
+    draw_bodies,
+    draw_disks,
+    draw_rods,
+    draw_supports,
+    draw_targets,
+)
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 
@@ -92,6 +99,7 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_supports(canvas, solution.model.scene)
     draw_actuators(canvas, solution)
     draw_bodies(canvas, solution)
+    draw_disks(canvas, solution)
     draw_arrows(canvas, arrows)
     draw_targets(canvas, solution)
     canvas.label_axes()

@@ -1,4 +1,4 @@
-"""Rods, supports, actuators, bodies and targets of a solved scene."""
+"""Rods, supports, actuators, bodies, disks and targets of a solved scene."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
@@ -20,7 +20,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
 from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene import Disks, Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -30,6 +30,9 @@ AXES_SECTIONS = np.linspace(0.0, 1.0, 9)
 
 AXES_LENGTH = 0.06
 """Length of their axes, relative to the scene."""
+
+RIM = 33
+"""Points of the rim of a disk."""
 
 CLAMP: dict[str, Any] = {"color": "0.2", "marker": "s", "markersize": 9}
 
@@ -133,8 +136,7 @@ ACTUATOR_STYLES: dict[str, dict[str, Any]] = {
 
 def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
     """Points of an actuator's routing in world axes, shape (len(SAMPLES), 3), m: r + R D."""
-    start, end = actuator.span
-    X = start + (end - start) * SAMPLES
+    X = drawn_places(actuator, SAMPLES)
     pose = solution.pose(X, actuator.rod)
     offset = known(offset_at(actuator, X)[0])
     # A routing is given by two offsets, along the axes x and y of its sections.
@@ -192,6 +194,24 @@ def _order_around_mean(points: FloatArray) -> Indices:
     up = arms @ directions[1]
     angles = np.arctan2(up, across)
     return np.argsort(angles, kind="stable").astype(np.int64)
+
+
+def draw_disks(canvas: Canvas, solution: Solution) -> None:
+    """Draw the rims of disks; the legend names a row once."""
+    for row in solution.model.scene.disks:
+        label: str | None = row.name or "disks"
+        for at in row.places:
+            rim = in_world(solution.pose(at, row.rod), disk_rim(row))
+            canvas.line(rim, color=BODIES, linewidth=1.6, label=label)
+            label = None
+
+
+def disk_rim(row: Disks) -> FloatArray:
+    """The rims of both faces of a disk in the axes of its section, one line, shape (k, 3), m."""
+    angles = np.linspace(0.0, 2.0 * np.pi, RIM)
+    around = row.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    faces = [np.column_stack([around, np.full(RIM, height)]) for height in (-row.thickness / 2, row.thickness / 2)]
+    return np.concatenate(faces)
 
 
 def draw_targets(canvas: Canvas, solution: Solution) -> None:

@@ -18,6 +18,14 @@ import numpy as np
 from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, known, product, row_times, rows_of
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.wrenches import LineWrench
+
+
+class SectionMotions(Protocol):
+    """Variations of a rod's sections with its strain coordinates."""
+
+    def motion_of(self, nodes: list[int]) -> Matrix:
+        """[δr; δθ] of the sections of k nodes, stacked component by component, 6k×n, m and rad."""
 
 
 class Conjugate(Protocol):
@@ -39,8 +47,23 @@ class Conjugate(Protocol):
         """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
 
     @property
+    def wrench(self) -> LineWrench | None:
+        """Wrenches on sections whose generalised force is the pull; None where the pull is formed from strains alone.
+
+        They balance. The rod takes them among its loads, in the same sweeps.
+        """
+
+    @property
+    def wrench_nodes(self) -> list[int]:
+        """The k nodes that the wrenches act on."""
+
+    @property
     def further_stiffness(self) -> Matrix | None:
-        """Part of ∂ pull/∂q that the curvature does not hold, n×n; None where the curvature is all of it."""
+        """Part of ∂ pull/∂q that the curvature and wrenches do not hold, n×n; None where they hold all of it."""
+
+    @property
+    def section_stiffness(self) -> Matrix | None:
+        """Change of minus the wrench with the motions [δr; δθ] of its nodes, stacked by component, 6k×6k; as there."""
 
     @property
     def conservative(self) -> bool:
@@ -59,8 +82,23 @@ class Lossless:
         return self.gradient
 
     @property
+    def wrench(self) -> LineWrench | None:
+        """None: the pull is formed from strains alone."""
+        return None
+
+    @property
+    def wrench_nodes(self) -> list[int]:
+        """None."""
+        return []
+
+    @property
     def further_stiffness(self) -> Matrix | None:
         """None: the curvature is all of ∂ pull/∂q."""
+        return None
+
+    @property
+    def section_stiffness(self) -> Matrix | None:
+        """None: no wrench acts on sections."""
         return None
 
     @property

@@ -5,11 +5,15 @@ from __future__ import annotations
 import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.actuation import SectionMotions
 from cosserat_casadi.rod.igm import InverseGeometricModel
 
 
-def actuation_stiffness(igm: InverseGeometricModel) -> Matrix | None:
-    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None where it vanishes."""
+def actuation_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> Matrix | None:
+    """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None where it vanishes.
+
+    Without the part of frozen wrenches, which is that of the loads.
+    """
     parts = []
     curved = _curvature_stiffness(igm)
     if curved is not None:
@@ -18,9 +22,26 @@ def actuation_stiffness(igm: InverseGeometricModel) -> Matrix | None:
         further = conjugate.further_stiffness
         if further is not None:
             parts.append(effort / igm.rod.energy_unit * further)
+    parts += _section_stiffness(igm, motions)
     if not parts:
         return None
     return sum(parts[1:], parts[0])
+
+
+def _section_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> list[Matrix]:
+    """Change of the wrenches of efforts with the motions of their sections, n×n, one for each set of sections."""
+    operators: dict[tuple[int, ...], Matrix] = {}
+    for effort, conjugate in igm.efforts:
+        operator = conjugate.section_stiffness
+        if operator is not None:
+            nodes = tuple(conjugate.wrench_nodes)
+            own = effort / igm.rod.energy_unit * operator
+            operators[nodes] = operators[nodes] + own if nodes in operators else own
+    parts = []
+    for nodes, operator in operators.items():
+        moved = motions.motion_of(list(nodes))
+        parts.append(moved.T @ (operator @ moved))
+    return parts
 
 
 def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:

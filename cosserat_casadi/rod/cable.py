@@ -9,6 +9,7 @@ docs/theory.md section 6.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,15 +50,48 @@ class Routing:
 
 
 @dataclass(frozen=True)
-class RoutedCable(Lossless):
-    """A cable on its routing through a deformed rod.
+class Cable(Lossless, ABC):
+    """A cable through a deformed rod, whose quantity is its length.
 
     Attributes:
         shape: the rod's shape.
-        routing: where the cable runs.
     """
 
     shape: Shape
+
+    @property
+    @abstractmethod
+    def value(self) -> Matrix:
+        """Length L, 1×1, m."""
+
+    @property
+    @abstractmethod
+    def gradient(self) -> Matrix:
+        """∂L/∂q, n×1, m."""
+
+    @abstractmethod
+    def curvature(self, a: int, b: int) -> Row:
+        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
+
+    @property
+    def mean_share(self) -> Matrix | None:
+        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
+        return None
+
+    @property
+    def mean_share_gradient(self) -> Matrix | None:
+        """Its derivative with q, n×1; None where it is the same."""
+        return None
+
+
+@dataclass(frozen=True)
+class RoutedCable(Cable):
+    """A cable on its routing through a deformed rod.
+
+    Attributes:
+        routing: where the cable runs.
+    """
+
     routing: Routing
 
     @cached_property
@@ -149,16 +183,6 @@ class RoutedCable(Lossless):
             else:
                 parts.append(weighted.T @ lever.T)
         return ca.vertcat(*parts)
-
-    @property
-    def mean_share(self) -> Matrix | None:
-        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
-        return None
-
-    @property
-    def mean_share_gradient(self) -> Matrix | None:
-        """Its derivative with q, n×1; None where it is the same."""
-        return None
 
     def curvature(self, a: int, b: int) -> Row:
         """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.

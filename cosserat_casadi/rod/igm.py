@@ -20,6 +20,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.strain_density import energy_beyond_hooke
 from cosserat_casadi.rod.transport import interval_kernels
+from cosserat_casadi.rod.wrenches import LineWrench
 
 
 @dataclass(frozen=True)
@@ -45,13 +46,33 @@ class InverseGeometricModel:
         return self.statics.shape.rod
 
     @cached_property
+    def pulled(self) -> Statics:
+        """The rod under its loads, and under efforts that act as wrenches on sections, of which none reaches the base.
+
+        The internal wrench of :attr:`statics` is that of the rod and its tendons together.
+        """
+        parts = [(effort, conjugate.wrench) for effort, conjugate in self.efforts if conjugate.wrench is not None]
+        if not parts:
+            return self.statics
+        force: Matrix = ca.DM(3, self.rod.grid.size)
+        moment: Matrix = ca.DM(3, self.rod.grid.size)
+        for effort, wrench in parts:
+            assert wrench.force is not None, "cables pull"
+            assert wrench.moment is not None, "cables pull off the centreline"
+            force = force + effort * wrench.force
+            moment = moment + effort * wrench.moment
+        total = LineWrench(force, moment, None, follower=False)
+        # Loads that depend on poses have been evaluated.
+        return Statics(self.shape, [*self.statics.fixed_wrenches, total], self.statics.pose_loads)
+
+    @cached_property
     def generalised_force(self) -> Matrix:
-        """Q_ad / (EI/ℓ), n×1: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
+        """Q_ad / (EI/ℓ), n×1, of loads and wrenches of efforts: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
         if self.rod.discretisation.transport == "permuted":
             return self._weighted_force()
         # Minus the derivative of the loads' virtual work, by the transpose of the forward sweep.
-        covector = self.statics.force_covector
-        moment = self.statics.interval_moment
+        covector = self.pulled.force_covector
+        moment = self.pulled.interval_moment
         force: Matrix = ca.DM.zeros(self.rod.size, 1)
         if moment is not None and self.rod.properties.turning_axes:
             # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
@@ -88,12 +109,11 @@ class InverseGeometricModel:
 
         The stress of actuators, and that of the material beyond Hooke's law.
         """
-        if not self.strain_functions:
-            return None
         forces = []
         for effort, conjugate in self.strain_functions:
-            forces.append(effort / self.rod.energy_unit * conjugate.pull)
-        return sum(forces[1:], forces[0])
+            if conjugate.wrench is None:
+                forces.append(effort / self.rod.energy_unit * conjugate.pull)
+        return sum(forces[1:], forces[0]) if forces else None
 
     @cached_property
     def residual(self) -> Matrix:

@@ -15,12 +15,23 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, column, is_symbolic, known, repeated, row_times
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    column,
+    is_symbolic,
+    is_zero,
+    known,
+    repeated,
+    row_times,
+)
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.properties import FixedMass, RodProperties
 from cosserat_casadi.rod.rod_motion import RodMotion
-from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.wrenches import LineWrench
 
 
@@ -50,8 +61,41 @@ class SectionMasses:
     second_moments: dict[int, Numbers]
 
 
-def section_masses(rod: DiscreteRod) -> SectionMasses | None:
-    """Mass and second moments of a rod's sections; None where the rod has no mass."""
+def section_masses(rod: DiscreteRod, ratio: Ratio = None) -> SectionMasses | None:
+    """Mass and second moments of a rod's sections and of masses fixed to them; None where nothing has mass.
+
+    In sums over the nodes, a mass that is fixed to a node is a mass per length over the length of the node.
+
+    Args:
+        rod: the rod.
+        ratio: its length relative to the reference length, where that is free.
+    """
+    masses = masses_along(rod)
+    for fixed in rod.properties.fixed_masses:
+        mass = np.zeros(rod.grid.size) if masses is None else masses.mass
+        moments = {} if masses is None else dict(masses.second_moments)
+        masses = SectionMasses(_with_fixed(mass, fixed.mass, fixed, rod, ratio), moments)
+        for axis, moment in ((0, fixed.across), (1, fixed.across), (2, fixed.along)):
+            if not is_zero(moment):
+                before = moments.get(axis, np.zeros(rod.grid.size))
+                moments[axis] = _with_fixed(before, moment, fixed, rod, ratio)
+    return masses
+
+
+def _with_fixed(masses: Numbers, added: Scalar, fixed: FixedMass, rod: DiscreteRod, ratio: Ratio) -> Numbers:
+    """Masses per length of the nodes with one that is fixed to a section."""
+    node = rod.grid.node_at(fixed.at)
+    length = rod.node_lengths[node] if ratio is None else rod.node_lengths[node] * ratio
+    density = added / length
+    if not any_symbolic([masses, density]):
+        return np.asarray(known(masses) + np.asarray(density) * np.eye(rod.grid.size)[node])
+    at_node = ca.DM(ca.Sparsity.triplet(rod.grid.size, 1, [node], [0]), 1.0)
+    total: Matrix = as_matrix(masses) + at_node * density
+    return total
+
+
+def masses_along(rod: DiscreteRod) -> SectionMasses | None:
+    """Mass and second moments of a rod's own sections; None where the rod has no mass."""
     properties = rod.properties
     if properties.linear_density is None:
         return None

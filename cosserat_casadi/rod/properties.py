@@ -51,6 +51,23 @@ class EnergyBeyondHooke:
 
 
 @dataclass(frozen=True)
+class FixedMass:
+    """A mass that is fixed to a section, with its centre there and round about the tangent.
+
+    Attributes:
+        at: abscissa X of the section, an element end of the rod's grid.
+        mass: kg.
+        across: second moment ∫ρ x² dV along every axis in the section, kg m².
+        along: second moment along the tangent, kg m².
+    """
+
+    at: Scalar
+    mass: Scalar
+    across: Scalar
+    along: Scalar
+
+
+@dataclass(frozen=True)
 class RodProperties:
     """A rod in its unloaded state.
 
@@ -77,6 +94,7 @@ class RodProperties:
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
         nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
+        fixed_masses: masses that are fixed to sections.
     """
 
     name: str
@@ -94,6 +112,7 @@ class RodProperties:
     plane_sections: bool = False
     ratio: Matrix | None = None
     nominal: RodProperties | None = None
+    fixed_masses: tuple[FixedMass, ...] = ()
 
     def intrinsic_strain(self, X: Numbers) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""

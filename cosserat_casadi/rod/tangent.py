@@ -150,7 +150,7 @@ class Tangent:
     def interval_operators(self) -> tuple[Matrix, Matrix, Matrix]:
         """A, V, H of :attr:`IntervalKernels.variation` of every interval as operators on stacked fields."""
         kernel = self.kernels.variation
-        moment = self.igm.statics.interval_moment
+        moment = self.igm.pulled.interval_moment
         if moment is None:
             moment = ca.DM.zeros(3, self.intervals)
         blocks = kernel.map(self.intervals)(*self.shape.interval_arguments, moment)
@@ -262,12 +262,16 @@ class Tangent:
             # One section: no product with all of S.
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
+        return self.motion_of(load.nodes)
+
+    def motion_of(self, nodes: list[int]) -> Matrix:
+        """[δr; δθ] of the sections of k nodes, stacked component by component, 6k×n, m and rad."""
         grid = self.rod.grid
-        integrate = ca.DM(grid.integration_matrix[load.nodes])
+        integrate = ca.DM(grid.integration_matrix[nodes])
         moved = [integrate @ component for component in ca.vertsplit(self.tangent, grid.size)]
         turned = self.rotation
-        if not load.everywhere:
-            turned = ca.vertcat(*[component[load.nodes, :] for component in ca.vertsplit(turned, grid.size)])
+        if len(nodes) < grid.size:
+            turned = ca.vertcat(*[component[nodes, :] for component in ca.vertsplit(turned, grid.size)])
         return ca.vertcat(*moved, self._with_linear_columns(turned))
 
     def wrench_variation(self, load: LoadedSections) -> Matrix:
@@ -282,7 +286,7 @@ class Tangent:
         if self.shape.ratio is not None:
             elastic = elastic / self.shape.ratio
         matrix = elastic + self._wrenches()
-        for part in (self._pose_stiffness(), actuation_stiffness(self.igm)):
+        for part in (self._pose_stiffness(), actuation_stiffness(self.igm, self)):
             if part is not None:
                 matrix = matrix + part
         return matrix
@@ -330,7 +334,7 @@ class Tangent:
     @property
     def _have_potential(self) -> bool:
         """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
-        for wrench in self.igm.statics.wrenches:
+        for wrench in self.igm.pulled.wrenches:
             if wrench.follower and wrench.force is not None:
                 return False
             if wrench.moment is not None and not self._about_one_axis:
@@ -340,7 +344,7 @@ class Tangent:
     @property
     def _potential_lacks_at_points(self) -> bool:
         """Whether points alone carry wrenches without a potential."""
-        for wrench in self.igm.statics.wrenches:
+        for wrench in self.igm.pulled.wrenches:
             follows = wrench.follower and wrench.force is not None
             if (follows or wrench.moment is not None) and not isinstance(wrench, WrenchAt):
                 return False
@@ -348,7 +352,7 @@ class Tangent:
 
     def _difference_of_triangles(self) -> Matrix:
         """Angular rows less their transpose times EI/ℓ, n_a×n_a, N m, of wrenches at points: products of few rows."""
-        statics = self.igm.statics
+        statics = self.igm.pulled
         difference = ca.DM(self.angular_size, self.angular_size)
         for follower in (False, True):
             couple = statics.couple_covector(follower)
@@ -369,7 +373,7 @@ class Tangent:
     @property
     def moments_pass(self) -> bool:
         """Whether intervals that turn pass moments on."""
-        return self.igm.statics.interval_moment is not None and bool(self.kernels.axes)
+        return self.igm.pulled.interval_moment is not None and bool(self.kernels.axes)
 
     @property
     def _angular_product(self) -> Matrix:
@@ -386,7 +390,7 @@ class Tangent:
 
     def _moment_variation(self) -> Matrix:
         """δm − δθ × m of every interval, base frame, (3·intervals)×n_a."""
-        statics = self.igm.statics
+        statics = self.igm.pulled
         count = self.intervals
         rotations = [_with_base(part) for part in ca.vertsplit(self.section_rotation, count)]
         begins = ca.vertcat(*[part[:-1, :] for part in rotations])
@@ -411,7 +415,7 @@ class Tangent:
     @cached_property
     def _turned(self) -> TurnedWrenches:
         """How wrenches vary that follow their sections."""
-        return TurnedWrenches(self.igm.statics, self.rotation, self._about_one_axis)
+        return TurnedWrenches(self.igm.pulled, self.rotation, self._about_one_axis)
 
     @property
     def _about_one_axis(self) -> bool:
@@ -420,7 +424,7 @@ class Tangent:
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
-        covector = self.igm.statics.force_covector
+        covector = self.igm.pulled.force_covector
         if covector is None:
             return ca.DM(self.rod.size_of(component), self._turns.shape[1])
         return self._work_on(component, cross(self.shape.directors[component - 3], covector), self.rotation)
@@ -439,7 +443,7 @@ class Tangent:
     def _pose_stiffness(self) -> Matrix | None:
         """Stiffness of loads that depend on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = []
-        for load in self.igm.statics.pose_loads:
+        for load in self.igm.pulled.pose_loads:
             motion = self.motion(load)
             parts.append(motion.T @ self.wrench_variation(load))
         if not parts:

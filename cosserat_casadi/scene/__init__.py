@@ -21,6 +21,7 @@ from cosserat_casadi.scene.constraint_records import (
     Support,
     SupportRecord,
 )
+from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.exact_contact_scene import with_exact_contact
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.flow_record import Flow
@@ -85,6 +86,7 @@ __all__ = [
     "CurveTarget",
     "Damping",
     "Dipole",
+    "Disks",
     "DistributedWrench",
     "Family",
     "FixedJoint",

@@ -5,19 +5,21 @@ A kind is a record here and a class in `actuators/` that gives the quantity its 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import force_or_moment
 from cosserat_casadi.scene.records import Entry, Record, refusal
 from cosserat_casadi.scene.values import (
     LegendreComponent,
     Name,
+    NotEmpty,
     NotNegative,
     Number,
     PoissonRatio,
@@ -59,6 +61,22 @@ Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_
 
 PULLS = {"in": 1.0, "out": -1.0}
 """Directions of the last pull, with the sign of the friction in it."""
+
+
+def _faults_of_holes(given: Table) -> Iterator[Fault]:
+    """Holes ascend within the span; a routing through disks has become holes where there are any."""
+    if given.get("routing") == "disks":
+        problem = "stands beside holes" if "holes" in given else "no disk of its rod is in its span"
+        yield Fault(("routing",), problem, "give [[disks]] with its rod, or holes")
+    places = numbers_of(given.get("holes"))
+    ends = numbers_of(given.get("span", [0.0, 1.0]))
+    for i, (before, at) in enumerate(itertools.pairwise(places), 1):
+        if not at > before:
+            yield Fault(("holes", i), f"must be > {shown(before)}, the hole before it, got {shown(at)}")
+    if len(ends) == 2:
+        for i, at in enumerate(places):
+            if not ends[0] <= at <= ends[1]:
+                yield Fault(("holes", i), f"must be within its span, {ends[0]:g} to {ends[1]:g}, got {shown(at)}")
 
 
 def _direction_of_pull(value: Any) -> Any:
@@ -143,10 +161,20 @@ offset = [1.5e-3, 0.0]
     )
     helix: Helix | None = Field(None, description="helical course round the centreline, instead of offset")
     span: Span = Field((0.0, 1.0), description="abscissae X where it enters the rod and where it is anchored")
+    routing: Literal["continuous", "disks"] = Field(
+        "continuous",
+        description="'disks': straight between holes in the disks of its rod within its span, read as holes",
+    )
+    holes: Annotated[tuple[Share, ...], NotEmpty()] | None = Field(
+        None,
+        description="abscissae X of holes within its span, ascending, without unit, between which it is straight; a "
+        "continuous course when left out",
+    )
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """One of tension and length, one of offset and helix."""
+        yield from _faults_of_holes(given)
         yield from _one_of("tension", "length", given)
         yield from _one_of("offset", "helix", given)
         # Only an unknown tension can be held at zero from below.
@@ -161,6 +189,14 @@ offset = [1.5e-3, 0.0]
             yield Fault(("pretension",), "is for an elastic cable", remedy)
         if "pull" in given and not given.get("friction"):
             yield Fault(("pull",), "stands without friction", "the direction of the last pull is that of friction")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """A course between holes needs the rotations of their sections."""
+        accuracy = scene.get("accuracy")
+        if "holes" in given and isinstance(accuracy, Mapping) and accuracy.get("rotation") == "permuted":
+            problem = "does not go with accuracy.rotation = 'permuted'"
+            yield Fault(("holes",), problem, "use a product of exponentials, or a continuous course")
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:

@@ -7,6 +7,9 @@ from collections.abc import Iterator, Mapping
 
 from cosserat_casadi.scene.faults import Fault, SceneTables, listing, shown
 
+TIP = 1.0
+"""Abscissa of a tip, where a joint is unless it says otherwise."""
+
 
 def bases_on_nothing(scene: SceneTables) -> Iterator[Fault]:
     """A rod starts on a rod that is not there, on itself, or on one that it carries."""
@@ -63,19 +66,22 @@ def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
             yield Fault(("bodies", i), problem, remedy)
 
 
-def tips_held_twice(scene: SceneTables) -> Iterator[Fault]:
-    """A tip has a support and a joint, or two joints."""
-    holders: dict[str, str] = {}
+def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
+    """A tip has a support and a joint, or a section has two joints."""
+    holders: dict[tuple[str, float], str] = {}
     for i, support in scene.tables("supports"):
         name = support.get("rod")
         # Two supports of one tip are another rule's; the first of them counts.
         if isinstance(name, str):
-            holders.setdefault(name, f"supports[{i}]")
+            holders.setdefault((name, TIP), f"supports[{i}]")
     for i, joint in scene.tables("joints"):
         name = joint.get("rod")
-        if not isinstance(name, str):
+        at = joint.get("at", TIP)
+        if not isinstance(name, str) or not isinstance(at, int | float):
             continue
-        if name in holders:
-            problem = f"{holders[name]} holds the tip of {shown(name)} already"
-            yield Fault(("joints", i, "rod"), problem, "one support or joint for each tip")
-        holders.setdefault(name, f"joints[{i}]")
+        section = (name, float(at))
+        if section in holders:
+            where = "the tip" if at == TIP else f"X = {at:g}"
+            problem = f"{holders[section]} holds {where} of {shown(name)} already"
+            yield Fault(("joints", i, "rod"), problem, "one support or joint for each section: at = …")
+        holders.setdefault(section, f"joints[{i}]")

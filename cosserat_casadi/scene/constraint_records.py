@@ -1,4 +1,4 @@
-"""Bodies, and what holds tips of rods: supports hold them in the world, joints at bodies.
+"""Bodies, and what holds rods: supports hold their tips in the world, joints hold sections at bodies.
 
 A kind of support or joint is a record here and a class in `constraints/` that says which directions it holds.
 """
@@ -17,16 +17,19 @@ from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
 from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
+    ABOVE_BASE,
     SEVERAL,
     SINGLE,
     Direction,
     Name,
     NotNegative,
+    Number,
     Positive,
     Quadruple,
     Quaternion,
     Triple,
     Vector,
+    above_base,
     listed,
 )
 
@@ -184,23 +187,28 @@ mass = 0.1
 
 
 class JointRecord(Entry):
-    """A joint, which joins the tip of a rod to a body."""
+    """A joint, which joins a section of a rod to a body."""
 
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
     body: str = Field(description="name of the body")
-    rod: str = Field(description="name of the rod whose tip is jointed to it")
+    rod: str = Field(description="name of the rod that is jointed to it")
+    at: Annotated[
+        Number,
+        above_base("at its base a rod does not move: give an abscissa above it"),
+        ABOVE_BASE,
+    ] = Field(1.0, description="abscissa X of the jointed section, without unit, above 0 and at most 1; the tip")
     position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the axes of the body, m")
     quaternion: Quaternion = Field(
-        (1.0, 0.0, 0.0, 0.0), description="orientation of the tip section in the axes of the body, of norm 1"
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the section in the axes of the body, of norm 1"
     )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
     @property
     def orientation(self) -> Quadruple:
-        """Orientation of the tip in the axes of the body, w, x, y, z."""
+        """Orientation of the section in the axes of the body, w, x, y, z."""
         return self.quaternion
 
 
@@ -210,7 +218,7 @@ JOINTS: Family[JointRecord] = Family("joints")
 
 @JOINTS.register
 class FixedJoint(JointRecord):
-    """The tip of a rod is clamped in a body."""
+    """A section of a rod is clamped in a body."""
 
     example: ClassVar[str] = """\
 [[joints]]
@@ -220,12 +228,12 @@ kind = "fixed"
 position = [0.02, 0, 0]
 """
 
-    kind: Literal["fixed"] = Field(description="the tip is clamped in the body")
+    kind: Literal["fixed"] = Field(description="the section is clamped in the body")
 
 
 @JOINTS.register
 class SphericalJoint(JointRecord):
-    """The tip of a rod meets a point of a body and turns freely."""
+    """A section of a rod stays at a point of a body and turns freely."""
 
     example: ClassVar[str] = """\
 [[joints]]
@@ -235,12 +243,12 @@ kind = "spherical"
 position = [0.02, 0, 0]
 """
 
-    kind: Literal["spherical"] = Field(description="the tip stays at a point of the body and turns freely")
+    kind: Literal["spherical"] = Field(description="the section stays at a point of the body and turns freely")
 
 
 @JOINTS.register
 class RevoluteJoint(JointRecord):
-    """The tip of a rod meets a point of a body and turns about one axis of the body."""
+    """A section of a rod stays at a point of a body and turns about one axis of the body."""
 
     example: ClassVar[str] = """\
 [[joints]]
@@ -251,16 +259,16 @@ position = [0.02, 0, 0]
 axis = [0, 1, 0]
 """
 
-    kind: Literal["revolute"] = Field(description="the tip stays at a point of the body and turns about one axis")
+    kind: Literal["revolute"] = Field(description="the section stays at a point of the body and turns about one axis")
     axis: Direction = Field(
-        description="axis that the tip may turn about, through the joint's position, in the axes of the body, without "
-        "unit; any length but zero"
+        description="axis that the section may turn about, through the joint's position, in the axes of the body, "
+        "without unit; any length but zero"
     )
 
 
 @JOINTS.register
 class PrismaticJoint(JointRecord):
-    """The tip of a rod slides along one axis of a body and does not turn in it."""
+    """A section of a rod slides along one axis of a body and does not turn in it."""
 
     example: ClassVar[str] = """\
 [[joints]]
@@ -271,10 +279,12 @@ position = [0.02, 0, 0]
 axis = [1, 0, 0]
 """
 
-    kind: Literal["prismatic"] = Field(description="the tip slides along one axis of the body and does not turn in it")
+    kind: Literal["prismatic"] = Field(
+        description="the section slides along one axis of the body and does not turn in it"
+    )
     axis: Direction = Field(
-        description="axis that the tip may slide along, through the joint's position, in the axes of the body, without "
-        "unit; any length but zero"
+        description="axis that the section may slide along, through the joint's position, in the axes of the body, "
+        "without unit; any length but zero"
     )
 
 

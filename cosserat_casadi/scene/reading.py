@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.scene.disk_record import lead_through_disks
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
 from cosserat_casadi.scene.messages import problem_of, problems_of
@@ -143,6 +144,7 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     if faults:
         raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
     _locate_files(tables, folder)
+    lead_through_disks(tables)
     make_room_for_waves(tables)
     try:
         scene = Scene.model_validate(tables)

@@ -11,8 +11,9 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
-from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, tips_held_twice
+from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, sections_held_twice
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
+from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_range_records import ranges_of_no_input
@@ -38,6 +39,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "actuators": ACTUATORS,
     "rods": Rod,
     "bodies": Body,
+    "disks": Disks,
     "obstacles": OBSTACLES,
     "tubes": Tube,
     "targets": TARGETS,
@@ -58,6 +60,7 @@ SINGULAR = {
     "actuators": "actuator",
     "rods": "rod",
     "bodies": "body",
+    "disks": "row of disks",
     "obstacles": "obstacle",
     "tubes": "tube",
 }
@@ -89,7 +92,18 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
-    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles", "tubes", "measurements"):
+    for key in (
+        "rods",
+        "loads",
+        "supports",
+        "actuators",
+        "bodies",
+        "joints",
+        "disks",
+        "obstacles",
+        "tubes",
+        "measurements",
+    ):
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
@@ -325,7 +339,7 @@ RULES: tuple[Rule, ...] = (
     dangling_names,
     bases_on_nothing,
     bodies_that_nobody_holds,
-    tips_held_twice,
+    sections_held_twice,
     weightless_rods,
     overlapping_supports,
     own_rules,

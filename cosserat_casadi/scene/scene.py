@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from cosserat_casadi.scene.accuracy import Accuracy
 from cosserat_casadi.scene.actuator_records import Actuator
 from cosserat_casadi.scene.constraint_records import Body, Joint, Support
+from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
@@ -100,7 +101,8 @@ inputs = ["push.force", "cable.tension"]
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons, pressurised chambers and muscles")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
-    joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
+    joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
+    disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
@@ -179,6 +181,12 @@ inputs = ["push.force", "cable.tension"]
         records = list(getattr(self, holder.table))
         records[holder.index] = numbers.written(records[holder.index], values)
         return self.model_copy(update={holder.table: tuple(records)})
+
+    @property
+    def rods_held_at_tips(self) -> set[str]:
+        """Names of the rods whose tips a support or a joint holds."""
+        joints = [joint for joint in self.joints if joint.at == 1.0]
+        return {holder.rod for holder in (*self.supports, *joints)}
 
     @property
     def touches_exactly(self) -> bool:

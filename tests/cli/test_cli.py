@@ -274,7 +274,14 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 HELD = [path for path in sorted((ROOT / "examples").glob("*.toml")) if "free = true" not in path.read_text()]
 # The search for contacts takes seconds, and so does the largest platform; both have tests of their own. So have the
 # robot of two sections and its tendons, on the pages, and the arch, among the paths.
-ELSEWHERE = {"six_rod_platform", "two_section_robot", "tendon_robot_move", "fishing_rod_cast", "deep_arch"}
+ELSEWHERE = {
+    "six_rod_platform",
+    "two_section_robot",
+    "tendon_robot_move",
+    "fishing_rod_cast",
+    "deep_arch",
+    "disk_robot",
+}
 LONG = [path for path in HELD if "[[obstacles]]" in path.read_text() or path.stem in ELSEWHERE]
 # Half of the others are solved every time; the models of all of them are built, by the tests of inverse dynamics.
 LONG += [path for path in HELD if path not in LONG][1::2]

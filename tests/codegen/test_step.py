@@ -30,8 +30,10 @@ CABLE = pytest.param("given length", marks=pytest.mark.slow)
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN]
-"""Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
+DISKS = pytest.param("disks drawn out", marks=pytest.mark.slow)
+
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN, DISKS]
+"""Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes, disks."""
 
 
 @pytest.mark.parametrize("family", FAMILIES)

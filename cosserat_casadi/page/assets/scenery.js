@@ -162,7 +162,23 @@ class Scenery {
     this.layers.sections.add(axes.lines);
     const clamp = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20), solid("#444b52"));
     if (!facts.carried) this.scene.add(clamp);
+    const disks = facts.disks.map(([at, radius, thickness]) => {
+      const height = Math.max(thickness, thinnest / 2);
+      const disk = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, height, 40), solid(this.facts.colours.body));
+      // The axis of a cylinder is its y; that of a section is z.
+      disk.geometry.rotateX(Math.PI / 2);
+      Object.assign(disk.material, { transparent: true, opacity: 0.6 });
+      this.scene.add(disk);
+      return { disk, at };
+    });
     return (numbers) => {
+      for (const { disk, at } of disks) {
+        const place = at * (entry.columns - 1);
+        const k = Math.min(Math.floor(place), entry.columns - 2);
+        const [before, ...axes] = frame(numbers, 7 * Math.round(place));
+        disk.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(...axes));
+        disk.position.copy(frame(numbers, 7 * k)[0]).lerp(frame(numbers, 7 * (k + 1))[0], place - k);
+      }
       for (let k = 0; k < entry.columns; k++) {
         const [centre, x, y] = frame(numbers, 7 * k);
         corners.forEach(([a, b], i) => {

@@ -1,0 +1,91 @@
+"""Rows of disks on rods: masses that are fixed to sections, and add no unknowns."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.records import Entry, sound
+from cosserat_casadi.scene.values import (
+    ABOVE_BASE,
+    Name,
+    NotEmpty,
+    NotNegative,
+    Number,
+    Positive,
+    Whole,
+    above_base,
+    numbers_of,
+)
+
+
+def lead_through_disks(tables: dict[str, Any]) -> None:
+    """Write the holes of tendons that run through disks: places of the disks of their rods within their spans."""
+    for tendon in _tables(tables, "actuators"):
+        if tendon.get("routing") != "disks" or "holes" in tendon:
+            continue
+        span = numbers_of(tendon.get("span", [0.0, 1.0]))
+        rows = [sound(Disks, row) for row in _tables(tables, "disks") if row.get("rod") == tendon.get("rod")]
+        places = sorted({at for row in rows if row is not None for at in row.places})
+        holes = [at for at in places if len(span) == 2 and span[0] <= at <= span[1]]
+        if holes:
+            tendon["holes"] = holes
+            del tendon["routing"]
+
+
+def _tables(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables of a list, which may be faulty."""
+    listed = tables.get(key)
+    return [table for table in listed if isinstance(table, dict)] if isinstance(listed, list) else []
+
+
+Section = Annotated[Number, above_base("at its base a rod does not move: leave that disk out"), ABOVE_BASE]
+
+
+class Disks(Entry):
+    """A row of equal rigid disks, each fixed to a section of one rod, with its centre on the centreline."""
+
+    example: ClassVar[str] = """\
+[[disks]]
+rod = "finger"
+count = 10
+mass = 0.003
+radius = 0.01
+thickness = 0.002
+"""
+
+    references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
+
+    name: Name | None = Field(None, description="name of the row, a letter, then letters, digits and underscores")
+    rod: str = Field(description="name of the rod that carries the disks")
+    count: Annotated[Whole, Field(ge=1)] | None = Field(
+        None, description="number of disks, evenly along the rod, the last at its tip; or at"
+    )
+    at: Annotated[tuple[Section, ...], NotEmpty()] | None = Field(
+        None, description="abscissae X of the disks, ascending, without unit, above 0 and at most 1; or count"
+    )
+    mass: NotNegative = Field(0.0, description="mass of each disk, kg")
+    radius: Positive = Field(description="radius of each disk, m")
+    thickness: NotNegative = Field(0.0, description="thickness of each disk, m")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """One of count and abscissae, which ascend."""
+        if ("count" in given) == ("at" in given):
+            problem = "stands beside at" if "at" in given else "missing"
+            yield Fault(("count",), problem, "give count or at")
+        for i, (before, at) in enumerate(itertools.pairwise(numbers_of(given.get("at"))), 1):
+            if not at > before:
+                yield Fault(("at", i), f"must be > {shown(before)}, the place before it, got {shown(at)}")
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Abscissae X of the disks, ascending."""
+        if self.at is not None:
+            return self.at
+        assert self.count is not None
+        return tuple(number / self.count for number in range(1, self.count + 1))

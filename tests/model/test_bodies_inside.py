@@ -1,0 +1,106 @@
+"""Bodies on sections inside a rod, against the same rod cut there, and against beams without mass."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Scene, SceneError, build, modes_of, scene_from_dict, solve
+from tests.model.test_assembly import rod
+
+PLACES = [0.3, 0.7]
+FINE = {"modes": 6, "nodes": 9}
+BODIES: list[dict[str, Any]] = [
+    {"name": "lower", "mass": 0.3, "inertia": [0.01, 0.02, 0.015], "centre_of_mass": [0.02, 0.01, 0.03]},
+    {"name": "upper", "mass": 0.4, "inertia": [0.02, 0.02, 0.03]},
+]
+LOADS = [
+    {"name": "w", "kind": "gravity", "acceleration": [1.0, 0.5, -3.0]},
+    {"name": "p", "kind": "body_wrench", "body": "lower", "force": [0.5, 0.2, 0.1], "position": [0.05, 0, 0]},
+]
+
+
+def joint(body: str, **where: Any) -> dict[str, Any]:
+    return {"body": body, "kind": "fixed", "position": [0.01, 0, 0.02], "quaternion": [0.8, 0.6, 0, 0], **where}
+
+
+def tables(rods: list[dict[str, Any]], joints: list[dict[str, Any]]) -> dict[str, Any]:
+    return {"schema": 1, "accuracy": FINE, "rods": rods, "bodies": BODIES, "joints": joints, "loads": LOADS}
+
+
+def whole(places: list[float] = PLACES, **more: Any) -> Scene:
+    joints = [joint(body["name"], rod="a", at=at) for body, at in zip(BODIES, places, strict=True)]
+    return scene_from_dict({**tables([rod("a", 1.0)], joints), **more})
+
+
+def cut() -> Scene:
+    rods = [rod("a", 0.3), rod("b", 0.4, base={"rod": "a"}), rod("c", 0.3, base={"rod": "b"})]
+    return scene_from_dict(tables(rods, [joint("lower", rod="a"), joint("upper", rod="b")]))
+
+
+def test_a_rod_with_bodies_vs_the_rod_cut_at_them() -> None:
+    one, three = solve(build(whole())), solve(build(cut()))
+    assert one.converged
+    assert three.converged
+    assert_allclose(one.tip("a").position, three.tip("c").position, rtol=0, atol=1e-6)
+    for body in ("lower", "upper"):
+        assert_allclose(one.body(body).position, three.body(body).position, rtol=0, atol=1e-6)
+        assert_allclose(one.body(body).rotation, three.body(body).rotation, rtol=0, atol=1e-6)
+    frequencies = modes_of(one).angular_frequencies[:5]
+    assert_allclose(frequencies, modes_of(three).angular_frequencies[:5], rtol=1e-5, atol=0)
+
+
+def test_jacobian_vs_ad() -> None:
+    model = build(whole(accuracy={"modes": 3, "nodes": 6}))
+    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
+    symbol = ca.MX.sym("x", model.size)
+    residual = model.path_residual(symbol, model.pack(), 0.6)
+    ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
+    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+
+
+def test_a_ball_inside_a_rod_rests_on_a_floor() -> None:
+    """The floor bears what the two stretches of the rod leave it: the ball is at its radius above."""
+    lying = {"position": [0, 0, 0.1], "tangent": [1, 0, 0]}
+    tables = {
+        "schema": 1,
+        "accuracy": FINE,
+        "rods": [rod("a", 1.0, base=lying)],
+        "bodies": [{"name": "ball", "mass": 0.3, "radius": 0.07}],
+        "joints": [{"body": "ball", "rod": "a", "at": 0.5, "kind": "fixed"}],
+        "loads": [{"name": "w", "kind": "gravity", "acceleration": [0, 0, -4.0]}],
+        "obstacles": [{"name": "floor", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "bodies": ["ball"]}],
+    }
+    solution = solve(build(scene_from_dict(tables)))
+    assert solution.converged
+    (contact,) = solution.contacts
+    assert contact.owner == "ball"
+    assert_allclose(solution.body("ball").position[0, 2], 0.07, rtol=0, atol=1e-9)
+    # The clamp and the floor carry all of the weight.
+    assert_allclose(solution.base_wrench("a").force[2] + contact.force[2], 4.0 * (0.7 + 0.3), rtol=0, atol=1e-9)
+
+
+def test_the_place_of_a_joint_as_a_parameter() -> None:
+    """The body at 0.3 moved to 0.4 is that of a scene with the joint there."""
+    model = build(whole(parameters=["joints[0].at"]))
+    there = build(whole([0.4, 0.7]))
+    solution = solve(model, parameters={"joints[0].at": 0.4})
+    assert solution.converged
+    assert_allclose(solution.body("lower").position, solve(there).body("lower").position, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("places", "where", "problem"),
+    [
+        ([0.0, 1.0], "joints[0].at", "must be > 0 and <= 1, got 0.0"),
+        ([0.5, 0.5], "joints[1].rod", "joints[0] holds X = 0.5 of 'a' already"),
+    ],
+)
+def test_refusals(places: list[float], where: str, problem: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        whole(places)
+    assert [(one.where, one.problem) for one in refused.value.problems] == [(where, problem)]
