@@ -130,22 +130,29 @@ def kept_texts(name: str, made_from: Sequence[Any], write: Callable[[], Mapping[
         made_from: the model and all options on which the texts depend.
         write: writes the texts.
     """
+    kept = texts_in_cache(name, made_from)
+    if kept is not None:
+        return kept
+    written = dict(write())
+    key = key_of(*made_from)
+    # Sources that changed meanwhile may have written parts of it.
+    if key is not None and sources_hash() is not None:
+        _keep_texts(cache_folder(), f"{name}-{key}", written)
+    return written
+
+
+def texts_in_cache(name: str, made_from: Sequence[Any]) -> dict[str, str] | None:
+    """Texts that :func:`kept_texts` has written before, for the same arguments; None where there are none."""
     key = key_of(*made_from)
     if key is None:
-        return dict(write())
-    folder = cache_folder()
-    stem = f"{name}-{key}"
+        return None
     with suppress(OSError):
-        kept = kept_file(folder, stem, TEXTS)
+        kept = kept_file(cache_folder(), f"{name}-{key}", TEXTS)
         if kept is not None:
             texts: dict[str, str] = json.loads(zlib.decompress(kept.read_bytes()))
             mark_used(kept)
             return texts
-    written = dict(write())
-    # Sources that changed meanwhile may have written parts of it.
-    if sources_hash() is not None:
-        _keep_texts(folder, stem, written)
-    return written
+    return None
 
 
 def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:

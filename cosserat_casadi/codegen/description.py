@@ -12,6 +12,7 @@ import platform
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
+from functools import cache
 from typing import Any
 
 import casadi as ca
@@ -39,7 +40,7 @@ def key_of(*made_from: Any) -> str | None:
     Returns:
         None where a value is no data, or where the sources have changed since this process read them.
     """
-    sources = sources_hash()
+    sources = hash_at_first_use()
     if sources is None:
         return None
     try:
@@ -49,6 +50,12 @@ def key_of(*made_from: Any) -> str | None:
     around = (sources, ca.__version__, np.__version__, platform.system(), platform.machine())
     # The text of a tuple of words and tuples can be read in one way alone.
     return hashlib.sha256(repr((around, tokens)).encode()).hexdigest()[:20]
+
+
+@cache
+def hash_at_first_use() -> str | None:
+    """The hash of the sources that this process runs: none that changes later is read."""
+    return sources_hash()
 
 
 def _tokens(value: Any) -> Tokens:

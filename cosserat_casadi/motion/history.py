@@ -20,8 +20,8 @@ from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, 
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
@@ -46,27 +46,30 @@ AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
 
-def equations_of(model: Model, piece: Piece, p: FloatArray | None = None) -> MotionEquations:
+def equations_of(
+    model: Model, piece: Piece, p: FloatArray | None = None, kernels: StepKernels | None = None
+) -> MotionEquations:
     """The equations of motion of a model while its inputs follow one piece of their paths.
 
     Args:
         model: the model.
         piece: of its inputs.
         p: stacked parameters; those of a model that has some.
+        kernels: inverse dynamics and its derivatives; by default those of CasADi's virtual machine.
     """
-    inverse_dynamics = RepeatedCall(model.inverse_dynamics_in_scalars)
+    kernels = kernels or interpreted(model)
     parameters = [] if p is None else [p]
     # Every iteration of a step asks for the inputs at the same stages.
     inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         value, rate, acceleration = inputs_at(t)
-        return inverse_dynamics(x, v, a, value, *parameters, rate, acceleration)
+        return kernels.residual(x, v, a, value, *parameters, rate, acceleration)
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         value, rate, acceleration = inputs_at(t)
-        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
-        return stiffness.full(), damping.full(), mass.full()
+        stiffness, damping, mass = kernels.jacobians(x, v, a, value, *parameters, rate, acceleration)
+        return stiffness, damping, mass
 
     return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, kinks=piece.kinks)
 
@@ -257,6 +260,7 @@ def integrated(
     after_step: AfterStep | None = None,
     p: FloatArray | None = None,
     phases: ContactPhase | None = None,
+    kernels: StepKernels | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -270,12 +274,14 @@ def integrated(
         after_step: told of every step.
         p: stacked parameters; those of a model that has some.
         phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
+        kernels: as for :func:`equations_of`.
 
     Raises:
         SceneError: the start contradicts the constraints.
     """
     inputs = pieces[0].at(pieces[0].start).value
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p)
+    chosen = kernels or interpreted(model)
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen)
     if not model.scene.touches_exactly:
         cables = SlackCables(model)
         return switched(cables, cables.first_phases(x, inputs))
@@ -292,6 +298,7 @@ def _switched(
     settings: StepSettings,
     after_step: AfterStep | None,
     p: FloatArray | None,
+    kernels: StepKernels,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
@@ -306,7 +313,7 @@ def _switched(
         at = coordinates.from_model(at)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
-        plain = equations_of(model, piece, p)
+        plain = equations_of(model, piece, p, kernels)
         if coordinates is not None:
             plain = coordinates.equations(plain)
         while at.time < piece.end:

@@ -35,6 +35,7 @@ from cosserat_casadi.motion.simulate import (
     tolerance_of,
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
+from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_times
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -112,6 +113,7 @@ class _Search:
         simulation: the settings of the user.
         start: an equilibrium to start from; None for what the simulation says.
         tell: is told of every step.
+        source: chooses the kernels of every motion.
         tolerance: of the paths, over the length.
         levels: the motions so far.
         step_tolerance: of a step, over the length; nan for steps of given size.
@@ -122,6 +124,7 @@ class _Search:
     simulation: Simulation
     start: Solution | None
     tell: Tell | None
+    source: KernelSource | None
     tolerance: float
     levels: list[ResolvedMotion] = field(default_factory=list)
     step_tolerance: float = float("nan")
@@ -180,6 +183,7 @@ def simulate(
     start: Solution | None = None,
     simulation: Simulation | None = None,
     progress: Tell | None = None,
+    source: KernelSource | None = None,
 ) -> Motion:
     """Motion of a scene, or of a model on its modes and nodes.
 
@@ -193,12 +197,13 @@ def simulate(
         start: an equilibrium of the scene to start from at rest; by default the one that the simulation asks for.
         simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
+        source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
     if isinstance(subject, Model):
-        return simulate_model(subject, start=start, simulation=simulation, progress=progress)
+        return simulate_model(subject, start=start, simulation=simulation, progress=progress, source=source)
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
@@ -206,7 +211,7 @@ def simulate(
     simulation = scene.simulation
     check_simulation(coarsest, simulation)
     assert simulation is not None, "checked"
-    search = _Search(moving_scene, simulation, start, progress, tolerance_of(coarsest, simulation))
+    search = _Search(moving_scene, simulation, start, progress, source, tolerance_of(coarsest, simulation))
     try:
         if scene.accuracy.fixed:
             return _with_fixed(search)
@@ -370,7 +375,7 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
     began = started(model, search.simulation, search.start)
-    return Simulator(model, search.simulation, began, stage, search.tell)
+    return Simulator(model, search.simulation, began, stage, search.tell, search.source)
 
 
 def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:

@@ -27,6 +27,7 @@ from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
 from cosserat_casadi.motion.trajectory import (
@@ -123,6 +124,7 @@ class Simulator:
         start: how the motion begins.
         stage: what the user is told that is being done.
         tell: is told of every step.
+        source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
     """
 
     model: Model
@@ -130,6 +132,7 @@ class Simulator:
     start: Start
     stage: str = "simulating"
     tell: Tell | None = None
+    source: KernelSource | None = None
 
     @cached_property
     def moving(self) -> MovingInputs:
@@ -250,9 +253,21 @@ class Simulator:
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
-        return integrated(
-            self.model, pieces, self.start.x, still, method, settings, self._after_step, phases=self.start.phases
+        kernels = None if self.source is None else self.source.kernels(self.model)
+        history = integrated(
+            self.model,
+            pieces,
+            self.start.x,
+            still,
+            method,
+            settings,
+            self._after_step,
+            phases=self.start.phases,
+            kernels=kernels,
         )
+        if self.source is not None:
+            self.source.learn(history.statistics)
+        return history
 
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
@@ -275,7 +290,12 @@ def _sufficient(coarse: float, distance: float, wanted: float) -> float:
 
 
 def simulate(
-    model: Model, *, start: Solution | None = None, simulation: Simulation | None = None, progress: Tell | None = None
+    model: Model,
+    *,
+    start: Solution | None = None,
+    simulation: Simulation | None = None,
+    progress: Tell | None = None,
+    source: KernelSource | None = None,
 ) -> Motion:
     """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
 
@@ -284,6 +304,7 @@ def simulate(
         start: an equilibrium of the scene to start from at rest; by default what the simulation says.
         simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
+        source: as in :class:`Simulator`.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
@@ -295,7 +316,7 @@ def simulate(
     began = started(model, asked, start)
     if not began.found:
         return not_started(model, began)
-    simulator = Simulator(model, asked, began, tell=progress)
+    simulator = Simulator(model, asked, began, tell=progress, source=source)
     tolerance = tolerance_of(model, asked)
     timed = simulator.to_tolerance(tolerance, first=tolerance)
     if not timed.history.completed:

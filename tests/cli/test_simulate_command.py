@@ -52,7 +52,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def swing(scene: Scene, *, start: Solution | None = None, progress: Any = None) -> Motion:
+def swing(scene: Scene, *, start: Solution | None = None, progress: Any = None, compiled: Any = None) -> Motion:
     """Stands for the simulation: it reports as one does, and comes to the end."""
     assert scene.simulation is not None
     duration = scene.simulation.duration
@@ -67,7 +67,7 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """Runs the command with a stand-in for the simulation; returns the exit code."""
 
     def run_with(*arguments: str, simulate: Simulate = swing) -> int:
-        module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
+        module = types.ModuleType("cosserat_casadi.codegen.motion_compiler")
         module.simulate = simulate  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, module.__name__, module)
         return run(lambda **options: app(["simulate", *arguments], **options))
@@ -142,7 +142,7 @@ def test_options_override_the_scene(folder: Path, command: Callable[..., int]) -
 def test_a_motion_may_start_from_a_result(folder: Path, command: Callable[..., int]) -> None:
     starts: list[Solution | None] = []
 
-    def remember(scene: Scene, *, start: Solution | None, progress: Any) -> Motion:
+    def remember(scene: Scene, *, start: Solution | None, progress: Any, compiled: Any) -> Motion:
         starts.append(start)
         return swing(scene, progress=progress)
 
@@ -261,7 +261,7 @@ from cosserat_casadi.cli.main import main
 from cosserat_casadi.motion.trajectory import MotionOutcome, MotionProgress
 from tests.motions import motion_of
 
-def simulate(scene, *, start, progress):
+def simulate(scene, *, start, progress, compiled):
     motion = motion_of(scene, {"push.force": [0.1, 0.3, 0.0]}, duration=0.2, frames=5)
     outcome = MotionOutcome.INTERRUPTED
     try:
@@ -272,7 +272,7 @@ def simulate(scene, *, start, progress):
     except KeyboardInterrupt:
         return replace(motion, outcome=outcome, message=outcome.value)
 
-module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
+module = types.ModuleType("cosserat_casadi.codegen.motion_compiler")
 module.simulate = simulate
 sys.modules[module.__name__] = module
 main()

@@ -41,6 +41,7 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of texts and libraries, and sources that no one edits while the tests run."""
     monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
     monkeypatch.setattr(cosserat_casadi, "IMPORTED", time.time() + 3600)
+    description.hash_at_first_use.cache_clear()
     return tmp_path / "kept"
 
 
@@ -101,7 +102,7 @@ def test_whatever_differs_has_another_key(kept: Path, monkeypatch: pytest.Monkey
     assert None not in keys
     monkeypatch.setattr(ca, "__version__", "3.99.0")
     keys |= {key_of(strip())}
-    monkeypatch.setattr(description, "sources_hash", lambda: "other sources")
+    monkeypatch.setattr(description, "hash_at_first_use", lambda: "other sources")
     keys |= {key_of(strip())}
     assert len(keys) == len(others) + 2
 
@@ -147,6 +148,7 @@ def test_sources_that_changed_since_the_import_have_no_key(kept: Path, monkeypat
     """What this process runs is not what lies on the disk."""
     assert kept_texts("a", ("made from",), lambda: TEXTS) == TEXTS
     monkeypatch.setattr(cosserat_casadi, "IMPORTED", 0.0)
+    description.hash_at_first_use.cache_clear()
     assert key_of("made from") is None
     assert kept_texts("a", ("made from",), lambda: {"b.c": ""}) == {"b.c": ""}
 

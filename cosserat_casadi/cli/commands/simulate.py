@@ -54,6 +54,14 @@ def simulate(
     tolerance: Annotated[
         float | None, typer.Option(help="Error that the tip's path may have, over the rod's length.")
     ] = None,
+    compiled: Annotated[
+        bool | None,
+        typer.Option(
+            "--compiled/--interpreted",
+            help="Compile the equations, for later motions too; by default where it pays.",
+            show_default=False,
+        ),
+    ] = None,
     settings: Settings = None,
 ) -> None:
     """Simulate the motion of a scene over time.
@@ -70,7 +78,7 @@ def simulate(
         check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings, start)
     checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
 
-    motion = _simulate_with_progress(checked_scene, start_solution)
+    motion = _simulate_with_progress(checked_scene, start_solution, compiled)
     if output is not None:
         motion.write(output)
     if motion.outcome is MotionOutcome.INTERRUPTED:
@@ -138,13 +146,13 @@ def _check_scene(
     return scene, solution
 
 
-def _simulate_with_progress(scene: Scene, start: Solution | None) -> Motion:
+def _simulate_with_progress(scene: Scene, start: Solution | None, compiled: bool | None) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
-    from cosserat_casadi.motion.motion_refinement import simulate
+    from cosserat_casadi.codegen.motion_compiler import simulate
 
     with motion_display() as show_motion:
-        motion: Motion = simulate(scene, start=start, progress=show_motion)
+        motion: Motion = simulate(scene, start=start, progress=show_motion, compiled=compiled)
         return motion
 
 

@@ -1,0 +1,197 @@
+"""Simulate with the equations of motion in machine code, where that pays.
+
+A motion calls inverse dynamics and its derivatives thousands of times. In C they take a fifth to a tenth of the time of
+CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on the same
+modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+
+from cosserat_casadi.codegen.cache import kept_texts, texts_in_cache
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import ExportError
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.motion import motion_refinement
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.simulate import STAGES, Tell
+from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
+from cosserat_casadi.motion.trajectory import Motion, StepStatistics
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.simulation import Simulation
+
+RESIDUAL = "motion_residual"
+JACOBIANS = "motion_jacobians"
+"""Names of the functions in C, and of their files in the cache."""
+
+MATRICES = 3
+"""Derivatives of inverse dynamics: stiffness, damping, mass."""
+
+INSTRUCTION = 8e-9
+"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s."""
+
+AS_MANY_RESIDUALS = 10.0
+"""Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
+
+SAVED = 0.8
+"""Share of that time that machine code saves."""
+
+TO_COMPILE = {RESIDUAL: 1.5, JACOBIANS: 6.0}
+"""Processor time for writing and compiling a function, s, of 40 to 90 unknowns."""
+
+MOTIONS_TO_COME = 2.0
+"""Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
+
+
+@dataclass
+class MotionCompiler:
+    """Chooses the kernels for the motions of one simulation: machine code where it is at hand or pays.
+
+    Attributes:
+        always: whether to compile even where that takes longer than it saves.
+        last: the work of the motion before; None before the first.
+        asked: for each function the model that it was looked for, and its machine code, None where there was none.
+    """
+
+    always: bool = False
+    last: StepStatistics | None = None
+    asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
+
+    def learn(self, statistics: StepStatistics) -> None:
+        """Take note of the work of a motion."""
+        self.last = statistics
+
+    def kernels(self, model: Model) -> StepKernels:
+        """The kernels for the next motion of a model.
+
+        Raises:
+            ExportError: machine code is asked for in any case, and there is no compiler, or it fails.
+        """
+        residual = self._compiled(model, RESIDUAL)
+        jacobians = self._compiled(model, JACOBIANS)
+        return StepKernels(
+            residual or interpreted_residual(model),
+            interpreted_jacobians(model) if jacobians is None else jacobians.matrices,
+        )
+
+    def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
+        """A function in machine code; None where it is not at hand and does not pay."""
+        of_model, found = self.asked.get(name, (None, None))
+        try:
+            if of_model is not model:
+                found = _in_machine_code(model, name, write=self.always)
+            if found is None and self._pays(model, name):
+                found = _in_machine_code(model, name, write=True)
+        except ExportError:
+            if self.always:
+                raise
+            # The virtual machine needs no compiler.
+            found = None
+        self.asked[name] = (model, found)
+        return found
+
+    def _pays(self, model: Model, name: str) -> bool:
+        """Whether machine code saves more time than it takes to compile, as far as the last motion tells."""
+        if self.last is None:
+            return False
+        calls = STAGES * self.last.iterations
+        if name == JACOBIANS:
+            calls = AS_MANY_RESIDUALS * self.last.jacobians
+        instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
+        return SAVED * MOTIONS_TO_COME * calls * instructions * INSTRUCTION > TO_COMPILE[name]
+
+
+def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | None:
+    """A function of a model in machine code.
+
+    Args:
+        model: the model.
+        name: RESIDUAL or JACOBIANS.
+        write: whether to write and compile it where the cache has none; else the answer is None then.
+
+    Raises:
+        ExportError: there is no compiler, or it fails.
+    """
+    compiler = find_compiler()
+    made_from = (name, *_equations(model))
+    results, function = WRITTEN[name]
+    texts = texts_in_cache(name, made_from)
+    if texts is None and write:
+        # The printer of C is needed here alone, and takes its time to be loaded.
+        from cosserat_casadi.codegen.kernel_files import external_sources
+
+        texts = kept_texts(name, made_from, lambda: external_sources([function(model)], name, "long long int"))
+    if texts is None:
+        return None
+    library = compiled_texts(name, texts, compiler)
+    return RepeatedCall(ca.external(name, os.fspath(library)), results)
+
+
+def _equations(model: Model) -> list[Any]:
+    """All that the equations of motion depend on: neither the paths of inputs nor the tolerance are among it."""
+    if type(model) is not Model or model.parameters.size:
+        return [model]
+    levels: list[Any] = []
+    discrete: DiscreteScene | None = model.discrete
+    while discrete is not None:
+        scene = discrete.scene.model_copy(update={"title": "", "motions": (), "simulation": None})
+        discretisation = {name: rod.discretisation for name, rod in discrete.rods.items()}
+        levels.append((scene, discrete.layout, discretisation))
+        discrete = discrete.scaling
+    return levels
+
+
+def _residual(model: Model) -> ca.Function:
+    function = model.inverse_dynamics
+    arguments = function.mx_in()
+    return ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
+
+
+def _jacobians(model: Model) -> ca.Function:
+    function = model.dynamics_jacobian
+    arguments = function.mx_in()
+    matrices = [ca.densify(matrix) for matrix in function.call(arguments)[:MATRICES]]
+    return ca.Function(JACOBIANS, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])
+
+
+WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}
+"""Number of results of each function, and how it is written."""
+
+
+def simulate(
+    subject: Scene | Model,
+    *,
+    start: Solution | None = None,
+    simulation: Simulation | None = None,
+    progress: Tell | None = None,
+    compiled: bool | None = None,
+) -> Motion:
+    """Motion of a scene, or of a model on its modes and nodes.
+
+    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
+    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
+    the error of the time steps is controlled, and told.
+
+    Args:
+        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
+            ``build(scene.with_motion_inputs(), …, moving=True)``.
+        start: an equilibrium of the scene to start from at rest; by default the one that the simulation asks for.
+        simulation: duration, frames, tolerance; by default the scene's.
+        progress: told of every step.
+        compiled: whether the equations run as machine code. By default they do where the cache has them, or where
+            compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
+            with ``False`` never.
+
+    Raises:
+        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
+        ExportError: ``compiled`` is true, and there is no compiler, or it fails.
+    """
+    source = None if compiled is False else MotionCompiler(always=compiled is True)
+    return motion_refinement.simulate(subject, start=start, simulation=simulation, progress=progress, source=source)

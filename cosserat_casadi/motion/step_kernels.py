@@ -1,0 +1,57 @@
+"""Inverse dynamics and its derivatives as the steps of a motion call them, over and over.
+
+CasADi's virtual machine runs them, or machine code that a layer above compiles and hands in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.trajectory import StepStatistics
+
+
+@dataclass(frozen=True)
+class StepKernels:
+    """Functions of (x, v, a, inputs, inputs_rate, inputs_acceleration), with parameters behind the inputs.
+
+    Attributes:
+        residual: ↦ residual of the equations of motion, shape (size,).
+        jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
+    """
+
+    residual: Callable[..., FloatArray]
+    jacobians: Callable[..., list[FloatArray]]
+
+
+class KernelSource(Protocol):
+    """Chooses the kernels for the motions of one simulation."""
+
+    def kernels(self, model: Model) -> StepKernels:
+        """The kernels for the next motion of a model."""
+
+    def learn(self, statistics: StepStatistics) -> None:
+        """Take note of the work of a motion: the next one may take as much."""
+
+
+def interpreted_residual(model: Model) -> Callable[..., FloatArray]:
+    """Inverse dynamics by CasADi's virtual machine."""
+    return RepeatedCall(model.inverse_dynamics_in_scalars)
+
+
+def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:
+    """The derivatives of inverse dynamics by CasADi's virtual machine."""
+
+    def jacobians(*arguments: FloatArray) -> list[FloatArray]:
+        return [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
+
+    return jacobians
+
+
+def interpreted(model: Model) -> StepKernels:
+    """Kernels that CasADi's virtual machine runs."""
+    return StepKernels(interpreted_residual(model), interpreted_jacobians(model))

@@ -1,0 +1,165 @@
+"""Motions in machine code: the same equations, where they are compiled, and what the cache is asked by."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import cosserat_casadi
+from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
+from cosserat_casadi.codegen import description, kernel_files
+from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.step_kernels import interpreted
+from cosserat_casadi.motion.trajectory import StepStatistics
+from tests.codegen.test_load import needs_compiler
+from tests.families import mostly_slow
+from tests.moving_scenes import FAMILIES, model_of
+from tests.scenes import WEIGHT, push, rod
+
+pytestmark = needs_compiler
+
+
+@pytest.fixture(autouse=True)
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache, and sources that no one edits while the tests run."""
+    monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(cosserat_casadi, "IMPORTED", time.time() + 3600)
+    description.hash_at_first_use.cache_clear()
+    return tmp_path / "kept"
+
+
+def arm(stiffness: float = 1.0, **simulation: Any) -> dict[str, Any]:
+    """A planar rod that a tendon moves."""
+    return {
+        "schema": 1,
+        "rods": [rod("planar", stiffness={"bending_y": stiffness})],
+        "loads": [WEIGHT, push()],
+        "actuators": [{"name": "flexor", "kind": "tendon", "rod": "rod", "offset": [0.02, 0.0], "tension": 2.0}],
+        "accuracy": {"modes": 3, "nodes": 6},
+        "motions": [{"input": "flexor.tension", "times": [0.0, 0.1], "values": [2.0, 6.0], "interpolation": "cubic"}],
+        "simulation": {"duration": 0.2, "tolerance": 1e-4, **simulation},
+    }
+
+
+def moving(tables: dict[str, Any]) -> Model:
+    return build(scene_from_dict(tables).with_motion_inputs(), moving=True)
+
+
+def somewhere(model: Model) -> list[FloatArray]:
+    """Arguments of inverse dynamics, away from any motion."""
+    random = np.random.default_rng(3)
+    moved = [scale * random.standard_normal(model.size) for scale in (0.3, 2.0, 20.0)]
+    rates = [random.standard_normal(model.inputs.size) for _ in range(2)]
+    parameters = [model.parameters.pack()] if model.parameters.size else []
+    return [*moved, model.pack(), *parameters, *rates]
+
+
+def work(iterations: int, jacobians: int) -> StepStatistics:
+    return StepStatistics(100, 0, iterations, jacobians, 1e-3, 1e-3)
+
+
+LITTLE, MUCH, MOST = work(10, 1), work(10**6, 1), work(10**6, 10**6)
+
+
+def is_compiled(compiler: MotionCompiler, name: str) -> bool:
+    return compiler.asked[name][1] is not None
+
+
+@pytest.mark.parametrize("family", mostly_slow(list(FAMILIES), quick=["planar", "driven and held"]))
+def test_machine_code_gives_the_same_numbers(family: str) -> None:
+    model = model_of(family)
+    at = somewhere(model)
+    plain, compiled = interpreted(model), MotionCompiler(always=True).kernels(model)
+    assert isinstance(compiled.residual, RepeatedCall)
+    expected = plain.residual(*at)
+    assert_allclose(compiled.residual(*at), expected, rtol=0, atol=1e-14 * np.abs(expected).max())
+    for found, matrix in zip(compiled.jacobians(*at), plain.jacobians(*at), strict=True):
+        assert found.shape == (model.size, model.size)
+        assert_allclose(found, matrix, rtol=0, atol=1e-13 * np.abs(matrix).max())
+
+
+def test_results_of_a_call_are_kept_by_the_next_one() -> None:
+    model = moving(arm())
+    kernels = MotionCompiler(always=True).kernels(model)
+    at = somewhere(model)
+    first, matrices = kernels.residual(*at), kernels.jacobians(*at)
+    copies = first.copy(), [matrix.copy() for matrix in matrices]
+    kernels.residual(*[2 * array for array in at])
+    kernels.jacobians(*[2 * array for array in at])
+    assert_array_equal(first, copies[0])
+    assert_array_equal(matrices, copies[1])
+
+
+def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> None:
+    model = moving(arm())
+    compiler = MotionCompiler()
+    for last, expected in (
+        (None, (False, False)),
+        (LITTLE, (False, False)),
+        (MUCH, (True, False)),
+        (MOST, (True, True)),
+    ):
+        if last is not None:
+            compiler.learn(last)
+        compiler.kernels(model)
+        assert (is_compiled(compiler, RESIDUAL), is_compiled(compiler, JACOBIANS)) == expected
+
+
+def nothing_written(*arguments: Any) -> dict[str, str]:
+    raise AssertionError("equations are written that the cache holds")
+
+
+def test_a_later_motion_of_the_same_rods_takes_them_from_the_cache(monkeypatch: pytest.MonkeyPatch) -> None:
+    MotionCompiler(always=True).kernels(moving(arm()))
+    monkeypatch.setattr(kernel_files, "external_sources", nothing_written)
+    other = arm(duration=0.5, tolerance=1e-2)
+    other["title"] = "another motion"
+    other["motions"][0]["values"] = [1.0, 3.0]
+    compiler = MotionCompiler()
+    compiler.kernels(moving(other))
+    assert is_compiled(compiler, RESIDUAL)
+    assert is_compiled(compiler, JACOBIANS)
+    for tables in (arm(stiffness=1.1), {**arm(), "accuracy": {"modes": 4, "nodes": 6}}, {**arm(), "loads": [push()]}):
+        compiler.kernels(moving(tables))
+        assert not is_compiled(compiler, RESIDUAL)
+    with pytest.raises(AssertionError, match="cache holds"):
+        MotionCompiler(always=True).kernels(moving(arm(stiffness=1.1)))
+
+
+def test_parameters_that_are_bound_have_equations_of_their_own() -> None:
+    model = moving({**arm(), "parameters": ["rod.length"]})
+    short, long = model.at({"rod.length": 0.5}), model.at({"rod.length": 0.9})
+    for bound in (short, long):
+        MotionCompiler(always=True).kernels(bound)
+        compiled = MotionCompiler().kernels(bound)
+        assert isinstance(compiled.residual, RepeatedCall)
+        at = somewhere(bound)
+        assert_allclose(compiled.residual(*at), interpreted(bound).residual(*at), rtol=1e-12, atol=1e-12)
+
+
+def test_without_a_compiler_the_virtual_machine_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler")
+    compiler = MotionCompiler(last=MOST)
+    compiler.kernels(moving(arm()))
+    assert not is_compiled(compiler, RESIDUAL)
+    with pytest.raises(ExportError, match="no-such-compiler is not a program"):
+        simulate(scene_from_dict(arm()), compiled=True)
+
+
+def test_compiled_motions_are_the_same_to_the_tolerance() -> None:
+    tables = arm()
+    plain = simulate(scene_from_dict(tables), compiled=False)
+    compiled = simulate(scene_from_dict(tables), compiled=True)
+    assert plain.converged
+    assert compiled.converged
+    assert compiled.statistics.steps == pytest.approx(plain.statistics.steps, rel=0.1)
+    length = plain.model.scene.rods[0].length
+    bound = (plain.error_estimate + compiled.error_estimate) * length
+    assert_allclose(compiled.tip().position, plain.tip().position, rtol=0, atol=bound)
