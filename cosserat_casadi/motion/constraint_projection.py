@@ -21,8 +21,11 @@ from cosserat_casadi.motion.displacement import displacements
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
 
-MOST_CORRECTIONS = 4
-"""Most corrections of a state, each with a new Jacobian."""
+MOST_CORRECTIONS = 6
+"""Most corrections of a state."""
+
+CONTRACTED = 0.01
+"""Share of the gaps that a correction may leave before the next one has a new Jacobian."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,9 @@ class Closing:
             return x
         best = x
         before = np.inf
+        answer: FloatArray | None = None
         for _ in range(MOST_CORRECTIONS):
-            jacobian, residual = self.model.jacobian(x, inputs)
-            gaps = residual.full()[self.rows, 0]
+            gaps = self.model.residual(x, inputs).full()[self.rows, 0]
             largest = np.abs(gaps).max()
             if largest <= CLOSED:
                 break
@@ -62,16 +65,20 @@ class Closing:
             if not largest < before:
                 return best
             best = x
+            if answer is None or largest > CONTRACTED * before:
+                answer = self._answer(x, inputs)
             before = largest
-            x = x - self._correction(jacobian.full()[self.rows], gaps)
+            x = x - answer @ gaps
         return x
 
-    def _correction(self, derivatives: FloatArray, gaps: FloatArray) -> FloatArray:
-        """Smallest change of the coordinates that move, counted by their displacements, that takes gaps away."""
+    def _answer(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
+        jacobian, _ = self.model.jacobian(x, inputs)
         moves = self.model.discrete.unknowns.differential
-        weighted = np.where(moves, derivatives / self._sizes, 0.0)
-        change, *_ = np.linalg.lstsq(weighted, gaps, rcond=None)
-        return np.asarray(change / self._sizes)
+        weighted = np.where(moves, jacobian.full()[self.rows] / self._sizes, 0.0)
+        # Constraints that repeat each other have singular values of that size, over the largest.
+        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
+        return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])
 
     @cached_property
     def _sizes(self) -> FloatArray:
