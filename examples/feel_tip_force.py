@@ -46,8 +46,8 @@ PULLS = np.array([8.0, 2.0, 9.0, 4.0])
 TRUE, FELT = "#222222", "#4477aa"
 
 
-def robot() -> Model:
-    """A backbone of nitinol with two sections of tendons, 12 unknowns."""
+def robot(modes: int = 2, nodes: int = 6) -> Model:
+    """A backbone of nitinol with two sections of tendons, 12 unknowns with two modes of each strain."""
     offsets = {"lower_east": [8e-3, 0.0], "lower_north": [0.0, 8e-3], "upper_west": [-6e-3, 0.0]}
     offsets["upper_south"] = [0.0, -6e-3]
     actuators: list[dict[str, Any]] = []
@@ -69,7 +69,7 @@ def robot() -> Model:
         "schema": 1,
         "title": "A tendon robot that feels what its tip touches",
         "inputs": ["touch.force", *[f"{name}.tension" for name in TENDONS]],
-        "accuracy": {"modes": 2, "nodes": 6},
+        "accuracy": {"modes": modes, "nodes": nodes},
         "rods": [backbone],
         "loads": [weight, touch],
         "actuators": actuators,

@@ -55,6 +55,8 @@ LONG = (
     "cosserat simulate examples/tendon_robot_move.toml",
     "cosserat solve examples/finger_on_finger.toml",
     "cosserat solve examples/robot_leans_on_wall.toml",
+    "cosserat solve examples/three_materials.toml",
+    "cosserat check examples/three_materials.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 
@@ -71,6 +73,9 @@ LONG_PYTHON = {
     "examples/felt_loads.toml": "estimation/test_estimate.py",
     "snap = path.events[0]": "tubes/test_tube_robots.py",
     "turn = robot.track(": "tubes/test_tubes_in_c.py",
+    'load("generated/nitinol_wire")': "codegen/test_load.py",
+    "strip.step_sensitivity(": "codegen/test_step_sensitivity.py",
+    "wire.parameter_sensitivity(": "codegen/test_parameters_in_c.py",
 }
 """What a block holds that takes as long, and the file that has quick tests of it."""
 

@@ -178,20 +178,15 @@ class _Search:
         self.add([self._own_point])
         if self.ranges.moving.size:
             self.samples = samples
-            # Corners, where errors are largest as a rule, come first.
-            ends = [] if self._is_slow else self._ends()
+            # Corners, where errors are largest as a rule, come first; a solve in exact contact takes seconds.
+            ends = [] if self.scene.touches_exactly else self._ends()
             self.add([*self._corners(), *ends, self.ranges.lower, self.ranges.upper, *self._inner()])
 
     def more(self, answers: Answers) -> Iterator[list[int]]:
         """Points to which the worst one climbs; then fresh random ones."""
-        if not self._is_slow:
+        if not self.scene.touches_exactly:
             yield self._climbed(answers)
         yield self.add(self._inner())
-
-    @property
-    def _is_slow(self) -> bool:
-        """Whether a solve takes seconds, so that no point is tried for each entry: in exact contact."""
-        return self.scene.touches_exactly
 
     @property
     def _own_point(self) -> FloatArray:

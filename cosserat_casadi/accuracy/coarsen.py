@@ -275,7 +275,7 @@ class _GridSearch:
         """Rotation integrators to compare; all are one where a rod turns about one axis."""
         suitable = (names for least, names in TRANSPORTS if self.coarsening.bound >= least)
         transports = next(suitable)
-        rod = self._preview.model.discrete.rods[self.name].properties
+        rod = self.coarsening.preview.model.discrete.rods[self.name].properties
         if len(rod.turning_axes) > 1:
             return transports
         return transports[:1]
@@ -336,7 +336,7 @@ class _GridSearch:
     def _within(self, transport: str, nodes: int) -> bool:
         """Whether grids alone, and grids and modes together, change the tips by less than the bound."""
         grid_shift = self._shift(transport, nodes)
-        mode_shift = self._preview.mode_shift(self.modes)
+        mode_shift = self.coarsening.preview.mode_shift(self.modes)
         excess = self._excess(transport, nodes)
         # Grids alone too: a change that happens to cancel that of the modes would be luck.
         together = grid_shift + mode_shift
@@ -357,17 +357,13 @@ class _GridSearch:
             trial = dict(self.grids)
             for name in self.names:
                 trial[name] = replace(self.grids[name], nodes=nodes, transport=transport)
-            self._shifts[key] = self._preview.grid_shift(self._unknowns, self.modes, trial)
+            self._shifts[key] = self.coarsening.preview.grid_shift(self._unknowns, self.modes, trial)
         return self._shifts[key]
-
-    @property
-    def _preview(self) -> Preview:
-        return self.coarsening.preview
 
     @cached_property
     def _fewest_resolving(self) -> int:
         """Intervals below which one would turn too far, from the turns of the reference."""
-        reference = self._preview.reference
+        reference = self.coarsening.preview.reference
         model = reference.model
         nodes = model.discretisation[self.name].nodes
         # The turn of an interval is inverse to their number.
@@ -377,7 +373,7 @@ class _GridSearch:
 
     @cached_property
     def _unknowns(self) -> FloatArray:
-        return self._preview.with_modes(self.modes)
+        return self.coarsening.preview.with_modes(self.modes)
 
     def _affordable(self, transport: str, time: float, most: int) -> int:
         """Most intervals with which an integrator is cheaper than what is known."""

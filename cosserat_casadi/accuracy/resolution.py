@@ -113,7 +113,7 @@ class Resolution:
         """Error that the intervals and the rotation integrator leave."""
         modes = {}
         finer = {}
-        for name, discretisation in self._discretisation.items():
+        for name, discretisation in self.preview.model.discretisation.items():
             nodes = discretisation.nodes
             modes[name] = discretisation.modes
             finer[name] = replace(discretisation, nodes=nodes + nodes // 3 + 2)
@@ -141,10 +141,6 @@ class Resolution:
         pairs = log(bound / error) / log(self.ratio)
         return 2 * ceil(pairs)
 
-    @property
-    def _discretisation(self) -> dict[str, Discretisation]:
-        return self.preview.model.discretisation
-
     @cached_property
     def _sweeps(self) -> int:
         """Sweeps of the look; 0 where what the tips do needs none."""
@@ -158,7 +154,7 @@ class Resolution:
     def _look(self) -> FinerShift:
         """What modes that the solution lacks would change."""
         finer = {}
-        for name, discretisation in self._discretisation.items():
+        for name, discretisation in self.preview.model.discretisation.items():
             finer[name] = self._looked_at(discretisation)
         return self.preview.finer_shift(finer, self._sweeps)
 
@@ -176,7 +172,7 @@ class Resolution:
         assembly = self.preview.model.discrete.is_assembly
         least = CLOSING if assembly else 1
         fewer = {}
-        for name, discretisation in self._discretisation.items():
+        for name, discretisation in self.preview.model.discretisation.items():
             # No component loses its last mode, and none gains one.
             kept = [max(min(m, least), m - count) for m in discretisation.modes]
             fewer[name] = tuple(kept)

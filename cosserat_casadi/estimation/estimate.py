@@ -43,6 +43,7 @@ from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
+from cosserat_casadi.identification.concluding import TOLD, named
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
@@ -56,9 +57,6 @@ CHUNK = 256
 
 CHECKED = 3
 """Cases that are solved again on a finer discretisation."""
-
-TOLD = 3
-"""Cases that a sentence names."""
 
 Progress = Callable[[str, int, int], None]
 """Called with the work under way, how much of it is done, and of how much."""
@@ -358,7 +356,7 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
     for outcome, reason in REASONS.items():
         rows = [case for case, word in zip(result.cases, result.outcomes, strict=True) if word == outcome]
         if rows:
-            yield f"{len(rows)} of {len(result.cases)} rows not found: {_named(rows)}. {reason}"
+            yield f"{len(rows)} of {len(result.cases)} rows not found: {named(rows)}. {reason}"
     seen = max(1, int(np.count_nonzero(np.isfinite(result.values[:, 0]))))
     for direction, count in list(result.unseen.items())[:TOLD]:
         yield f"The data do not see {direction} in {count} of {seen} rows: there the prior alone speaks."
@@ -369,7 +367,7 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
     if doubtful:
         yield (
             f"{len(doubtful)} of {seen} rows have another explanation nearly as good, told as the second best: "
-            f"{_named(doubtful)}. Values and deviations there are those of the best alone."
+            f"{named(doubtful)}. Values and deviations there are those of the best alone."
         )
     if drawn is not None:
         poor = np.count_nonzero(result.found & ~drawn.sound)
@@ -381,9 +379,3 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
     if result.shared is not None and not result.shared.settled:
         yield "What all rows share was not found to its end: its value and deviation may be off."
     yield from result.consistency.sentences(result.cases)
-
-
-def _named(rows: Sequence[str]) -> str:
-    """Some rows by name, and how many more there are."""
-    names = ", ".join(rows[:TOLD])
-    return names if len(rows) <= TOLD else f"{names} and {len(rows) - TOLD} more"

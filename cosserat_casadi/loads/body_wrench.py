@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import final
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load, Section
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.loads.load import BodyPoint, Load
 
 
 @final
@@ -21,7 +19,3 @@ class BodyWrenchLoad(Load[scenes.BodyWrench]):
         if load.body != body.name:
             return None
         return BodyPoint(load.position)
-
-    def wrench(self, load: scenes.BodyWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment of the scene, unchanged."""
-        return values["force"], values["moment"]

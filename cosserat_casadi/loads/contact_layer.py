@@ -63,10 +63,6 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
             pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
         return pressing * normal, ca.DM(3, 1)
 
-    def profiles(self, load: ContactLayer, rod: object, X: Numbers, columns: int) -> Numbers:
-        """One all along the rod."""
-        return np.ones((columns, X.shape[0]))
-
     def data(self, load: ContactLayer, site: Site) -> Numbers:
         """Radius of the sections, m."""
         return stacked_rows([section_radii(site.rod, site.X)])

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, final
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.loads.load import Section, Site, polynomials_at
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
@@ -47,10 +46,6 @@ class ContactLineLoad(ObstacleLoad[ContactLine]):
         force = ca.mtimes(values["force"], section.data)
         energy: Matrix = -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
         return energy
-
-    def profiles(self, load: ContactLine, rod: object, X: Numbers, columns: int) -> Numbers:
-        """One: λ varies with the data of the sections."""
-        return np.ones((columns, X.shape[0]))
 
     def data(self, load: ContactLine, site: Site) -> Numbers:
         """Values of the Legendre polynomials over the stretch."""

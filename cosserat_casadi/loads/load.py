@@ -137,7 +137,9 @@ class Load(Kind, ABC, Generic[RecordType]):
     per_mass: ClassVar[bool] = False
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.
+        """Force and moment on a section, in the load's axes.
+
+        By default they are minus the derivatives of :meth:`energy`, or of a load without one those of the scene.
 
         Returns:
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
@@ -145,9 +147,11 @@ class Load(Kind, ABC, Generic[RecordType]):
         """
         # The pose is a set of free symbols when a load is traced: the energy can be differentiated here.
         energy = self.energy(load, section, values)
-        if energy is None:
+        if energy is not None:
+            return wrench_of_energy(energy, section.position, section.rotation)
+        if "force" not in values or "moment" not in values:
             raise NotImplementedError(f"{type(self).__name__} gives neither a wrench nor an energy")
-        return wrench_of_energy(energy, section.position, section.rotation)
+        return values["force"], values["moment"]
 
     def energy(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
         """Potential energy on a section, 1×1, J or J/m; None for a load that is not given by one."""

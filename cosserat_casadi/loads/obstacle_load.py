@@ -40,6 +40,10 @@ class ObstacleLoad(Load[ObstacleRecordType]):
         body: str | None = load.obstacle.body
         return body
 
+    def profiles(self, load: ObstacleRecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
+        """One all along the rod: what varies are data of the sections."""
+        return np.ones((columns, X.shape[0]))
+
 
 def section_radii(rod: RodProperties, X: Numbers) -> Numbers:
     """Radius of the sections of a rod at abscissae X, shape (k,), m; zero where it is given by its stiffness."""

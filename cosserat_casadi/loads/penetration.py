@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi.loads.load import Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import Numbers, known
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
@@ -55,10 +55,6 @@ class PenetrationLoad(ObstacleLoad[Penetration]):
         depth = ca.fmax(depth, 0.0)
         energy: Matrix = values["stiffness"] / 3 * depth**3
         return energy
-
-    def profiles(self, load: Penetration, rod: object, X: Numbers, columns: int) -> Numbers:
-        """One all along the rod."""
-        return np.ones((columns, X.shape[0]))
 
     def data(self, load: Penetration, site: Site) -> FloatArray:
         """Radius of the sections, m, and how much each height raises the obstacle there."""

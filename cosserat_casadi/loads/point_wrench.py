@@ -6,13 +6,11 @@ on either side, so every field is smooth inside an element and the accuracy stay
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import final
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import Load, Section
+from cosserat_casadi.loads.load import Load
 from cosserat_casadi.maths.numbers import Scalar
-from cosserat_casadi.maths.typing import Matrix
 
 
 @final
@@ -25,7 +23,3 @@ class PointWrenchLoad(Load[scenes.PointWrench]):
         """The loaded section."""
         at: Scalar = load.at
         return at
-
-    def wrench(self, load: scenes.PointWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment of the scene, unchanged."""
-        return values["force"], values["moment"]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import final
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import Load, Section
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.loads.load import Load
 
 
 @final
@@ -19,7 +17,3 @@ class TipWrenchLoad(Load[scenes.TipWrench]):
     def abscissa(self, load: scenes.TipWrench) -> float:
         """The tip."""
         return 1.0
-
-    def wrench(self, load: scenes.TipWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force and moment of the scene, unchanged."""
-        return values["force"], values["moment"]

@@ -64,6 +64,12 @@ def dot(a: AnyMatrix, b: AnyMatrix) -> AnyMatrix:
     return ca.sum1(a * b)
 
 
+def cross_matrix(vector: FloatArray) -> FloatArray:
+    """The matrix of the cross product with a vector, 3×3."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
 def hat(v: AnyMatrix) -> AnyMatrix:
     """The skew matrix in so(3) with ``hat(v) u = v × u``: report (A.3), (A.4).
 

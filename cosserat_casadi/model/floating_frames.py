@@ -19,7 +19,7 @@ from cosserat_casadi.constraints.held_directions import FLAT, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
-from cosserat_casadi.maths.rotation import matrix_to_quaternion, quaternion_product
+from cosserat_casadi.maths.rotation import cross_matrix, matrix_to_quaternion, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
@@ -220,8 +220,8 @@ class UnloadedScene:
         shift = to_section @ (pose.position + arm - section.position) / length
         # The pose that the body wants of the section, in the axes of the section: the identity where nothing is turned.
         turned = to_section @ pose.rotation @ place.rotation
-        by_turn = [_axial(cross @ turned + turned.T @ cross) / 2.0 for cross in map(_cross, np.eye(3))]
-        of_position = np.hstack([to_section @ _cross(-arm) / length, to_section])
+        by_turn = [_axial(cross @ turned + turned.T @ cross) / 2.0 for cross in map(cross_matrix, np.eye(3))]
+        of_position = np.hstack([to_section @ cross_matrix(-arm) / length, to_section])
         of_rotation = np.hstack([np.column_stack(by_turn) @ to_section, np.zeros((3, 3))])
         # The sine of half a turn vanishes as well: what is held to agree has to point the same way.
         count = held.rotations.shape[1]
@@ -269,12 +269,6 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
         return True
     sine = float(np.linalg.norm(np.cross(normal, second.rotation[:, 1])))
     return sine <= FLAT
-
-
-def _cross(vector: FloatArray) -> FloatArray:
-    """The matrix of the cross product with a vector, 3×3."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _axial(matrix: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.rotation import cross_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
@@ -125,7 +126,7 @@ class MomentumKeeper:
             w, i, j, k = frame.start.quaternion + deviation[3:]
             motions[entries, :] = np.block(
                 [
-                    [np.eye(3) / frame.length, -_cross(place)],
+                    [np.eye(3) / frame.length, -cross_matrix(place)],
                     [np.zeros((4, 3)), 0.5 * np.array([[-i, -j, -k], [w, k, -j], [-k, w, i], [j, -i, w]])],
                 ]
             )
@@ -139,12 +140,6 @@ class MomentumKeeper:
 
 def _itself(instant: Instant) -> Instant:
     return instant
-
-
-def _cross(vector: FloatArray) -> FloatArray:
-    """The matrix of a cross product from the left, shape (3, 3)."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _functions(model: Model) -> tuple[ca.Function, ca.Function]:

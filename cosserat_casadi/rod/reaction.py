@@ -43,7 +43,7 @@ class Reaction:
     @cached_property
     def force_with_strain(self) -> Matrix:
         """∂ base force / ∂q, base frame, 3×n, N: minus the sum of δf, which dead forces do not have."""
-        force = ca.DM(3, self._size)
+        force = ca.DM(3, self.tangent.rod.size)
         for wrench in self._followers:
             if wrench.force is not None:
                 turned = self._turned(wrench, wrench.force)
@@ -56,7 +56,7 @@ class Reaction:
     @cached_property
     def moment_with_strain(self) -> Matrix:
         """∂ base moment / ∂q, base frame, 3×n, N m: minus the sum of δr × f + r × δf + δc."""
-        moment = ca.DM(3, self._size)
+        moment = ca.DM(3, self.tangent.rod.size)
         covector = self._statics.force_covector
         if covector is not None:
             # Σ n̂ × δt is −Σ δr × f: with r = S t and n̂ = Sᵀ f.
@@ -107,10 +107,6 @@ class Reaction:
         return self.tangent.igm.statics
 
     @property
-    def _size(self) -> int:
-        return self.tangent.rod.size
-
-    @property
     def _followers(self) -> list[Wrench]:
         return [wrench for wrench in self._statics.fixed_wrenches if wrench.follower]
 
@@ -137,7 +133,7 @@ class Reaction:
             return -(hat(in_base) @ turning)
         per_length = self._statics.line(wrench, vector)
         angular = -(hat_operator(per_length) @ self.tangent.rotation)
-        no_column = ca.DM(angular.shape[0], self._size - angular.shape[1])
+        no_column = ca.DM(angular.shape[0], self.tangent.rod.size - angular.shape[1])
         return ca.horzcat(angular, no_column)
 
     def _resultant(self, variation: Matrix, wrench: Wrench) -> Matrix:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, one_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import force_or_moment
 from cosserat_casadi.scene.records import Entry, Record, refusal
@@ -175,8 +175,8 @@ offset = [1.5e-3, 0.0]
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """One of tension and length, one of offset and helix."""
         yield from _faults_of_holes(given)
-        yield from _one_of("tension", "length", given)
-        yield from _one_of("offset", "helix", given)
+        yield from one_of("tension", "length", given)
+        yield from one_of("offset", "helix", given)
         # Only an unknown tension can be held at zero from below.
         if given.get("slack") is True and "length" not in given:
             yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
@@ -208,14 +208,6 @@ offset = [1.5e-3, 0.0]
         if not fields:
             return tuple(cls.inputs)
         return tuple(fields)
-
-
-def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
-    """Faults unless exactly one of two keys is there."""
-    if first in given and second in given:
-        yield Fault((second,), f"stands beside {first}", "give one of the two")
-    if first not in given and second not in given:
-        yield Fault((first,), "missing", f"give {first} or {second}")
 
 
 class ChamberWall(Record):
@@ -282,7 +274,7 @@ reference_pressure = 2.0e4
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """One of area and wall; growths with their reference pressure."""
-        yield from _one_of("area", "wall", given)
+        yield from one_of("area", "wall", given)
         if "wall" in given and "area_growth" in given:
             yield Fault(("area_growth",), "stands beside wall", "it follows from the wall: leave one of them out")
         grows = "area_growth" in given or "offset_growth" in given

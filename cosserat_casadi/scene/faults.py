@@ -166,3 +166,11 @@ def frame_faults(given: Table) -> Iterator[Fault]:
         yield Fault(("rod",), "missing", "name a rod or a body")
     elif "at" in given and "body" in given:
         yield Fault(("at",), "is for a rod", "leave it out: a body has one pose")
+
+
+def one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
+    """Faults unless exactly one of two keys is there."""
+    if first in given and second in given:
+        yield Fault((second,), f"stands beside {first}", "give one of the two")
+    if first not in given and second not in given:
+        yield Fault((first,), "missing", f"give {first} or {second}")

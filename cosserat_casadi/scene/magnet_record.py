@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.faults import Fault, Table, one_of
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import LOADS, LoadRecord
 from cosserat_casadi.scene.records import Record
@@ -93,8 +93,8 @@ field = [0, 0.02, 0]
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A magnet is in one place, has one moment, and stands in a field."""
-        yield from _one_of("rod", "body", given)
-        yield from _one_of("magnetisation", "moment", given)
+        yield from one_of("rod", "body", given)
+        yield from one_of("magnetisation", "moment", given)
         if "body" in given and "magnetisation" in given:
             yield Fault(("magnetisation",), "is of a rod", "give the moment of the body's magnet, A m²")
         if "at" in given and "moment" not in given:
@@ -116,14 +116,6 @@ field = [0, 0.02, 0]
         if "dipole" in given:
             fields += ["dipole.position", "dipole.moment"]
         return tuple(fields)
-
-
-def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
-    """Faults unless exactly one of two keys is there."""
-    if first in given and second in given:
-        yield Fault((second,), f"stands beside {first}", "give one of the two")
-    if first not in given and second not in given:
-        yield Fault((first,), "missing", f"give {first} or {second}")
 
 
 def _zero(key: str, given: Table, remedy: str) -> Iterator[Fault]:

@@ -30,9 +30,9 @@ def quick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
 
 
-def wire() -> Model:
+def wire(modes: int = 3, nodes: int = 6) -> Model:
     wanted = scene(push(), WEIGHT, strain="planar", inputs=["push.force"])
-    return build(wanted, discretise(wanted, 3, 6))
+    return build(wanted, discretise(wanted, modes, nodes))
 
 
 def hand() -> Model:
@@ -82,7 +82,7 @@ def hessian(function: ca.Function, model: Model, weights: np.ndarray) -> np.ndar
 @pytest.mark.parametrize("longest", mostly_slow([STRAIGHT, 0], quick=[0]), ids=["straight", "loops"])
 def test_second_derivatives_vs_model(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stage_module, "STRAIGHT", longest)
-    model = wire()
+    model = wire(2, 3)
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
     plain = ca.Function("plain", [x, inputs], [model.residual(x, inputs), ca.vertcat(*model.tip["rod"](x, inputs)[:2])])
     weights = np.linspace(-1.0, 2.0, model.size)

@@ -24,18 +24,9 @@ SETTLED = 8
 
 
 @pytest.fixture(scope="module")
-def model():
-    return robot()
-
-
-@pytest.fixture(scope="module")
-def folder(model, tmp_path_factory):
-    return exported(model, tmp_path_factory.mktemp("exported") / "robot")
-
-
-@pytest.fixture(scope="module")
-def plant(model, folder):
-    return Plant(model, load(folder))
+def plant(tmp_path_factory):
+    model = robot()
+    return Plant(model, load(exported(model, tmp_path_factory.mktemp("exported") / "robot")))
 
 
 def mean_error(plant, runs, steps):
@@ -60,7 +51,11 @@ def test_covariance_is_consistent_over_two_hundred_runs(plant):
     assert_allclose(error, entries, rtol=0.0, atol=band)
 
 
-def test_filter_in_c_vs_python(plant, folder, tmp_path):
+def test_filter_in_c_vs_python(tmp_path):
+    """Of a robot with few modes: the compiler takes several times as long over the equations of the whole one."""
+    model = robot(modes=1, nodes=4)
+    folder = exported(model, tmp_path / "robot")
+    plant = Plant(model, load(folder))
     run = true_motion(plant, 30, 3)
     program = tmp_path / "feel"
     flags = ["-O0", "-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{folder}"]

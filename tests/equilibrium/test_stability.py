@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
 
 from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow, scene_from_dict, solve
 from cosserat_casadi.equilibrium.relax import energy_at
@@ -18,6 +16,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from tests.catalogue.cases import column_tip
 from tests.reference.held_scenes import held_scene
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.shooting_near import integrate
@@ -46,12 +45,6 @@ def held(kind: str, strain: str = "kirchhoff", **changes: Any) -> Scene:
     return column(strain, supports=[support], **changes)
 
 
-def buckled(ratio: float) -> tuple[float, float]:
-    """Tip of the column at P = ratio P_c, sideways and up: K(k) = π/2 √ratio, Timoshenko and Gere 1961, section 2.7."""
-    k = brentq(lambda k: ellipk(k**2) - np.pi / 2 * np.sqrt(ratio), 1e-6, 1 - 1e-14, xtol=1e-16)
-    return 2 * k / ellipk(k**2), 2 * ellipe(k**2) / ellipk(k**2) - 1
-
-
 def assert_integrates(solution: Solution, atol: float) -> None:
     """An initial-value integration from the base wrench ends at the tip, and at the tip's load where it is free."""
     base = solution.base_wrench()
@@ -77,7 +70,7 @@ def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_
     assert straight.smallest_eigenvalue < 0.0
     assert (bent.converged, bent.stable) == (True, True)
     x, y, z = bent.tip().position[0]
-    assert_allclose([np.hypot(x, y), z], buckled(ratio), rtol=0, atol=1e-6)
+    assert_allclose([np.hypot(x, y), z], column_tip(ratio), rtol=0, atol=1e-6)
     assert ("neutral" in bent.message) is (strain == "kirchhoff")
     assert "settle" in bent.message
 
@@ -119,7 +112,7 @@ def test_solve_of_a_model_settles_only_if_asked() -> None:
     assert solve(model).stable is False
     bent = solve(model, stable=True)
     assert bent.stable is True
-    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), buckled(2.0), rtol=0, atol=1e-7)
+    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), column_tip(2.0), rtol=0, atol=1e-7)
     assert solve(model, {"push.force": [0.1, 0, 0]}, stable=True).message == Outcome.CONVERGED.value
 
 

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.codegen.estimator import Estimates
-from cosserat_casadi.estimation import Estimate, estimate
+from cosserat_casadi.estimation import estimate
 from cosserat_casadi.estimation.consistency import chi_square_deviations, consistency
 from cosserat_casadi.estimation.posterior import normal_draws, sampled
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, find_shared
@@ -20,6 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.results.estimate_file import estimate_result
 from cosserat_casadi.scene import Scene
+from tests.estimation.test_estimate import nees
 from tests.scenes import push, rod
 
 STIFFNESS = "rod.stiffness.bending_y"
@@ -78,11 +79,6 @@ def shapes(stiffness: float, forces: FloatArray, hung: FloatArray, seed: int, of
             for axis, value in zip("xyz", position, strict=True):
                 columns[f"{axis}{k}"].append(value)
     return {"shapes": {"hung_N": hung, **columns}}
-
-
-def nees(found: Estimate, truth: FloatArray) -> FloatArray:
-    errors = found.values - truth
-    return np.einsum("ci,cij,cj->c", errors, np.linalg.inv(found.covariance), errors)
 
 
 def with_uncertain_stiffness(batches: int, rows: int) -> dict[str, FloatArray]:

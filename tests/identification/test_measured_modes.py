@@ -12,10 +12,11 @@ from cosserat_casadi import Model, SceneError, build, identify, modes_of, solve
 from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.identification.fit_unknowns import unknown_layout
 from cosserat_casadi.identification.measured_cases import read_cases
-from cosserat_casadi.identification.misfit import Misfit, MisfitState
+from cosserat_casadi.identification.misfit import Misfit
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.families import mostly_slow
+from tests.identification.test_measured_quantities import state_at
 
 WIDTH = 4e-3
 HEIGHT = 2e-3
@@ -85,12 +86,6 @@ def misfit_of(scene: dict[str, Any]) -> Misfit:
     model = build(scene_from_dict(scene).with_unknowns())
     cases = read_cases(model.scene, model.inputs, {"modes.csv": columns_of(model)})
     return Misfit(model, unknown_layout(model), cases, Equilibria(model, len(cases)))
-
-
-def state_at(misfit: Misfit, shared: FloatArray, own: FloatArray) -> MisfitState:
-    inputs = misfit.layout.inputs(shared, own, misfit.measured_inputs)
-    point, _ = misfit.equilibria.loaded(inputs, misfit.layout.parameters(shared))
-    return misfit.first(point, shared, own)
 
 
 def test_frequencies_are_those_of_modes() -> None:

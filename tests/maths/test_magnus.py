@@ -10,13 +10,10 @@ from scipy.linalg import expm, expm_frechet
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import magnus
+from tests.reference.tendons import hat
 
 COUNTS = [1, 2, 3, 4]
 OMEGAS = [[0.0, 0.0, 0.0], [1e-9, -2e-9, 0.0], [0.3, -0.2, 0.5], [0.0, 2.0, 0.0], [-1.1, 1.2, 1.0]]
-
-
-def hat(v):
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def curvature(X):

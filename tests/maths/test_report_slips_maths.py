@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import chebyshev, rotation
 from cosserat_casadi.maths.permuted import permuted_system
+from tests.maths.test_rigid_motions import random_transform
 from tests.reference import rigid_motions
 from tests.reference.chebyshev import chebyshev_values
 from tests.reference.rotations import rotation_exp
@@ -38,11 +39,6 @@ def report_matrix(N):
 
 def normal(*shape):
     return np.random.default_rng((80, *shape)).normal(size=shape)
-
-
-def a_transform(seed):
-    r = np.random.default_rng(seed).normal(size=3)
-    return rigid_motions.transform(ca.DM(Rotation.random(rng=seed).as_matrix()), ca.DM(r))
 
 
 def linear_problem(N):
@@ -203,7 +199,7 @@ def test_a_8_a_reflection_is_no_rotation():
 
 
 def test_a_12_the_inverse_goes_on_the_right():
-    w_T_a, a_T_b = a_transform(2), a_transform(3)
+    w_T_a, a_T_b = random_transform(2), random_transform(3)
     w_T_b = w_T_a @ a_T_b
     inverse = rigid_motions.transform_inverse(a_T_b)
     assert differ(full(inverse @ w_T_b), full(w_T_a))
@@ -225,7 +221,7 @@ def printed_adjoint(T):
 
 
 def test_a_23_and_a_24_the_adjoint_is_angular_first_like_ad():
-    a_T_b, b_twist = a_transform(4), ca.DM(normal(6))
+    a_T_b, b_twist = random_transform(4), ca.DM(normal(6))
     conjugated = a_T_b @ rigid_motions.twist_hat(b_twist) @ rigid_motions.transform_inverse(a_T_b)
     assert differ(full(rigid_motions.twist_hat(printed_adjoint(a_T_b) @ b_twist)), full(conjugated))
     ours = rigid_motions.twist_hat(rigid_motions.adjoint(a_T_b) @ b_twist)
@@ -234,7 +230,7 @@ def test_a_23_and_a_24_the_adjoint_is_angular_first_like_ad():
 
 def test_a_26_wrenches_go_with_the_transpose():
     """Equal power in every motion; (A.27), written force first, says the same as the transpose."""
-    b_T_a, (a_twist, b_wrench) = a_transform(5), normal(2, 6)
+    b_T_a, (a_twist, b_wrench) = random_transform(5), normal(2, 6)
     b_twist = full(rigid_motions.adjoint(b_T_a)) @ a_twist
     for printed in (printed_adjoint(b_T_a), rigid_motions.adjoint(b_T_a)):
         assert abs(full(printed @ b_wrench).ravel() @ a_twist - b_wrench @ b_twist) > 1e-2

@@ -16,6 +16,7 @@ from cosserat_casadi.model.frame_pose import turn_matrix
 from cosserat_casadi.rod.motion_tangent import Jet
 from cosserat_casadi.rod.rod_motion import FrameMotion
 from tests.moving_scenes import drawn_state, joint, rod, scene
+from tests.reference.tendons import hat
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 HALF_TURN = np.array([0.0, 0.6, 0.0, 0.8])
@@ -52,8 +53,8 @@ def test_angular_velocity_vs_the_rotation_matrix(quaternion: np.ndarray) -> None
     here, R_rate, R_acceleration = (m.full() for m in ca.Function("R", [t], outputs)(0.0))
     motion = QuaternionMotion(ca.DM(quaternion), ca.DM(first), ca.DM(second))
     omega, alpha = motion.angular_velocity.full().ravel(), motion.angular_acceleration.full().ravel()
-    assert_allclose(_hat(omega), R_rate @ here.T, rtol=0, atol=1e-13)
-    assert_allclose(_hat(alpha) + _hat(omega) @ _hat(omega), R_acceleration @ here.T, rtol=0, atol=1e-12)
+    assert_allclose(hat(omega), R_rate @ here.T, rtol=0, atol=1e-13)
+    assert_allclose(hat(alpha) + hat(omega) @ hat(omega), R_acceleration @ here.T, rtol=0, atol=1e-12)
 
 
 @QUATERNIONS
@@ -214,14 +215,14 @@ def test_heavy_top_of_the_literature() -> None:
 
     def rate(_: float, y: np.ndarray) -> np.ndarray:
         world_R_body, spin = y[:9].reshape(3, 3), y[9:]
-        return np.concatenate([(_hat(spin) @ world_R_body).ravel(), turning(world_R_body, spin).full().ravel()])
+        return np.concatenate([(hat(spin) @ world_R_body).ravel(), turning(world_R_body, spin).full().ravel()])
 
     def euler(_: float, y: np.ndarray) -> np.ndarray:
         world_R_body, spin = y[:9].reshape(3, 3), y[9:]
         about_pivot = J + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
         torque = np.cross(centre, world_R_body.T @ [0.0, 0.0, -mass * gravity])
         spin_rate = np.linalg.solve(about_pivot, torque - np.cross(spin, about_pivot @ spin))
-        return np.concatenate([(world_R_body @ _hat(spin)).ravel(), spin_rate])
+        return np.concatenate([(world_R_body @ hat(spin)).ravel(), spin_rate])
 
     start = np.concatenate([np.eye(3).ravel(), [0.0, 150.0, -4.61538]])
     settings = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-12}
@@ -241,7 +242,3 @@ def test_a_body_without_mass_keeps_its_inertia() -> None:
     state = drawn_state(model)
     spinning = float(model.energies(*state.velocities)[0])
     assert spinning > 1e-5
-
-
-def _hat(v: np.ndarray) -> np.ndarray:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])

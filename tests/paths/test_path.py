@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
 
 from cosserat_casadi import Model, SceneError, build, discretise, follow, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
+from tests.catalogue.cases import column_tip
 from tests.families import mostly_slow
 from tests.pose_errors import distance_between
 from tests.scenes import HOOK, push, rod, scene
@@ -28,16 +28,6 @@ def column(strain: str = "planar", modes: int = 12, length: float = 1.0, **stiff
     weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, 0]}
     standing = scene(push(force=[0, 0, 0]), weight, rods=[rod])
     return build(standing, discretise(standing, modes, 2 * modes + 4, "magnus8"))
-
-
-def elastica(ratio: float) -> tuple[float, float]:
-    """Tip of the buckled column at P = ratio · P_c, in lengths: sideways and up.
-
-    S. P. Timoshenko, J. M. Gere, *Theory of Elastic Stability*, 2nd ed., McGraw-Hill 1961, section 2.7: K(k) =
-    L √(P/EI), sideways 2 k / K, up 2 E/K − 1 with k = sin(α/2) and α the angle of the tip.
-    """
-    k = brentq(lambda k: ellipk(k**2) - np.pi / 2 * np.sqrt(ratio), 1e-6, 1 - 1e-14, xtol=1e-16)
-    return 2 * k / ellipk(k**2), 2 * ellipe(k**2) / ellipk(k**2) - 1
 
 
 def test_euler_column_buckles_at_eulers_load_and_is_unstable_beyond() -> None:
@@ -61,12 +51,12 @@ def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None
     assert path.stable is not None
     assert path.neutral is not None
     x, y, z = path.tip().position[-1]
-    assert_allclose([np.hypot(x, y), z], elastica(ratio), rtol=0, atol=1e-6)
+    assert_allclose([np.hypot(x, y), z], column_tip(ratio), rtol=0, atol=1e-6)
     # The round column may turn about its axis at no cost; the flat one may not.
     assert np.all(path.neutral[path.branch :] == (strain == "kirchhoff"))
     assert np.all(path.stable[path.branch :])
     for factor, tip in list(zip(path.factor, path.tip().position, strict=True))[path.branch + 1 :: 5]:
-        assert_allclose([np.hypot(tip[0], tip[1]), tip[2]], elastica(ratio * factor), rtol=0, atol=1e-6)
+        assert_allclose([np.hypot(tip[0], tip[1]), tip[2]], column_tip(ratio * factor), rtol=0, atol=1e-6)
 
 
 def test_both_halves_of_both_branches_of_the_column() -> None:
@@ -79,7 +69,7 @@ def test_both_halves_of_both_branches_of_the_column() -> None:
         assert halves[-k].converged
         assert_allclose(ends[-k], ends[k] * [-1, 1, 1], rtol=0, atol=1e-9)
         assert_allclose(9.1 * halves[k].events[-1].factor, (2 * k - 1) ** 2, rtol=1e-9, atol=0)
-    x, z = elastica(9.1 / 9)
+    x, z = column_tip(9.1 / 9)
     # Three quarter waves of the same elastica: two of them cancel sideways.
     assert_allclose([abs(ends[2][0]), ends[2][2]], [x / 3, z], rtol=0, atol=1e-8)
     assert halves[1].stable is not None
@@ -234,7 +224,7 @@ def test_modes_are_chosen_until_events_and_end_stay() -> None:
     assert path.converged
     assert path.error_estimate is not None
     x, _, z = path.tip().position[-1]
-    error = max(distance_between([abs(x), z], elastica(3.0)), abs(3 * path.events[0].factor - 1.0))
+    error = max(distance_between([abs(x), z], column_tip(3.0)), abs(3 * path.events[0].factor - 1.0))
     assert error <= path.error_estimate <= free.accuracy.tolerance
 
 

@@ -14,6 +14,7 @@ from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.plots.scenery import ACTUATOR_STYLES
 from cosserat_casadi.plots.sweep_plot import plot_sweep
 from cosserat_casadi.sweeps.outcome_table import LABELS
+from tests.plots.test_colours import linear_rgb
 from tests.plots.test_sweep_plot import swept
 from tests.scenes import HOOK, WEIGHT, WIND, push, scene
 
@@ -65,11 +66,6 @@ SEEN_BY = {
     "deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
     "tritanopia": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
 }
-
-
-def linear_rgb(colour: str) -> FloatArray:
-    encoded = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def cielab(rgb: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .random_scenes import Table, _between, _directed, _vector
+from .random_scenes import Table, between, directed, vector
 
 KINDS = ("series", "platform", "tree", "loop")
 
@@ -26,9 +26,7 @@ def assembled_scene(seed: int, *, tendons: bool = False) -> Table:
     makers = {"series": _series, "platform": _platform, "tree": _tree, "loop": _loop}
     tables = makers[kind](rng)
     tables = {"schema": 1, "title": f"assembled scene {seed}, {kind}", **tables}
-    tables["loads"].append(
-        {"name": "weight", "kind": "gravity", "acceleration": _directed(rng, _between(rng, 0.1, 5.0))}
-    )
+    tables["loads"].append({"name": "weight", "kind": "gravity", "acceleration": directed(rng, between(rng, 0.1, 5.0))})
     if tendons:
         tables["actuators"] = _tendons(rng, [rod["name"] for rod in tables["rods"]])
     return tables
@@ -83,15 +81,15 @@ def _with_plate(rng: np.random.Generator, rods: list[Table], joints: list[Table]
         "name": "push",
         "kind": "body_wrench",
         "body": "plate",
-        "force": _directed(rng, _between(rng, 0.1, LARGEST_FORCE)),
-        "moment": _directed(rng, _between(rng, 0.1, LARGEST_MOMENT)),
+        "force": directed(rng, between(rng, 0.1, LARGEST_FORCE)),
+        "moment": directed(rng, between(rng, 0.1, LARGEST_MOMENT)),
     }
     return {"rods": rods, "bodies": [plate], "joints": joints, "loads": [push]}
 
 
 def _rod(rng: np.random.Generator, name: str, length: float, base: Table) -> Table:
     strain = str(rng.choice(STRAINS))
-    axial = _between(rng, 100.0, 3000.0)
+    axial = between(rng, 100.0, 3000.0)
     stiffness: dict[str, Any] = {
         "bending_x": float(rng.uniform(0.7, 1.5)),
         "bending_y": float(rng.uniform(0.7, 1.5)),
@@ -101,7 +99,7 @@ def _rod(rng: np.random.Generator, name: str, length: float, base: Table) -> Tab
         stiffness |= {"shear_x": 0.4 * axial, "shear_y": 0.4 * axial, "extension": axial}
     rod: Table = {"name": name, "length": length, "strain": strain, "stiffness": stiffness, "linear_density": 0.5}
     if rng.random() < 0.3:
-        rod["intrinsic"] = {"curvature": _vector(rng, 0.7)}
+        rod["intrinsic"] = {"curvature": vector(rng, 0.7)}
     return {**rod, "base": base}
 
 
@@ -121,8 +119,8 @@ def _tip_wrench(rng: np.random.Generator, rod: str, largest: float) -> Table:
         "kind": "tip_wrench",
         "rod": rod,
         "frame": str(rng.choice(["world", "body"])),
-        "force": _directed(rng, _between(rng, 0.1, largest)),
-        "moment": _directed(rng, _between(rng, 0.1, LARGEST_MOMENT)),
+        "force": directed(rng, between(rng, 0.1, largest)),
+        "moment": directed(rng, between(rng, 0.1, LARGEST_MOMENT)),
     }
 
 
@@ -131,8 +129,8 @@ def _tendons(rng: np.random.Generator, rods: list[str]) -> list[Table]:
     tendons = []
     for rod in rods:
         for i in range(int(rng.integers(1, 3))):
-            radius = _between(rng, 0.01, 0.1)
-            tension = _between(rng, 0.1, min(10.0, 1.0 / radius))
+            radius = between(rng, 0.01, 0.1)
+            tension = between(rng, 0.1, min(10.0, 1.0 / radius))
             course: Table
             if rng.random() < 0.4:
                 course = {

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from tests.reference.random_scenes import directed, vector
+
 from .rods import STRAINS
 
 Table = dict[str, Any]
@@ -28,7 +30,7 @@ def extreme_scene(seed: int) -> Table:
         "stiffness": _stiffness(rng, strain, bending, length),
         "linear_density": _decades(rng, -6, 6),
         "basis": str(rng.choice(["legendre", "chebyshev"])),
-        "base": {"position": _vector(rng, length), "quaternion": _quaternion(rng)},
+        "base": {"position": vector(rng, length), "quaternion": _quaternion(rng)},
     }
     if rng.random() < 0.4:
         rod["intrinsic"] = _intrinsic(rng, length)
@@ -65,7 +67,7 @@ def _tapered(rng: np.random.Generator, size: float) -> float | list[float]:
 
 
 def _intrinsic(rng: np.random.Generator, length: float) -> Table:
-    curvature = np.array(_directed(rng, _decades(rng, -6, np.log10(30)) / length))
+    curvature = np.array(directed(rng, _decades(rng, -6, np.log10(30)) / length))
     if rng.random() < 0.3:
         return {"curvature": [[float(c), float(c * rng.normal())] for c in curvature]}
     return {"curvature": curvature.tolist()}
@@ -85,8 +87,8 @@ def _loads(rng: np.random.Generator, length: float, bending: float, density: flo
 
     def wrench(kind: str, divisor: float) -> Table:
         sizes = {
-            "force": _directed(rng, force / divisor * _decades(rng, -9, 3)),
-            "moment": _directed(rng, moment / divisor * _decades(rng, -9, 1.5)) if rng.random() < 0.4 else [0.0] * 3,
+            "force": directed(rng, force / divisor * _decades(rng, -9, 3)),
+            "moment": directed(rng, moment / divisor * _decades(rng, -9, 1.5)) if rng.random() < 0.4 else [0.0] * 3,
         }
         return {"name": kind, "kind": kind, "rod": "rod", "frame": str(rng.choice(["world", "body"])), **sizes}
 
@@ -97,13 +99,13 @@ def _loads(rng: np.random.Generator, length: float, bending: float, density: flo
         loads.append(wrench("distributed_wrench", length))
     if rng.random() < 0.3:
         weight = force / (density * length) * _decades(rng, -9, 2.5)
-        loads.append({"name": "weight", "kind": "gravity", "acceleration": _directed(rng, weight)})
+        loads.append({"name": "weight", "kind": "gravity", "acceleration": directed(rng, weight)})
     return loads
 
 
 def _support(rng: np.random.Generator, length: float, base: list[float]) -> Table:
     """Within reach more often than not."""
-    place = np.array(base) + _directed(rng, length * float(rng.uniform(0.0, 1.1)))
+    place = np.array(base) + directed(rng, length * float(rng.uniform(0.0, 1.1)))
     support: Table = {"rod": "rod", "kind": str(rng.choice(["clamped", "pinned"])), "position": place.tolist()}
     return {**support, "quaternion": _quaternion(rng)} if support["kind"] == "clamped" else support
 
@@ -111,15 +113,6 @@ def _support(rng: np.random.Generator, length: float, base: list[float]) -> Tabl
 def _decades(rng: np.random.Generator, low: float, high: float) -> float:
     """A number whose decimal logarithm is spread evenly."""
     return float(10 ** rng.uniform(low, high))
-
-
-def _vector(rng: np.random.Generator, size: float) -> list[float]:
-    return [float(v) for v in size * rng.normal(size=3)]
-
-
-def _directed(rng: np.random.Generator, norm: float) -> list[float]:
-    vector = rng.normal(size=3)
-    return [float(v) for v in norm * vector / np.linalg.norm(vector)]
 
 
 def _quaternion(rng: np.random.Generator) -> list[float]:

@@ -26,7 +26,7 @@ SUBSETS: tuple[list[str], ...] = (
 def random_scene(seed: int) -> Table:
     """A legal scene as `tomllib` would read it; the same seed gives the same scene."""
     rng = np.random.default_rng(seed)
-    length = _between(rng, 0.1, 10.0)
+    length = between(rng, 0.1, 10.0)
     rod: Table = {"name": "rod", "length": length, "strain": _strain(rng)}
     stiffness, density = _direct(rng, rod) if rng.random() < 0.4 else _material(rng, rod)
     if rng.random() < 0.4:
@@ -47,13 +47,13 @@ def _strain(rng: np.random.Generator) -> str | list[str]:
 
 def _material(rng: np.random.Generator, rod: Table) -> tuple[float, float]:
     """Material and section; returns the softest bending stiffness at the base and the mass per length there."""
-    young, density = _between(rng, 1e6, 2e11), _between(rng, 500.0, 8000.0)
+    young, density = between(rng, 1e6, 2e11), between(rng, 500.0, 8000.0)
     rod["material"] = {"youngs_modulus": young, "density": density}
     if rng.random() < 0.5:
         rod["material"]["poisson_ratio"] = float(rng.uniform(0.0, 0.5))
     else:
         rod["material"]["shear_modulus"] = young * float(rng.uniform(0.3, 0.5))
-    radius = rod["length"] * _between(rng, 3e-3, 5e-2)
+    radius = rod["length"] * between(rng, 3e-3, 5e-2)
     rod["section"], second, area = _section(rng, radius)
     return young * second, density * area
 
@@ -79,10 +79,10 @@ def _section(rng: np.random.Generator, radius: float) -> tuple[Table, float, flo
 
 def _direct(rng: np.random.Generator, rod: Table) -> tuple[float, float]:
     """Stiffnesses and a mass per length; returns the softer bending stiffness and the mass per length at the base."""
-    length, scale, density = rod["length"], _between(rng, 1e-3, 1e4), _between(rng, 1e-3, 10.0)
+    length, scale, density = rod["length"], between(rng, 1e-3, 1e4), between(rng, 1e-3, 10.0)
     bending = [scale, scale * float(rng.uniform(0.7, 3.0))]
     torsion = scale * float(rng.uniform(0.6, 1.5))
-    axial = [scale / length**2 * _between(rng, 20.0, 1e4) for _ in range(3)]
+    axial = [scale / length**2 * between(rng, 20.0, 1e4) for _ in range(3)]
     sizes = [*bending, torsion, *axial]
     rod["stiffness"] = {name: _size(rng, size) for name, size in zip(STRAINS, sizes, strict=True)}
     rod["linear_density"] = _size(rng, density)
@@ -97,14 +97,14 @@ def _size(rng: np.random.Generator, size: float) -> float | list[float]:
 def _curvature(rng: np.random.Generator, length: float) -> list[Any]:
     """Constant or linear, turning by up to about two radians."""
     if rng.random() < 0.5:
-        return _vector(rng, 1.0 / length)
+        return vector(rng, 1.0 / length)
     return [[float(v) for v in rng.normal(size=2) / length] for _ in range(3)]
 
 
 def _base(rng: np.random.Generator, length: float) -> Table:
-    position = _vector(rng, length)
+    position = vector(rng, length)
     if rng.random() < 0.5:
-        return {"position": position, "tangent": _vector(rng, 1.0)}
+        return {"position": position, "tangent": vector(rng, 1.0)}
     quaternion = rng.normal(size=4)
     return {"position": position, "quaternion": [float(v) for v in quaternion / np.linalg.norm(quaternion)]}
 
@@ -118,40 +118,40 @@ def _loads(rng: np.random.Generator, length: float, stiffness: float, density: f
     tip = {
         "name": "tip",
         "kind": "tip_wrench",
-        "force": _directed(rng, force * _between(rng, 0.1, 10.0)),
-        "moment": _directed(rng, moment * _between(rng, 0.1, 5.0)) if rng.random() < 0.3 else [0.0, 0.0, 0.0],
+        "force": directed(rng, force * between(rng, 0.1, 10.0)),
+        "moment": directed(rng, moment * between(rng, 0.1, 5.0)) if rng.random() < 0.3 else [0.0, 0.0, 0.0],
     }
     hook = {
         "name": "hook",
         "kind": "point_wrench",
         "at": float(rng.uniform(0.1, 0.9)),
-        "force": _directed(rng, 2 * force),
-        "moment": _directed(rng, moment),
+        "force": directed(rng, 2 * force),
+        "moment": directed(rng, moment),
     }
     wind = {
         "name": "wind",
         "kind": "distributed_wrench",
-        "force": [_vector(rng, force / length) for _ in range(3)],
-        "moment": _vector(rng, 0.3 * moment / length),
+        "force": [vector(rng, force / length) for _ in range(3)],
+        "moment": vector(rng, 0.3 * moment / length),
     }
     wrenches = [load for load, chance in ((tip, 1.0), (hook, 0.3), (wind, 0.4)) if rng.random() < chance]
     loads = [{**load, "rod": "rod", "frame": str(rng.choice(["world", "body"]))} for load in wrenches]
     if rng.random() < 0.5:
-        weight = force / (density * length) * _between(rng, 0.1, 5.0)
-        loads.append({"name": "weight", "kind": "gravity", "acceleration": _directed(rng, weight)})
+        weight = force / (density * length) * between(rng, 0.1, 5.0)
+        loads.append({"name": "weight", "kind": "gravity", "acceleration": directed(rng, weight)})
     return loads
 
 
-def _between(rng: np.random.Generator, low: float, high: float) -> float:
+def between(rng: np.random.Generator, low: float, high: float) -> float:
     """A number whose logarithm is spread evenly."""
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
-def _vector(rng: np.random.Generator, size: float) -> list[float]:
+def vector(rng: np.random.Generator, size: float) -> list[float]:
     return [float(v) for v in size * rng.normal(size=3)]
 
 
-def _directed(rng: np.random.Generator, norm: float) -> list[float]:
+def directed(rng: np.random.Generator, norm: float) -> list[float]:
     """A vector of this norm in a random direction."""
     vector = rng.normal(size=3)
     return [float(v) for v in norm * vector / np.linalg.norm(vector)]

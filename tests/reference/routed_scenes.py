@@ -19,6 +19,8 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi import Scene, Solution
 from cosserat_casadi.model.scene_rods import rod_properties
 from tests.pose_errors import pose_error
+from tests.reference.random_scenes import between
+from tests.reference.tendons import hat
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Table = dict[str, Any]
@@ -40,7 +42,7 @@ def routed_scene(seed: int) -> Table:
         "torsion": float(rng.uniform(0.6, 1.2)),
     }
     if strain == "reissner":
-        axial = _between(rng, 300.0, 3000.0)
+        axial = between(rng, 300.0, 3000.0)
         stiffness |= {"shear_x": 0.4 * axial, "shear_y": 0.4 * axial, "extension": axial}
     tendons = [_helix(rng)]
     if kind == "converging":
@@ -52,7 +54,7 @@ def routed_scene(seed: int) -> Table:
     tables: Table = {
         "schema": 1,
         "title": f"routed scene {seed}, {kind}",
-        "accuracy": {"tolerance": _between(rng, 1e-7, 1e-3)},
+        "accuracy": {"tolerance": between(rng, 1e-7, 1e-3)},
         "rods": [{"name": "rod", "length": 1.0, "strain": strain, "stiffness": stiffness}],
         "actuators": [
             {"name": f"cable{i}", "kind": "tendon", "rod": "rod", **tendon} for i, tendon in enumerate(tendons)
@@ -88,7 +90,7 @@ def rich_scene(seed: int) -> Table:
     return {
         "schema": 1,
         "title": f"rich scene {seed}, {'curved' if seed % 2 == 0 else 'spread'}",
-        "accuracy": {"tolerance": _between(rng, 1e-8, 1e-3)},
+        "accuracy": {"tolerance": between(rng, 1e-8, 1e-3)},
         "rods": [rod],
         "loads": loads,
     }
@@ -96,24 +98,20 @@ def rich_scene(seed: int) -> Table:
 
 def _helix(rng: np.random.Generator, share: float = 1.0) -> Table:
     """Two to twenty turns either way; the tension bends by some radians, or nearly buckles."""
-    radius = _between(rng, 0.01, 0.3)
+    radius = between(rng, 0.01, 0.3)
     turns = int(rng.integers(2, 21)) + float(rng.choice([0.0, rng.uniform(0, 1)]))
     sign = float(rng.choice([-1.0, 1.0]))
     helix = {"radius": radius, "turns": sign * turns, "phase": float(rng.uniform(0, 6))}
-    tension = share * _between(rng, 0.3, min(20.0, 3.0 / radius))
+    tension = share * between(rng, 0.3, min(20.0, 3.0 / radius))
     return {"tension": tension, "helix": helix}
 
 
 def _converging(rng: np.random.Generator, share: float = 1.0) -> Table:
     """Polynomials of up to the ninth degree."""
-    radius = _between(rng, 0.01, 0.15)
+    radius = between(rng, 0.01, 0.15)
     degree = int(rng.integers(1, 10))
     offset = [[float(v) for v in radius * rng.normal(size=degree + 1) / np.arange(1, degree + 2)] for _ in range(2)]
-    return {"tension": share * _between(rng, 0.3, min(15.0, 1.5 / radius)), "offset": offset}
-
-
-def _between(rng: np.random.Generator, low: float, high: float) -> float:
-    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+    return {"tension": share * between(rng, 0.3, min(15.0, 1.5 / radius)), "offset": offset}
 
 
 def _vector(rng: np.random.Generator, size: float) -> list[float]:
@@ -243,7 +241,7 @@ class _Integrator:
             tangents = []
             for i, D, slope in offsets:
                 # T = Γ + K × D + D'/ℓ = rates ξ + D'/ℓ
-                rates = np.hstack([-_hat(D), np.eye(3)])
+                rates = np.hstack([-hat(D), np.eye(3)])
                 tangent = strain @ rates.T + slope / self.rod.length
                 size = np.linalg.norm(tangent, axis=1)
                 t = tangent / size[:, None]
@@ -269,10 +267,6 @@ def _offset(tendon: Any, X: float) -> tuple[Array, Array]:
         return helix.radius * np.array([c, s, 0.0]), helix.radius * rate * np.array([-s, c, 0.0])
     series = [np.polynomial.Polynomial(np.atleast_1d(component)) for component in tendon.offset]
     return np.array([*[p(X) for p in series], 0.0]), np.array([*[p.deriv()(X) for p in series], 0.0])
-
-
-def _hat(v: Array) -> Array:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def _hats(v: Array) -> Array:

@@ -21,6 +21,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import LineWrench, WrenchAt
+from tests.reference.tendons import hat
 
 HOOKE = np.array([1.0, 1.5, 0.8, 50.0, 60.0, 100.0])
 STRAIGHT = ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))
@@ -101,10 +102,6 @@ def equilibrium(basis, wrenches, start=None):
             break
     assert np.abs(residual).max() < 1e-10
     return q
-
-
-def hat(v):
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def element_strain(basis, q, element):

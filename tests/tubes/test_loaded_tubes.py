@@ -20,7 +20,7 @@ from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
-from tests.tubes.test_tube_robots import THREE, TWO
+from tests.tubes.test_tube_robots import THREE, TWO, moved
 
 DIFFERENCE = 1e-6
 
@@ -319,12 +319,6 @@ def test_order_eight() -> None:
         tips.append(found.tip().position)
     rate = np.log2(np.abs(tips[0] - tips[2]).max() / np.abs(tips[1] - tips[2]).max())
     assert 7.0 < rate < 10.0
-
-
-def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
-    inputs = found.inputs.copy()
-    inputs[index] += by
-    return solution_near(found.model, inputs, found.x)
 
 
 def test_derivatives_of_energy_and_tips() -> None:

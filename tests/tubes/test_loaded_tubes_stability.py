@@ -16,6 +16,7 @@ from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.tube_solve import solution_near
 from tests.commands import cosserat
+from tests.loads.test_foundations import rotation_of
 from tests.scenes import push
 from tests.scenes import scene as scene_of_rods
 
@@ -130,7 +131,7 @@ class Elements:
         inside = (robot.length - robot.translations(robot.inputs)) / robot.torsion
         ends = np.arange(ELEMENTS + 1) * self.h
         # The tangent's turn from one end of an element to the other, in the axes of the frame there.
-        tangents = np.array([_frame(q) for q in shape.quaternion])
+        tangents = np.array([rotation_of(q) for q in shape.quaternion])
         at_ends = [np.argmin(np.abs(shape.distance - end)) for end in ends]
         curvature = []
         for first, last in itertools.pairwise(at_ends):
@@ -150,12 +151,6 @@ class Elements:
                 break
         assert np.abs(step).max() < 1e-8
         return np.linalg.eigvalsh(hessian), float(energy[0, 0])
-
-
-def _frame(quaternion: np.ndarray) -> np.ndarray:
-    w, x, y, z = quaternion
-    hat = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2 * w * hat + 2 * hat @ hat
 
 
 @pytest.mark.parametrize(

@@ -20,9 +20,9 @@ from cosserat_casadi.cli.options import (
     given_files,
 )
 from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.identification import (
     print_identification,
-    print_identification_warnings,
     print_refused_scene,
 )
 from cosserat_casadi.errors import Problem, SceneError
@@ -97,7 +97,7 @@ def identify(
             write_atomically(write, text.encode())
             written.append(write)
     print_identification(Console(), found, written)
-    print_identification_warnings(Console(stderr=True), found)
+    print_warnings(Console(stderr=True), found.warnings)
     if refusal is not None:
         print_refused_scene(Console(stderr=True), refusal)
     if not found.converged or refusal is not None:

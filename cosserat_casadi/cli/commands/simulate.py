@@ -18,7 +18,8 @@ from cosserat_casadi.cli.options import (
     given_files,
 )
 from cosserat_casadi.cli.progress import motion_display, share_display
-from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion, print_motion_warnings
+from cosserat_casadi.cli.reports.format import print_warnings
+from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
@@ -94,7 +95,7 @@ def simulate(
     if animation is not None:
         _animate(motion, animation, speed)
     print_motion(Console(), motion, given_files(output, plot, animation))
-    print_motion_warnings(Console(stderr=True), motion)
+    print_warnings(Console(stderr=True), motion.warnings)
     if not motion.converged:
         raise typer.Exit(NOT_FOUND)
 

@@ -40,3 +40,9 @@ def listed(numbers: Sequence[int], noun: str) -> str:
     if len(numbers) > 1:
         noun = f"{noun}s"
     return f"{noun} {numbers_text}"
+
+
+def print_warnings(console: Console, warnings: Iterable[str]) -> None:
+    """Print what limits a result, such as a load that jumps."""
+    for warning in warnings:
+        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)

@@ -40,12 +40,6 @@ def print_identification(console: Console, found: Identification, written: Seque
     print_written(console, written)
 
 
-def print_identification_warnings(console: Console, found: Identification) -> None:
-    """Print the warnings that a user must know."""
-    for warning in found.warnings:
-        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
-
-
 def print_refused_scene(console: Console, refusal: SceneError) -> None:
     """Print why the values make no scene: nothing was written."""
     for problem in refusal.problems:

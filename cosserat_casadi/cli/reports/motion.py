@@ -31,12 +31,6 @@ def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> N
     print_written(console, written)
 
 
-def print_motion_warnings(console: Console, motion: Motion) -> None:
-    """Warn of what limits the accuracy, such as a load that jumps."""
-    for warning in motion.warnings:
-        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
-
-
 def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
     """Say how an animation that is over at once can be slowed down."""
     print_plain(
