@@ -294,7 +294,7 @@ def _refined(
     if fewer_modes is not None:
         # The level below is farther off than this one, by about as much as the two are apart.
         coarser = with_estimate(coarser, fewer_modes, factor=1.0)
-    return _unresolved(coarser)
+    return coarser.unresolved()
 
 
 def _blind(solver: SceneSolver) -> Solution:
@@ -302,7 +302,7 @@ def _blind(solver: SceneSolver) -> Solution:
     solution = _at_level(solver, Level.first(solver.tolerance), None)
     if not solution.converged:
         return solution
-    return _unresolved(solution)
+    return solution.unresolved()
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:
@@ -391,13 +391,13 @@ def _beside_finer(
         finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
     reference = solver.solve(finer, meant or solution)
     if not reference.converged:
-        return _unresolved(solution)
+        return solution.unresolved()
     judged = with_estimate(solution, reference)
     shape_error = judged.shape_error_estimate
     # Written so that an estimate which is not a number counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
         return with_tolerance_note(judged)
-    return _unresolved(judged)
+    return judged.unresolved()
 
 
 def _meant(solver: SceneSolver) -> Solution | None:
@@ -410,11 +410,6 @@ def _meant(solver: SceneSolver) -> Solution | None:
     # The modes of the user may have an equilibrium all the same, and one to relax to.
     solver.vain_descents = 0
     return None
-
-
-def _unresolved(solution: Solution) -> Solution:
-    outcome = Outcome.UNRESOLVED
-    return replace(solution, outcome=outcome, message=outcome.value, stable=None)
 
 
 def _with_note(solution: Solution, note: str) -> Solution:

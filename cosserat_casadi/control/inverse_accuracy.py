@@ -274,9 +274,8 @@ def _with_estimate(result: Inverse, reference: Solution) -> Inverse:
 
 def _unresolved(result: Inverse) -> Inverse:
     """The result as one that is not of the rod; the gaps are those of the discrete model."""
-    outcome = Outcome.UNRESOLVED
-    message = outcome.value
-    if result.solution.shape_error_estimate is not None:
-        message += f" The estimated error is {result.solution.shape_error_estimate:.2g} of the length."
-    solution = replace(result.solution, outcome=outcome, message=message, stable=None)
+    solution = result.solution.unresolved()
+    if solution.shape_error_estimate is not None:
+        message = f"{solution.message} The estimated error is {solution.shape_error_estimate:.2g} of the length."
+        solution = replace(solution, message=message)
     return replace(result, solution=solution, gaps=target_errors(solution, result.targets), met=False)

@@ -5,17 +5,16 @@ Fields between the nodes are interpolants through them: docs/theory.md, section 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Self
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.equilibrium import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.result import Result
 
 
 @dataclass(frozen=True)
@@ -90,66 +89,39 @@ class Contact:
 
 
 @dataclass(frozen=True, repr=False)
-class Solution(Result):
-    """The end of a solve; an equilibrium only where ``converged`` says so.
+class Solution(Equilibrium[Model]):
+    """The end of a solve of rods; an equilibrium only where ``converged`` says so.
+
+    The residual norm is that of the dimensionless residual, relative. The iterations of a scene are those on all
+    discretisations that were tried. The error estimate is that of the poses of the tips, as distance over the rod
+    length and as angle in rad, and of the lengths of cables over the rod length; of held rods at sections between the
+    ends too.
 
     Attributes:
-        model: the model that was solved.
-        inputs: stacked inputs it was solved for, shape (model.inputs.size,).
-        x: unknowns, shape (model.size,).
-        outcome: how the solve ended.
-        message: a sentence for the user.
-        residual_norm: relative norm of the dimensionless residual at x, computed again at the end.
-        iterations: Newton iterations, all load steps together; of a scene, on all discretisations that were tried.
         load_factor: share of the loads that was reached, 1 unless the load stalled.
         smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.
-        error_estimate: estimated error of the poses of the tips, as distance over the rod length and as angle in rad,
-            and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
-            estimated.
-        shape_error_estimate: the same over all sections, those between nodes included.
+        shape_error_estimate: the error estimate over all sections, those between nodes included.
         wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
             that are unknown; None if not estimated.
         contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
     """
 
-    model: Model
-    inputs: FloatArray
-    x: FloatArray
-    outcome: Outcome
-    message: str
-    residual_norm: float
-    iterations: int
     load_factor: float = 1.0
     smallest_eigenvalue: float | None = None
     stable: bool | None = None
-    error_estimate: float | None = None
     shape_error_estimate: float | None = None
     wrench_error_estimate: float | None = None
     contacts: tuple[Contact, ...] = ()
 
     @property
-    def converged(self) -> bool:
-        """Whether x is an equilibrium to the solver's tolerance."""
-        return self.outcome is Outcome.CONVERGED
+    def judged_error(self) -> float | None:
+        """Estimated error of the tips, or of the shape where the scene asks for that; None if not estimated."""
+        return self.shape_error_estimate if self.model.scene.accuracy.shape else self.error_estimate
 
-    @property
-    def within_tolerance(self) -> bool | None:
-        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning.
-
-        A tolerance that nobody has written asks for nothing of modes and nodes that the scene fixes. What did not
-        converge is not within any tolerance.
-        """
-        accuracy = self.model.scene.accuracy
-        if not accuracy.binds:
-            return None
-        if not self.converged:
-            return False
-        error = self.shape_error_estimate if accuracy.shape else self.error_estimate
-        if error is None:
-            return None
-        # Written so that an estimate which is not a number counts as too large.
-        return error <= accuracy.tolerance
+    def unresolved(self) -> Self:
+        """The same unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
+        return replace(super().unresolved(), stable=None)
 
     def tip(self, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip."""

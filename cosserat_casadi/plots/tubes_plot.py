@@ -14,13 +14,13 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
@@ -196,7 +196,7 @@ def plot_tube_path(path: TubePath) -> Any:
     if path.converged:
         colour = PLAIN_TEXT
     left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
-    add_title(figure, path.title)
+    add_title(figure, path.model.scene.title)
     return figure
 
 

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from cosserat_casadi.motion.trajectory import Motion
     from cosserat_casadi.motion.vibration_modes import Modes
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+    from cosserat_casadi.paths.tube_path import TubePath
     from cosserat_casadi.sweeps.outcome_table import Sweep
     from cosserat_casadi.sweeps.sobol import SobolIndices
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-    from cosserat_casadi.tubes.tube_path import TubePath
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 Facts = list[tuple[str, str]]
@@ -190,7 +190,7 @@ def tube_path_facts(path: TubePath) -> Titled:
         facts += _first("tips", [(f"tip of {name}", _point(tip.position)) for name, tip in last.tips.items()])
     facts.append(("events", _listed(f"{event.kind} at {event.value:.6g} {path.unit}" for event in path.events)))
     facts.append(("error", _error(path.error_estimate, tolerance)))
-    return path.title, facts
+    return path.model.scene.title, facts
 
 
 def _outcome(converged: bool, label: str, message: str) -> str:

@@ -12,10 +12,10 @@ from cosserat_casadi.equilibrium.solution import SolvedPoses
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
 from cosserat_casadi.results.tubes_file import tube_path_result, tube_path_table
-from cosserat_casadi.tubes.tube_path import TubePath
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""

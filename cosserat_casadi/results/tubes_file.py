@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
 from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
@@ -32,7 +32,7 @@ def tube_path_result(path: TubePath) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
-            "title": path.title,
+            "title": path.model.scene.title,
             "converged": path.converged,
             "outcome": path.outcome.label,
             "message": path.message,

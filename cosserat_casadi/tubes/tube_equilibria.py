@@ -28,8 +28,16 @@ from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_model import TubeModel
-from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.tube_solve import MOST_STEPS, judged, loaded_from, solution_near, solve_at, solve_tubes
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import (
+    MOST_STEPS,
+    error_beside,
+    judged,
+    loaded_from,
+    solution_near,
+    solve_at,
+    solve_tubes,
+)
 
 MOST_TUBES = 4
 """Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
@@ -208,10 +216,7 @@ def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: 
     """An equilibrium of the finer model near one of a model, with the estimate of its error."""
     rough = solution_near(model, inputs, x)
     fine = solution_near(finer, inputs, x)
-    error = None
-    if rough.converged and fine.converged:
-        error = tip_error(rough, fine)
-    return judged(fine, error)
+    return judged(fine, error_beside(rough, fine))
 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
@@ -241,10 +246,10 @@ class _Search:
 
 def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
     """Look for every equilibrium of a model."""
-    if model.size == 1:
+    if model.tube_count == 1:
         # One tube does not twist.
         return _Search([model.robot.rotations(inputs).copy()], settled=True)
-    if model.size == PAIR:
+    if model.tube_count == PAIR:
         return _of_two_tubes(model, inputs)
     return _of_more_tubes(model, inputs)
 
@@ -361,7 +366,7 @@ def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> floa
 
 def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
     found: list[FloatArray] = []
-    for points in GRIDS[model.size]:
+    for points in GRIDS[model.tube_count]:
         before = len(found)
         for start in _starts(model, inputs, points):
             end = solution_near(model, inputs, start)
@@ -376,7 +381,7 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
 def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
     """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
-    for between in itertools.product(angles, repeat=model.size - 1):
+    for between in itertools.product(angles, repeat=model.tube_count - 1):
         tips = np.array([0.0, *between])
         missed = np.ravel(model.residual(tips, inputs).full())
         tips -= missed[0]

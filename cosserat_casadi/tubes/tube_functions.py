@@ -59,7 +59,7 @@ class TubeFunctions(ABC):
         return type(self), (self.robot, self.steps)
 
     @property
-    def size(self) -> int:
+    def tube_count(self) -> int:
         """Number of tubes."""
         return self.robot.size
 
@@ -77,7 +77,7 @@ class TubeFunctions(ABC):
 
     @property
     @abstractmethod
-    def unknowns(self) -> int:
+    def size(self) -> int:
         """Number of unknowns."""
 
     @abstractmethod
@@ -162,7 +162,7 @@ class TubeFunctions(ABC):
     @property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a step: angles and numbers of a quaternion alike."""
-        return np.ones(self.unknowns)
+        return np.ones(self.size)
 
     @property
     def is_assembly(self) -> bool:
@@ -233,13 +233,13 @@ class TubeFunctions(ABC):
         axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
         """
         x, inputs, _ = self._arguments
-        directions = Directions(self.robot, self.unknowns)
+        directions = Directions(self.robot, self.size)
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
         at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
         _, missed = at_plate(plate, x, inputs, plate_changes)
         # A rotation turns its drive, and changes nothing else.
-        by_rotations = ca.vertcat(-ca.DM.eye(self.size), ca.DM(self.unknowns - self.size, self.size))
+        by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
         changes: list[Matrix] = []
         for index, rank in enumerate(self._ranks):
@@ -251,11 +251,11 @@ class TubeFunctions(ABC):
             changes.append(moved)
         moved = ca.vertcat(*changes)
         outputs = {
-            "jacobian": missed[:, : self.unknowns],
+            "jacobian": missed[:, : self.size],
             "by_inputs": directions.by_inputs(missed, by_rotations),
             "poses": ca.horzcat(*poses),
-            "poses_by_x": moved[:, : self.unknowns],
-            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.size)),
+            "poses_by_x": moved[:, : self.size],
+            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.tube_count)),
         }
         return self._function("sensitivity", outputs)
 
@@ -321,7 +321,7 @@ class TubeFunctions(ABC):
     @cached_property
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
         """Unknowns, inputs and load factor, of which all functions are."""
-        return ca.MX.sym("x", self.unknowns), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
+        return ca.MX.sym("x", self.size), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
 
     @cached_property
     def _lengths(self) -> ca.MX:
@@ -374,7 +374,7 @@ class TubeFunctions(ABC):
         """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
         _, inputs, _ = self._arguments
         ends = []
-        for index in range(self.size):
+        for index in range(self.tube_count):
             tip = inputs[2 * index + 1]
             straight = tip - self.robot.curved[index]
             # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
@@ -385,7 +385,7 @@ class TubeFunctions(ABC):
     @cached_property
     def _ranks(self) -> list[ca.MX]:
         """Of every tube at which of the sorted places its tip is, 1×1."""
-        return [self._rank(2 * index) for index in range(self.size)]
+        return [self._rank(2 * index) for index in range(self.tube_count)]
 
     def _rank(self, own: int) -> ca.MX:
         """Index among the sorted places of one of `_unsorted`, 1×1; places that coincide have different indices."""

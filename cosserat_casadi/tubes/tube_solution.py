@@ -7,12 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.equilibrium import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -39,48 +38,20 @@ class TubeShape:
 
 
 @dataclass(frozen=True, repr=False)
-class TubeSolution(Result):
+class TubeSolution(Equilibrium[TubeFunctions]):
     """An equilibrium of concentric tubes.
 
-    Attributes:
-        model: the robot with its steps.
-        inputs: rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,).
-        x: angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
-            quaternion in world axes behind them, shape (n + 4,).
-        outcome: how the solve ended.
-        residual_norm: largest angle that the tubes miss their drives by, rad.
-        error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
-            it was not estimated.
-        iterations: Newton steps of the search with this model; 0 at points of a path.
+    The inputs are the rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,). The
+    unknowns are the angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
+    quaternion in world axes behind them, shape (n + 4,). The residual norm is the largest angle that the tubes miss
+    their drives by, rad; distances in the error estimate are relative to the length that stands out. The iterations
+    are those of the search with this model; 0 at points of a path.
     """
-
-    model: TubeFunctions
-    inputs: FloatArray
-    x: FloatArray
-    outcome: Outcome
-    residual_norm: float
-    error_estimate: float | None
-    iterations: int = 0
 
     @property
     def robot(self) -> Robot:
         """The tubes."""
         return self.model.robot
-
-    @property
-    def converged(self) -> bool:
-        """Whether this is an equilibrium within tolerance."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def within_tolerance(self) -> bool:
-        """Whether the estimated error is within the scene's tolerance."""
-        return self.error_estimate is not None and self.error_estimate <= self.robot.tolerance
-
-    @property
-    def message(self) -> str:
-        """A sentence for the user."""
-        return self.outcome.value
 
     @cached_property
     def stability(self) -> TubeStability:

@@ -30,11 +30,11 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.paths.path_refinement import follow
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.path_file import path_table
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.tube_path import TubePath
 
 
 def path(

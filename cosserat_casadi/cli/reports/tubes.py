@@ -11,10 +11,10 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, model_of
 
@@ -52,7 +52,7 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
     """Print the files, their accuracy, and how to try them."""
     robot = solution.robot
     print_plain(console, title_line(robot.scene.title))
-    sizes = f"{solution.model.unknowns} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
+    sizes = f"{solution.model.size} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
     print_plain(
         console, f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}."
     )
@@ -82,7 +82,7 @@ def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
     """Print the outcome, the events and the end of a path, and the files that were written."""
-    _print_message(console, path.title, path.message, good=path.converged)
+    _print_message(console, path.model.scene.title, path.message, good=path.converged)
     if path.solutions:
         console.print(_path_table(path))
     parts = [counted(len(path.values), "point"), counted(len(path.events), "event")]
@@ -100,7 +100,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
-    unknowns = model_of(robot, FEWEST_STEPS).unknowns
+    unknowns = model_of(robot, FEWEST_STEPS).size
     print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 

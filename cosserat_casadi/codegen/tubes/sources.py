@@ -110,7 +110,7 @@ def _words(
     model: TubeFunctions, names: Names, generated: dict[str, str], error_estimate: float | None
 ) -> dict[str, Any]:
     robot = model.robot
-    size = model.unknowns
+    size = model.size
     basics: dict[str, Any] = {
         "name": names.name,
         "MACRO": names.macro,
@@ -181,7 +181,7 @@ def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) 
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(model),
         TUBES: list(robot.names),
-        "unknowns": model.unknowns,
+        "unknowns": model.size,
         "steps": model.steps,
         "tolerance": robot.tolerance,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
