@@ -5,16 +5,22 @@ Fields between the nodes are interpolants through them: docs/theory.md, section 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.equilibrium import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.model.system_functions import SystemFunctions
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.result import Result
+
+ModelType = TypeVar("ModelType", bound=SystemFunctions)
 
 
 @dataclass(frozen=True)
@@ -89,6 +95,82 @@ class Contact:
 
 
 @dataclass(frozen=True, repr=False)
+class Equilibrium(Result, ABC, Generic[ModelType]):
+    """The end of a solve; an equilibrium only where ``converged`` says so.
+
+    Attributes:
+        model: the model that was solved.
+        inputs: stacked inputs it was solved for, shape (model.inputs.size,).
+        x: unknowns, shape (model.size,).
+        outcome: how the solve ended.
+        message: a sentence for the user.
+        residual_norm: size of the residual at x, computed again at the end.
+        iterations: Newton iterations of the search.
+        error_estimate: estimated error of the poses of the tips, relative to a length and in rad; None if not
+            estimated.
+    """
+
+    model: ModelType
+    inputs: FloatArray
+    x: FloatArray
+    outcome: Outcome
+    message: str
+    residual_norm: float
+    iterations: int
+    error_estimate: float | None = None
+
+    @property
+    @abstractmethod
+    def stable(self) -> bool | None:
+        """Whether it is stable; None where that has no meaning."""
+
+    @property
+    @abstractmethod
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+
+    @abstractmethod
+    def tip(self, name: str | None = None) -> Any:
+        """Pose of the tip of a rod, or a tube: its position and quaternion."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether x is an equilibrium to the solver's tolerance."""
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def judged_error(self) -> float | None:
+        """Estimated error that the scene's tolerance is for; None if not estimated."""
+        return self.error_estimate
+
+    @property
+    def largest_error(self) -> float | None:
+        """Estimated error of the tips, or where it is known of all sections; None if not estimated."""
+        return self.error_estimate
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the scene's tolerance; None where no tolerance has a meaning.
+
+        A tolerance that nobody has written asks for nothing of modes and nodes that the scene fixes. What did not
+        converge is not within any tolerance.
+        """
+        accuracy = self.model.scene.accuracy
+        if not accuracy.binds:
+            return None
+        if not self.converged:
+            return False
+        if self.judged_error is None:
+            return None
+        # Written so that an estimate which is not a number counts as too large.
+        return self.judged_error <= accuracy.tolerance
+
+    def unresolved(self) -> Self:
+        """The same unknowns, as an equilibrium of the discrete model alone."""
+        return replace(self, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value)
+
+
+@dataclass(frozen=True, repr=False)
 class Solution(Equilibrium[Model]):
     """The end of a solve of rods; an equilibrium only where ``converged`` says so.
 
@@ -119,14 +201,37 @@ class Solution(Equilibrium[Model]):
         """Estimated error of the tips, or of the shape where the scene asks for that; None if not estimated."""
         return self.shape_error_estimate if self.model.scene.accuracy.shape else self.error_estimate
 
+    @property
+    def largest_error(self) -> float | None:
+        """Estimated error over all sections; None if not estimated."""
+        return self.shape_error_estimate
+
     def unresolved(self) -> Self:
         """The same unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
         return replace(super().unresolved(), stable=None)
 
-    def tip(self, rod: str | None = None) -> SolvedPoses:
+    @property
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+        if self.model.scene.accuracy.fixed_by_hand:
+            return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+        if self._is_in_chosen_ranges:
+            return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
+        return "the modes were chosen for other inputs: choose them for the range of these inputs."
+
+    @property
+    def _is_in_chosen_ranges(self) -> bool:
+        """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
+        ranges = self.model.scene.accuracy.chosen_ranges
+        indices = column_indices(self.model.inputs)
+        if not ranges or not ranges.keys() <= indices.keys():
+            return False
+        return all(low <= self.inputs[indices[column]] <= high for column, (low, high) in ranges.items())
+
+    def tip(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip."""
         tip = np.array([1.0])
-        return self.pose(tip, rod)
+        return self.pose(tip, name)
 
     def body(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rigid body, as that of one section; the name may be left out where there is one body.

@@ -9,9 +9,8 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.equilibrium import ModelType
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
+from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm

@@ -19,6 +19,7 @@ from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.scenery import draw_targets
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_solution import TubeSolution
@@ -59,6 +60,7 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
         _draw_angles(panel, equilibrium, number, several=len(solutions) > 1)
     # Loads that follow a tube turn with it: those of the first equilibrium are shown.
     draw_arrows(canvas, load_arrows(solutions[0]))
+    draw_targets(canvas, solutions[0].model.scene)
     canvas.label_axes()
     canvas.equalise(points)
     panel.set_xlabel("distance from the plate along the centre line, m")

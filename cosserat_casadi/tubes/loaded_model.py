@@ -56,7 +56,7 @@ class LoadedTubeModel(TubeFunctions):
         return self.tube_count + FRAME
 
     @cached_property
-    def unloaded(self) -> TubeModel:
+    def without_loads(self) -> TubeModel:
         """The same tubes with as many steps, without loads; of the inputs those of the loads have no effect."""
         return TubeModel(self.robot, self.steps)
 
@@ -67,7 +67,7 @@ class LoadedTubeModel(TubeFunctions):
             angles: at the tips, shape (n,), rad.
             inputs: of the robot.
         """
-        _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs)
+        _, _, quaternion, _, _ = self.without_loads.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:

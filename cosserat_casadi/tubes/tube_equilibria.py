@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,8 +32,10 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import (
     MOST_STEPS,
     error_beside,
+    finer_than,
     judged,
     loaded_from,
+    moved_to,
     solution_near,
     solve_at,
     solve_tubes,
@@ -131,25 +133,43 @@ def tubes_at_rest(
     subject: scenes.Scene | TubeFunctions,
     values: Values = None,
     *,
+    start: TubeSolution | FloatArray | None = None,
     stable: bool = False,
+    estimate_error: bool = True,
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> TubeSolution:
-    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps, whose error is not estimated.
+    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps.
 
     Args:
         subject: the scene or the model.
         values: as in :func:`solve_tubes`.
-        stable: of a scene, as in :func:`cosserat_casadi.solve`.
+        start: of a model: a solution whose inputs are followed to these, or unknowns near the equilibrium; where that
+            leads nowhere, and by default, straight tubes.
+        stable: as in :func:`cosserat_casadi.solve`.
+        estimate_error: of a model, whether its error is estimated, by the equilibrium with twice its steps.
         progress: not called: the search takes a moment.
         report: likewise.
 
     Raises:
         SceneError: a value is refused, or a stable equilibrium is wanted where the loads have no energy.
     """
-    if isinstance(subject, TubeFunctions):
-        return solve_at(subject, subject.robot.packed(values))
-    return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
+    if isinstance(subject, scenes.Scene):
+        return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
+    inputs = subject.pack(values)
+    if stable:
+        # The unknowns do not depend on the steps.
+        start = stable_tubes(subject.scene, inputs).x
+    found = None
+    if isinstance(start, TubeSolution):
+        found = moved_to(subject, start, inputs)
+    elif start is not None:
+        found = solution_near(subject, inputs, start)
+    if found is None or not found.converged:
+        found = solve_at(subject, inputs)
+    if not estimate_error:
+        return found
+    return replace(found, error_estimate=error_beside(found, finer_than(found)))
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
@@ -174,7 +194,7 @@ def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
 def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
     """The equilibria that those without loads lead to."""
     robot = model.robot
-    without = _without_loads(model.unloaded, at)
+    without = _without_loads(model.without_loads, at)
     while True:
         finer = LoadedTubeModel(robot, 2 * model.steps)
         reached = [loaded_from(model, at, start) for start in without.solutions]

@@ -10,19 +10,19 @@ import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
-from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.robot import Robot, Values
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import TipVariations
 
@@ -72,6 +72,28 @@ class TubeFunctions(ABC):
     def inputs(self) -> InputLayout:
         """Names, order and default values of the inputs."""
         return self.robot.layout
+
+    @property
+    def lengths(self) -> dict[str, float]:
+        """Length that the pose error of each tube is relative to, m: that of the longest one."""
+        return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
+
+    def at(self, values: Any = None) -> Self:
+        """The model itself: tubes have no parameters."""
+        return self
+
+    def pack(self, values: Values = None) -> FloatArray:
+        """The stacked inputs, as :meth:`Robot.packed`."""
+        return self.robot.packed(values)
+
+    def unloaded(self) -> FloatArray:
+        """Unknowns of straight tubes, shape (size,)."""
+        frame = [1.0, 0.0, 0.0, 0.0][: self.size - self.tube_count]
+        return np.concatenate([self.robot.rotations(self.robot.inputs), frame])
+
+    def has_potential(self, inputs: FloatArray) -> bool:
+        """Whether an energy tells which equilibria are stable, whatever the inputs."""
+        return self.robot.has_energy
 
     # What a model says
 
@@ -169,6 +191,11 @@ class TubeFunctions(ABC):
         """Whether the Jacobian is sparse: it never is."""
         return False
 
+    @property
+    def hessian_is_cheap(self) -> bool:
+        """Whether an optimiser is faster with exact second derivatives: all steps would be integrated for each."""
+        return False
+
     @cached_property
     def equilibrium(self) -> ca.Function:
         """(start, inputs) ↦ unknowns, by Newton's method, and the sum of angles missed, 1×1, rad.
@@ -206,6 +233,16 @@ class TubeFunctions(ABC):
         position = ca.horzcat(*[tip.position for tip in self._tips])
         quaternion = ca.horzcat(*[tip.quaternion for tip in self._tips])
         return self._function("tips", {"position": position, "quaternion": quaternion})
+
+    @cached_property
+    def tip(self) -> dict[str, ca.Function]:
+        """(x, inputs) ↦ position, m, quaternion and rotation of the tip of a tube, in base axes, by name."""
+        functions = {}
+        for name, pose in zip(self.robot.names, self._tips, strict=True):
+            rotation = quaternion_to_matrix(pose.quaternion)
+            outputs = {"position": pose.position, "quaternion": pose.quaternion, "rotation": rotation}
+            functions[name] = self._function("tip", outputs)
+        return functions
 
     @cached_property
     def tip_jacobian(self) -> ca.Function:

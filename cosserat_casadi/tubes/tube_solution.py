@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.equilibrium import Equilibrium
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
@@ -97,13 +97,17 @@ class TubeSolution(Equilibrium[TubeFunctions]):
             for index, name in enumerate(self.robot.names)
         }
 
-    def tip(self, tube: str | None = None) -> NumericPose:
+    @property
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+        return f"it has {self.model.steps} steps a piece: allow more of them, or ask for a larger tolerance."
+
+    def tip(self, name: str | None = None) -> NumericPose:
         """Pose of a tube's tip in the world; without a name that of the tube that reaches farthest.
 
         Raises:
             SceneError: there is no such tube.
         """
-        name = tube
         if name is None:
             name = self.robot.names[int(np.argmax(self.robot.translations(self.inputs)))]
         if name not in self.tips:

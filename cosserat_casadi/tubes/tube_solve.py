@@ -140,7 +140,7 @@ def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
     """The equilibrium of a model that straight tubes lead to, while their curvature grows, and then their loads."""
     if isinstance(model, LoadedTubeModel):
-        curved = solve_at(model.unloaded, inputs)
+        curved = solve_at(model.without_loads, inputs)
         return loaded_from(model, inputs, curved)
     path = Path(
         residual=lambda x, t: column(model.path_residual(x, inputs, t)),
@@ -191,6 +191,17 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
     if traced.outcome is PathOutcome.CONVERGED:
         return solution_at(model, inputs, traced.points[-1].x, found=True, iterations=iterations)
     return solution_at(model, inputs, end.x, found=False, iterations=iterations)
+
+
+def moved_to(model: TubeFunctions, start: TubeSolution, inputs: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that one at other inputs leads to, along the straight line between them."""
+    end = _followed(input_path(model, start.x, start.inputs, inputs))
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def finer_than(solution: TubeSolution) -> TubeSolution:
+    """The equilibrium beside a solution with twice the steps."""
+    return solution_near(model_of(solution.robot, 2 * solution.model.steps), solution.inputs, solution.x)
 
 
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:

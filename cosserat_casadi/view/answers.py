@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
-from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -51,6 +50,6 @@ def accuracy_of(solution: Solution | None) -> dict[str, Any]:
         return {"within": False, "text": solution.message, "refines": False}
     text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
     if not solution.within_tolerance:
-        text += " " + remedy(solution)
+        text += " " + solution.remedy
     refines = not solution.within_tolerance and not accuracy.fixed_by_hand and not solution.model.scene.touches_exactly
     return {"within": solution.within_tolerance, "text": text, "refines": refines}

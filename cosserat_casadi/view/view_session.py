@@ -186,7 +186,7 @@ class ViewSession:
         """
         target = scenes.PositionTarget(kind="position", position=tuple(position), **pose)
         problem = self._problem(*pose.items())
-        model = problem.model
+        model = self.first.model
         start = solve(model, model.inputs.unpack(self._inputs), start=self._x, estimate_error=False)
         origin = problem.variables.clipped(start.inputs)
         asked = replace(problem, targets=(target,), origin=origin)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -11,6 +12,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import Robot
@@ -19,18 +21,19 @@ from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, model_of
 
 
-def print_tubes(console: Console, solution: TubeSolution | TubeEquilibria, written: Sequence[Path]) -> None:
+def print_tubes(console: Console, solution: Equilibrium[Any] | TubeEquilibria, written: Sequence[Path]) -> None:
     """Print an equilibrium, or all at the same inputs, and the files that were written."""
-    if isinstance(solution, TubeSolution):
-        _print_equilibrium(console, solution)
-    else:
+    if isinstance(solution, TubeEquilibria):
         _print_equilibria(console, solution)
+    else:
+        _print_message(console, solution.model.scene.title, solution.message, good=solution.converged)
+        print_tubes_and_merit(console, solution)
     print_written(console, written)
 
 
-def _print_equilibrium(console: Console, solution: TubeSolution) -> None:
-    """Print the outcome, the tubes, and the figures of merit."""
-    _print_message(console, solution.robot.scene.title, solution.message, good=solution.converged)
+def print_tubes_and_merit(console: Console, solution: Equilibrium[Any]) -> None:
+    """Print the tubes, and the figures of merit."""
+    assert isinstance(solution, TubeSolution)
     table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
     for index, (name, tip) in enumerate(solution.tips.items()):
         rotation, translation = solution.inputs[2 * index : 2 * index + 2]
