@@ -106,6 +106,7 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
         message: a sentence for the user.
         residual_norm: size of the residual at x, computed again at the end.
         iterations: Newton iterations of the search.
+        load_factor: share of the loads, or of the way, that was reached; 1 unless the load stalled.
         error_estimate: estimated error of the poses of the tips, relative to a length and in rad; None if not
             estimated.
     """
@@ -117,6 +118,7 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
     message: str
     residual_norm: float
     iterations: int
+    load_factor: float = 1.0
     error_estimate: float | None = None
 
     @property
@@ -180,7 +182,6 @@ class Solution(Equilibrium[Model]):
     ends too.
 
     Attributes:
-        load_factor: share of the loads that was reached, 1 unless the load stalled.
         smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.
         shape_error_estimate: the error estimate over all sections, those between nodes included.
@@ -189,7 +190,6 @@ class Solution(Equilibrium[Model]):
         contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
     """
 
-    load_factor: float = 1.0
     smallest_eigenvalue: float | None = None
     stable: bool | None = None
     shape_error_estimate: float | None = None

@@ -11,6 +11,7 @@ from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.robot import Robot
@@ -35,6 +36,22 @@ class TubeShape:
     quaternion: FloatArray
     angles: FloatArray
     torques: FloatArray
+
+    def between(self, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Positions, shape (m, 3), and quaternions, shape (m, 4), at distances from the plate, shape (m,).
+
+        Positions are cubics with the tangents at the places of the robot, quaternions between two places are blended.
+        """
+        # Of places at one distance the last begins the piece behind it.
+        before = np.clip(np.searchsorted(self.distance, distance, side="right") - 1, 0, len(self.distance) - 2)
+        step = np.diff(self.distance)[before][:, None]
+        share = (distance - self.distance[before])[:, None] / np.where(step > 0.0, step, 1.0)
+        tangent = quaternion_to_matrix(self.quaternion.T)[:, 2].T
+        chord = self.position[before] + share**2 * (3.0 - 2.0 * share) * np.diff(self.position, axis=0)[before]
+        leaving = share * (1.0 - share) ** 2 * tangent[before]
+        arriving = share**2 * (share - 1.0) * tangent[before + 1]
+        blended = (1.0 - share) * self.quaternion[before] + share * self.quaternion[before + 1]
+        return chord + step * (leaving + arriving), blended / np.linalg.norm(blended, axis=1, keepdims=True)
 
 
 @dataclass(frozen=True, repr=False)
