@@ -42,7 +42,7 @@ def main() -> None:
     x = solve_at(model, robot.inputs).x
     print("function      without, ms   with, ms   ratio")
     for name in ("residual", "jacobian", "variations", "tips"):
-        without = seconds(model.unloaded, name, x[: robot.size])
+        without = seconds(model.without_loads, name, x[: robot.size])
         loaded = seconds(model, name, x)
         print(f"{name:12} {1e3 * without:12.3f} {1e3 * loaded:10.3f} {loaded / without:7.1f}")
 

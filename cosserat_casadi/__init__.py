@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from cosserat_casadi.numerics.trace import PathOutcome as PathOutcome
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath as EquilibriumPath
     from cosserat_casadi.paths.path_refinement import follow as follow
+    from cosserat_casadi.paths.tube_path import TubePath as TubePath
     from cosserat_casadi.rod.discretisation import Discretisation as Discretisation
     from cosserat_casadi.scene import Scene as Scene
     from cosserat_casadi.scene import parse_scene as parse_scene
@@ -59,7 +60,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.sweeps.table import sobol_table as sobol_table
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria as TubeEquilibria
     from cosserat_casadi.tubes.tube_equilibria import all_equilibria as all_equilibria
-    from cosserat_casadi.tubes.tube_path import TubePath as TubePath
     from cosserat_casadi.tubes.tube_solution import TubeSolution as TubeSolution
 
     __version__: str
@@ -89,6 +89,7 @@ _NAMES = {
     "numerics.trace": ("PathOutcome",),
     "paths.equilibrium_path": ("EquilibriumPath",),
     "paths.path_refinement": ("follow",),
+    "paths.tube_path": ("TubePath",),
     "rod.discretisation": ("Discretisation",),
     "scene": ("Scene", "parse_scene", "read_scene", "scene_from_dict"),
     "sweeps.outcome_file": ("read_sweep",),
@@ -97,7 +98,6 @@ _NAMES = {
     "sweeps.sobol": ("SobolIndices", "sobol_indices"),
     "sweeps.table": ("sobol_table",),
     "tubes.tube_equilibria": ("TubeEquilibria", "all_equilibria"),
-    "tubes.tube_path": ("TubePath",),
     "tubes.tube_solution": ("TubeSolution",),
 }
 """Public names by the module that defines them."""

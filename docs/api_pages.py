@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from importlib import import_module
+from itertools import pairwise
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, get_overloads
@@ -261,7 +262,7 @@ def _entry(module: ModuleType, name: str) -> list[str]:
     paragraphs = [f"## {name}", f"`from {module.__name__} import {name}`"]
     if isinstance(member, FunctionType):
         return [*paragraphs, _signature(name, member), *_docstring(member)]
-    paragraphs += _docstring(member)
+    paragraphs += _with_inherited(member)
     if issubclass(member, Enum):
         return [*paragraphs, _enum_members(member)]
     for member_name, attribute in _own_members(member):
@@ -273,13 +274,35 @@ def _enum_members(enum: type[Enum]) -> str:
     return "\n".join(f"* `{member.name}`: {member.value}" for member in enum)
 
 
+def _with_inherited(cls: type) -> list[str]:
+    """The docstring of a class as paragraphs; among its attributes are those of its bases."""
+    paragraphs = _docstring(cls)
+    items: dict[str, str] = {}
+    for owner in reversed(_owners(cls)):
+        for heading, listed in pairwise(_docstring(owner)):
+            if heading == ATTRIBUTES:
+                items |= {item.partition(":")[0]: item for item in listed.splitlines()}
+    if not items:
+        return paragraphs
+    if ATTRIBUTES not in paragraphs:
+        paragraphs += [ATTRIBUTES, ""]
+    paragraphs[paragraphs.index(ATTRIBUTES) + 1] = "\n".join(items.values())
+    return paragraphs
+
+
+def _owners(cls: type) -> list[type]:
+    """A class and its bases in this package."""
+    return [owner for owner in cls.__mro__ if owner.__module__.startswith("cosserat_casadi")]
+
+
 def _own_members(cls: type) -> Iterator[tuple[str, Any]]:
-    """Public methods and properties that a class of this package defines, in the order of the source."""
-    for owner in cls.__mro__:
-        if owner.__module__.startswith("cosserat_casadi"):
-            for name, attribute in vars(owner).items():
-                if not name.startswith("_"):
-                    yield name, attribute
+    """Public methods and properties of a class and its bases in this package, each once, in the order of the source."""
+    seen: set[str] = set()
+    for owner in _owners(cls):
+        for name, attribute in vars(owner).items():
+            if not name.startswith("_") and name not in seen:
+                seen.add(name)
+                yield name, attribute
 
 
 def _class_member(name: str, attribute: Any) -> list[str]:
@@ -357,6 +380,8 @@ def _annotation(annotation: object) -> str:
 
 
 # Docstrings in Google's convention
+
+ATTRIBUTES = "**Attributes**"
 
 SECTIONS = ("Args", "Attributes", "Returns", "Yields", "Raises")
 

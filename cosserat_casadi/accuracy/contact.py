@@ -19,7 +19,6 @@ from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
-from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
 
 LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
@@ -78,7 +77,7 @@ def solve_contact_scene(
     assert coarse is not None
     if not coarse.converged:
         return coarse
-    return replace(coarse, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value, stable=None)
+    return coarse.unresolved()
 
 
 def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:

@@ -42,12 +42,14 @@ from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
 from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, Start, check_potential, noted_unstable
 from cosserat_casadi.equilibrium.solve import solve as solve_model
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
@@ -111,11 +113,27 @@ def solve(
 
 @overload
 def solve(
-    subject: TubeFunctions, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None
+    subject: TubeFunctions,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
+    *,
+    start: TubeSolution | FloatArray | None = None,
+    stable: bool = False,
+    estimate_error: bool = True,
 ) -> TubeSolution: ...
 
 
-def solve(subject: scenes.Scene | Model | TubeFunctions, values: Any = None, **options: Any) -> Any:
+@overload
+def solve(
+    subject: SystemFunctions,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
+    *,
+    start: Any = None,
+    stable: bool = False,
+    estimate_error: bool = True,
+) -> Equilibrium[Any]: ...
+
+
+def solve(subject: Any, values: Any = None, **options: Any) -> Any:
     """Equilibrium of a scene, or of a model on its discretisation.
 
     A scene is solved to its tolerance, on the cheapest discretisation that meets it. The discretisation suits these
@@ -134,15 +152,16 @@ def solve(subject: scenes.Scene | Model | TubeFunctions, values: Any = None, **o
         progress: receives the share of the load path of rods that is done.
         report: receives the discretisation of rods, in words; of a scene.
         parameters: of a model of rods, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
-        start: of a model of rods, like all that follow: where to start; by default the unloaded rod. From a solution
-            of the same model, continuation follows the inputs from those of the solution to the wanted ones, and so
-            stays on its branch; of a scene with obstacles, the contacts of the solution are tried first. From unknowns
-            of shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
-        method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
-            at the full load and may find another branch, or none.
-        settings: limits of the continuation.
-        raise_on_failure: raise instead of returning what did not converge.
-        estimate_error: whether the error that modes and nodes leave is estimated; it costs about a Newton step.
+        start: of a model, like all that follow: where to start; by default the unloaded rod, or straight tubes. From a
+            solution of the same model, continuation follows the inputs from those of the solution to the wanted ones,
+            and so stays on its branch; of a scene with obstacles, the contacts of the solution are tried first. From
+            unknowns of shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
+        method: of rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
+            start at the full load and may find another branch, or none.
+        settings: limits of the continuation, of rods.
+        raise_on_failure: raise instead of returning what did not converge, of rods.
+        estimate_error: whether the error that modes and nodes, or steps, leave is estimated; of rods it costs about a
+            Newton step.
 
     Raises:
         SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
@@ -294,7 +313,7 @@ def _refined(
     if fewer_modes is not None:
         # The level below is farther off than this one, by about as much as the two are apart.
         coarser = with_estimate(coarser, fewer_modes, factor=1.0)
-    return _unresolved(coarser)
+    return coarser.unresolved()
 
 
 def _blind(solver: SceneSolver) -> Solution:
@@ -302,7 +321,7 @@ def _blind(solver: SceneSolver) -> Solution:
     solution = _at_level(solver, Level.first(solver.tolerance), None)
     if not solution.converged:
         return solution
-    return _unresolved(solution)
+    return solution.unresolved()
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:
@@ -391,13 +410,13 @@ def _beside_finer(
         finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
     reference = solver.solve(finer, meant or solution)
     if not reference.converged:
-        return _unresolved(solution)
+        return solution.unresolved()
     judged = with_estimate(solution, reference)
     shape_error = judged.shape_error_estimate
     # Written so that an estimate which is not a number counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
         return with_tolerance_note(judged)
-    return _unresolved(judged)
+    return judged.unresolved()
 
 
 def _meant(solver: SceneSolver) -> Solution | None:
@@ -410,11 +429,6 @@ def _meant(solver: SceneSolver) -> Solution | None:
     # The modes of the user may have an equilibrium all the same, and one to relax to.
     solver.vain_descents = 0
     return None
-
-
-def _unresolved(solution: Solution) -> Solution:
-    outcome = Outcome.UNRESOLVED
-    return replace(solution, outcome=outcome, message=outcome.value, stable=None)
 
 
 def _with_note(solution: Solution, note: str) -> Solution:

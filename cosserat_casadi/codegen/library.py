@@ -323,6 +323,8 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
+        "turn_jacobians": 2,
+        "one_sided": "",
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
         "settling_iterations": SETTLING_ITERATIONS,

@@ -65,6 +65,7 @@ def parameter_words(render: Render, basics: Words, model: Model, names: Names, *
         **words,
         **_arguments(names),
         "with_parameters": True,
+        "solves_tangent": True,
         "passed": ", parameters",
         "inner": "stacked_",
         "inner_equations": "stacked_",

@@ -40,6 +40,12 @@ whether the tolerance is kept, which rows leave open (NaN)."""
 STABILITY = ("smallest_eigenvalue", "stable")
 """Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
 
+ENERGY = "energy"
+"""Column of the energy of concentric tubes, J."""
+
+TUBE_STABILITY = ("falling_directions", "determinant", "stable")
+"""Last columns of a row of concentric tubes, where they are asked for."""
+
 CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
 """Columns of a rod and an obstacle: number of contacts, abscissae between which they lie, their resultant (N)."""
 
@@ -169,16 +175,20 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     Args:
         scene: what is solved.
         estimate_errors: whether :data:`ERRORS` follow.
-        stability: whether they end with :data:`STABILITY`.
+        stability: whether they end with :data:`STABILITY`, or :data:`TUBE_STABILITY`.
     """
-    posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
+    tips = [*[rod.name for rod in scene.rods], *[tube.name for tube in scene.tubes]]
+    posed = [*tips, *[body.name for body in scene.bodies]]
     states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
+    if scene.tubes:
+        states.append(ENERGY)
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
     # Smooth contact is a load, of which rows do not tell.
     contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
     contacts += [f"{body.name}.{obstacle.name}.{word}" for body, obstacle in body_pairs(scene) for word in BODY_CONTACT]
     errors = ERRORS if estimate_errors else ()
-    return (*JUDGED, *poses, *states, *contacts, *errors, *(STABILITY if stability else ()))
+    verdict = TUBE_STABILITY if scene.tubes else STABILITY
+    return (*JUDGED, *poses, *states, *contacts, *errors, *(verdict if stability else ()))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:

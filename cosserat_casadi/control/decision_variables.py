@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import narrowed
+from cosserat_casadi.model.system_functions import SystemFunctions
 
 UNFELT = 1e-9
 """Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""
@@ -39,7 +40,7 @@ class DecisionVariables:
         return inside
 
 
-def decision_variables(model: Model) -> DecisionVariables:
+def decision_variables(model: SystemFunctions) -> DecisionVariables:
     """The inputs that a scene asks for: those it bounds, or else those it lists.
 
     An input that a scene lists without bounding it, beside others that it bounds, keeps the scene's value: it is
@@ -61,7 +62,7 @@ def decision_variables(model: Model) -> DecisionVariables:
     return DecisionVariables(indices, lower[indices], upper[indices])
 
 
-def scales(model: Model, variables: DecisionVariables, start: Solution) -> FloatArray:
+def scales(model: SystemFunctions, variables: DecisionVariables, start: Equilibrium[Any]) -> FloatArray:
     """A change of each decision variable that matters, shape (n,), in its unit.
 
     Half the range where there is one; else what changes the dimensionless balance by one unit; else the value itself,
@@ -79,7 +80,7 @@ def scales(model: Model, variables: DecisionVariables, start: Solution) -> Float
     return np.where(bounded, half_range, unbounded_scale)
 
 
-def _chosen_names(model: Model) -> list[str]:
+def _chosen_names(model: SystemFunctions) -> list[str]:
     """Names of the decision variables, in the order of the stacked inputs."""
     scene = model.scene
     changeable = tuple(bound.input for bound in scene.bounds)
@@ -88,7 +89,7 @@ def _chosen_names(model: Model) -> list[str]:
     return [name for name in model.inputs.names if name in changeable]
 
 
-def _refuse_empty_ranges(model: Model, lower: FloatArray, upper: FloatArray) -> None:
+def _refuse_empty_ranges(model: SystemFunctions, lower: FloatArray, upper: FloatArray) -> None:
     problems = []
     for i, bound in enumerate(model.scene.bounds):
         entries = model.inputs.slices[bound.input]
@@ -100,7 +101,7 @@ def _refuse_empty_ranges(model: Model, lower: FloatArray, upper: FloatArray) -> 
         raise SceneError(*problems)
 
 
-def _own_sizes(model: Model, inputs: FloatArray) -> FloatArray:
+def _own_sizes(model: SystemFunctions, inputs: FloatArray) -> FloatArray:
     """How large an input is by itself, where nothing else tells, shape (inputs,)."""
     sizes = np.where(inputs != 0.0, np.abs(inputs), 1.0)
     # The base of a rod may well be at the origin, so its value tells nothing.

@@ -8,30 +8,31 @@ its inputs is computed anew and judged like any other.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.control.decision_variables import decision_variables
+from cosserat_casadi.control.inverse_levels import with_error
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.control.nearby_inputs import followed
-from cosserat_casadi.equilibrium.answer_error import estimated
-from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.system_functions import SystemFunctions
 
 STARTS = 8
 """Further starts, scattered in the bounds, where the first leaves a gap."""
 
 
 def inverse(
-    model: Model,
+    model: SystemFunctions,
     *,
-    start: Solution | None = None,
+    start: Equilibrium[Any] | None = None,
     stable: bool = False,
     starts: int = STARTS,
     estimate_error: bool = True,
@@ -63,7 +64,7 @@ def inverse(
     problem = lifted_problem(model, model.scene.targets, start, stable)
     found = search(problem, start, stable, starts)
     if estimate_error and found.solution.converged:
-        found = replace(found, solution=estimated(found.solution))
+        found = replace(found, solution=with_error(found.solution))
     return with_verdict(found, stable)
 
 
@@ -77,13 +78,13 @@ def check_targets(targets: tuple[scenes.Target, ...]) -> None:
         raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
 
 
-def first_solution(model: Model) -> Solution:
+def first_solution(model: SystemFunctions) -> Equilibrium[Any]:
     """The equilibrium at the scene's own inputs, brought into bounds: where a search starts."""
     first_inputs = decision_variables(model).clipped(model.pack())
     return solve(model, model.inputs.unpack(first_inputs), estimate_error=False)
 
 
-def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
+def search(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
     """The inverse problem from a start, and from scattered ones, without a verdict on its targets.
 
     Args:
@@ -106,7 +107,7 @@ def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -
     return result
 
 
-def search_near(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
+def search_near(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
     """The inverse problem from an equilibrium near its targets: by Newton's method, else by :func:`search`.
 
     Args:
@@ -121,7 +122,7 @@ def search_near(problem: LiftedProblem, start: Solution, stable: bool, starts: i
     return search(problem, start, stable, starts)
 
 
-def _from_start(problem: LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
+def _from_start(problem: LiftedProblem, start: Equilibrium[Any], change: FloatArray, stable: bool) -> Inverse:
     """The search from one start.
 
     Args:

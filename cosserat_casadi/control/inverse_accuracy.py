@@ -9,23 +9,19 @@ from typing import Any, overload
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
-from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
+from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
 from cosserat_casadi.control.inverse import inverse as inverse_model
+from cosserat_casadi.control.inverse_levels import levels_of
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
-from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
-from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.outcome import Outcome
 
 Report = Callable[[str], None]
@@ -44,16 +40,16 @@ def inverse(subject: scenes.Scene, *, stable: bool = False, report: Report | Non
 
 @overload
 def inverse(
-    subject: Model,
+    subject: SystemFunctions,
     *,
-    start: Solution | None = None,
+    start: Equilibrium[Any] | None = None,
     stable: bool = False,
     starts: int = STARTS,
     estimate_error: bool = True,
 ) -> Inverse: ...
 
 
-def inverse(subject: scenes.Scene | Model, **options: Any) -> Inverse:
+def inverse(subject: scenes.Scene | SystemFunctions, **options: Any) -> Inverse:
     """Inputs for which a scene, or a model, meets its targets.
 
     Of several solutions it is one near the scene's own inputs. Where targets cannot all be met, within the bounds or
@@ -81,9 +77,8 @@ def inverse(subject: scenes.Scene | Model, **options: Any) -> Inverse:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
-    if isinstance(subject, Model):
+    if not isinstance(subject, scenes.Scene):
         return inverse_model(subject, **options)
-    refuse_tubes(subject)
     (found,) = inverse_rows(subject, [subject.targets], **options)
     return found
 
@@ -111,19 +106,17 @@ def inverse_rows(
     Raises:
         SceneError: as in :func:`inverse`.
     """
-    refuse_tubes(scene)
-    refuse_obstacles(scene, "an inverse problem")
+    levels = levels_of(scene)
     for targets in rows:
         check_targets(targets)
-    scene = scene.baked()
-    accuracy = scene.accuracy
-    levels = seeing_modes(scene)
-    model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)
+    model = levels.first()
+    fixed = scene.accuracy.fixed
     settled: dict[int, Inverse] = {}
     pending: dict[int, Inverse] = {}
-    starts: dict[int, Solution] = {}
-    for modes in levels[1:]:
-        _report(model, report)
+    starts: dict[int, Equilibrium[Any]] = {}
+    for count in levels.counts:
+        if report is not None:
+            report(levels.told(model))
         if starts:
             pending = _refined(model, pending, starts, stable)
         else:
@@ -134,17 +127,13 @@ def inverse_rows(
                 settled[row] = with_verdict(pending.pop(row), stable)
         if not pending:
             break
-        finer_modes = modes
-        if accuracy.fixed:
-            finer_modes = max(modes, _most_modes(model) + FINER_MODES)
-        turn = max(largest_turn(result.solution) for result in pending.values())
-        finer = verified_model(scene, finer_modes, turn)
+        finer = levels.finer(count, model, [result.solution for result in pending.values()])
         starts = {}
         for row, result in list(pending.items()):
-            # One solve at the same inputs tells what the modes leave, and is where a next search would start.
-            reference = solve(finer, result.values, start=prolong(result.solution, finer), estimate_error=False)
-            judged = _with_estimate(result, reference)
-            if accuracy.fixed:
+            # One solve at the same inputs tells what the level leaves, and is where a next search would start.
+            reference = levels.reference(result.solution, finer)
+            judged = replace(result, solution=levels.judged(result.solution, reference))
+            if fixed:
                 settled[row] = _fixed_verdict(judged, stable)
             elif _error_within(judged):
                 settled[row] = with_verdict(judged, stable)
@@ -158,7 +147,9 @@ def inverse_rows(
     return [settled[row] for row in range(len(rows))]
 
 
-def _searched(model: Model, rows: Sequence[Targets], stable: bool, progress: Progress | None) -> dict[int, Inverse]:
+def _searched(
+    model: SystemFunctions, rows: Sequence[Targets], stable: bool, progress: Progress | None
+) -> dict[int, Inverse]:
     """The search of every row on the first discretisation, each from its nearest neighbour that is met."""
     first = first_solution(model)
     problem = lifted_problem(model, rows[0], first, stable)
@@ -189,7 +180,7 @@ def _searched(model: Model, rows: Sequence[Targets], stable: bool, progress: Pro
 
 
 def _refined(
-    model: Model, before: Mapping[int, Inverse], starts: Mapping[int, Solution], stable: bool
+    model: SystemFunctions, before: Mapping[int, Inverse], starts: Mapping[int, Equilibrium[Any]], stable: bool
 ) -> dict[int, Inverse]:
     """The search of rows on a finer discretisation, each from its own end on the coarser one."""
     first_row, first_start = next(iter(starts.items()))
@@ -236,7 +227,7 @@ def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> Flo
 
 def _fixed_verdict(judged: Inverse, stable: bool) -> Inverse:
     """The verdict on modes and nodes that the user fixed: as a solve, unresolved where the shape is far off."""
-    shape_error = judged.solution.shape_error_estimate
+    shape_error = judged.solution.largest_error
     # Without an estimate nothing vouches for the gaps.
     if shape_error is None or shape_error > LARGEST_SHAPE_ERROR:
         return _unresolved(judged)
@@ -252,31 +243,10 @@ def _error_within(result: Inverse) -> bool:
     return all(error is not None and error <= tolerance for error in errors)
 
 
-def _report(model: Model, report: Report | None) -> None:
-    if report is None:
-        return
-    most_nodes = max(d.nodes for d in model.discretisation.values())
-    report(f"{model.size} unknowns, {most_nodes} intervals")
-
-
-def _most_modes(model: Model) -> int:
-    discretisations = model.discretisation.values()
-    return max(max(d.modes) for d in discretisations)
-
-
-def _with_estimate(result: Inverse, reference: Solution) -> Inverse:
-    """The result with the error of its equilibrium, where both are equilibria."""
-    if not result.solution.converged or not reference.converged:
-        return result
-    estimated = with_estimate(result.solution, reference)
-    return replace(result, solution=estimated)
-
-
 def _unresolved(result: Inverse) -> Inverse:
     """The result as one that is not of the rod; the gaps are those of the discrete model."""
-    outcome = Outcome.UNRESOLVED
-    message = outcome.value
-    if result.solution.shape_error_estimate is not None:
-        message += f" The estimated error is {result.solution.shape_error_estimate:.2g} of the length."
-    solution = replace(result.solution, outcome=outcome, message=message, stable=None)
+    solution = result.solution.unresolved()
+    if solution.largest_error is not None:
+        message = f"{solution.message} The estimated error is {solution.largest_error:.2g} of the length."
+        solution = replace(solution, message=message)
     return replace(result, solution=solution, gaps=target_errors(solution, result.targets), met=False)

@@ -12,7 +12,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.result import Result
 
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
@@ -38,7 +38,7 @@ class Inverse(Result):
         at_bounds: decision variables that ended at a bound, by name.
     """
 
-    solution: Solution
+    solution: Equilibrium[Any]
     targets: tuple[scenes.Target, ...]
     gaps: tuple[TargetMiss, ...]
     met: bool

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
-from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import check_potential, solve
+from cosserat_casadi.equilibrium.solution import Equilibrium
+from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system_functions import SystemFunctions
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
 """Weights of the inputs' distance from where a round starts, the last one for all further rounds.
@@ -39,6 +41,9 @@ IPOPT = {
     "honor_original_bounds": "yes",
 }
 """Options of the interior-point method; bounds are kept as they are written."""
+
+LEARNED_HESSIAN = {"hessian_approximation": "limited-memory"}
+"""Further options where exact second derivatives cost too much."""
 
 SEED = 20_240
 """Of the generator that scatters them: the same scene has the same starts."""
@@ -66,7 +71,7 @@ class LiftedProblem:
             shared likewise.
     """
 
-    model: Model
+    model: SystemFunctions
     targets: tuple[scenes.Target, ...]
     variables: DecisionVariables
     scale: FloatArray
@@ -214,9 +219,9 @@ class LiftedProblem:
 
 
 def lifted_problem(
-    model: Model,
+    model: SystemFunctions,
     targets: tuple[scenes.Target, ...],
-    start: Solution,
+    start: Equilibrium[Any],
     stable: bool,
 ) -> LiftedProblem:
     """The problem of a model, ready for searches.
@@ -262,7 +267,7 @@ class _Errors:
 
 
 def _errors(
-    model: Model,
+    model: SystemFunctions,
     targets: tuple[scenes.Target, ...],
     variables: DecisionVariables,
     scale: FloatArray,
@@ -283,7 +288,7 @@ def _linearised(of: _Errors) -> ca.Function:
     return ca.Function("errors", arguments, [of.errors, *derivatives])
 
 
-def _optimiser(model: Model, of: _Errors) -> ca.Function:
+def _optimiser(model: SystemFunctions, of: _Errors) -> ca.Function:
     """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
     centre = ca.MX.sym("centre", of.change.shape[0])
     damping = ca.MX.sym("damping")
@@ -298,7 +303,7 @@ def _optimiser(model: Model, of: _Errors) -> ca.Function:
         "print_time": False,
         "error_on_fail": False,
         "show_eval_warnings": False,
-        "ipopt": IPOPT,
+        "ipopt": IPOPT if model.hessian_is_cheap else {**IPOPT, **LEARNED_HESSIAN},
     }
     return ca.nlpsol("inverse", "ipopt", problem, options)
 

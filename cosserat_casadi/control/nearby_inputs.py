@@ -14,13 +14,14 @@ Where this does not end at the targets, nothing is said about whether another me
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.lifted_problem import LiftedProblem
 from cosserat_casadi.control.target_errors import wanted_poses
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import solved
 
@@ -57,7 +58,7 @@ class _Linearised:
     moved: FloatArray
 
 
-def followed(problem: LiftedProblem, start: Solution) -> Inverse | None:
+def followed(problem: LiftedProblem, start: Equilibrium[Any]) -> Inverse | None:
     """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge."""
     x = start.x
     change = problem.change(start.inputs)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system_functions import SystemFunctions
 
 
 def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
@@ -22,7 +23,7 @@ def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
 
 
 def weighted_errors(
-    model: Model,
+    model: SystemFunctions,
     targets: Sequence[scenes.Target],
     wanted: Matrix,
     x: Matrix,
@@ -49,7 +50,7 @@ def weighted_errors(
     return stacked
 
 
-def target_errors(solution: Solution, targets: Sequence[scenes.Target]) -> tuple[TargetMiss, ...]:
+def target_errors(solution: Equilibrium[Any], targets: Sequence[scenes.Target]) -> tuple[TargetMiss, ...]:
     """How far a solution is from each of the targets, and how far the model itself may be off there."""
     gaps = []
     for target in targets:

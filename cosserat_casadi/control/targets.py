@@ -11,12 +11,13 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.scene.families import Kind, Kinds, register
 from cosserat_casadi.scene.target_records import TARGETS, FrameTarget, TargetRecord
 
@@ -54,9 +55,9 @@ class TargetMiss:
         return error_within and self.reached(length, tolerance)
 
 
-def length_of(model: Model, target: TargetRecord) -> float:
-    """Length that a target's distance is measured by, m: that of its rod, for a body that of the longest rod."""
-    lengths = {rod.name: rod.length for rod in model.scene.rods}
+def length_of(model: SystemFunctions, target: TargetRecord) -> float:
+    """Length that a target's distance is measured by, m: that of its rod, for a body or a tube that of the longest."""
+    lengths = model.lengths
     rod = getattr(target, "rod", None)
     if rod is None:
         return max(lengths.values())
@@ -64,7 +65,10 @@ def length_of(model: Model, target: TargetRecord) -> float:
 
 
 class Target(Kind, ABC, Generic[RecordType]):
-    """One kind of target. The methods take ``target``, the frozen record of the scene."""
+    """One kind of target. The methods take ``target``, the frozen record of the scene.
+
+    Models and solutions are those of rods; of concentric tubes where the target is for a tip.
+    """
 
     family = TARGETS
     kinds = Kinds(TARGETS)
@@ -74,7 +78,7 @@ class Target(Kind, ABC, Generic[RecordType]):
         return np.zeros(POSE_SIZE)
 
     @abstractmethod
-    def error(self, target: RecordType, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+    def error(self, target: RecordType, model: Any, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
         """Errors without unit and without the weight of the target, k×1; zero where it is met.
 
         Positions count relative to :func:`length_of`, orientations by the chord 2 sin(θ/2) of their angle θ.
@@ -88,16 +92,17 @@ class Target(Kind, ABC, Generic[RecordType]):
         """
 
     @abstractmethod
-    def gap(self, target: RecordType, solution: Solution) -> TargetMiss:
+    def gap(self, target: RecordType, solution: Any) -> TargetMiss:
         """How far a solution is from the target."""
 
-    def model_error(self, target: RecordType, solution: Solution) -> float | None:
+    def model_error(self, target: RecordType, solution: Any) -> float | None:
         """Estimated error of a solution where the target is: position relative to the length of the rod, and rad.
 
         Returns:
             None where it was not estimated; by default that of the shapes of all rods.
         """
-        return solution.shape_error_estimate
+        error: float | None = solution.largest_error
+        return error
 
     def points(self, target: RecordType) -> Sequence[Sequence[float]]:
         """Points that a figure marks, world axes, m; none by default."""
@@ -115,27 +120,27 @@ class _OfFrame(Target[FrameType]):
         """Its position, and zeros for the orientation."""
         return np.array([*target.position, 0.0, 0.0, 0.0, 0.0])
 
-    def error(self, target: Any, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+    def error(self, target: Any, model: SystemFunctions, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
         """Distance over the length, 3×1."""
         position, _ = self._pose(target, model, x, inputs)
         return (position - wanted[:3]) / length_of(model, target)
 
-    def gap(self, target: Any, solution: Solution) -> TargetMiss:
+    def gap(self, target: Any, solution: Equilibrium[Any]) -> TargetMiss:
         """The distance."""
         what, position, _ = self._reached(target, solution)
         return TargetMiss(what, float(np.linalg.norm(position - np.array(target.position))), None)
 
-    def model_error(self, target: Any, solution: Solution) -> float | None:
+    def model_error(self, target: Any, solution: Equilibrium[Any]) -> float | None:
         """That of the tips, of which a body is held; of a section in between that of the shapes."""
         if target.rod is not None and target.at != 1.0:
-            return solution.shape_error_estimate
+            return solution.largest_error
         return solution.error_estimate
 
     def points(self, target: Any) -> Sequence[Sequence[float]]:
         """Its position."""
         return [target.position]
 
-    def _pose(self, target: Any, model: Model, x: Matrix, inputs: Matrix) -> list[Matrix]:
+    def _pose(self, target: Any, model: Any, x: Matrix, inputs: Matrix) -> list[Matrix]:
         """Position and quaternion of what the target is for."""
         if target.rod is None:
             outputs = model.body[str(target.body)](x, inputs)
@@ -146,16 +151,18 @@ class _OfFrame(Target[FrameType]):
             outputs = model.shape[target.rod](x, inputs, target.at)
         return list(outputs[:2])
 
-    def _reached(self, target: Any, solution: Solution) -> tuple[str, FloatArray, FloatArray]:
+    def _reached(self, target: Any, solution: Any) -> tuple[str, FloatArray, FloatArray]:
         """Name of the section or body of the target, its position, shape (3,), and its quaternion, shape (1, 4)."""
         if target.rod is None:
             what = f"body {target.body}"
             pose = solution.body(target.body)
+        elif target.at == 1.0:
+            what = f"tip of {target.rod}"
+            pose = solution.tip(target.rod)
         else:
-            section = "tip" if target.at == 1.0 else f"section X = {target.at:g}"
-            what = f"{section} of {target.rod}"
+            what = f"section X = {target.at:g} of {target.rod}"
             pose = solution.pose(np.array([target.at]), target.rod)
-        return what, pose.position[0], pose.quaternion
+        return what, np.ravel(pose.position), np.reshape(pose.quaternion, (1, 4))
 
 
 @final
@@ -177,13 +184,15 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
         """Its position and quaternion."""
         return np.array([*target.position, *target.quaternion])
 
-    def error(self, target: scenes.PoseTarget, model: Model, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
+    def error(
+        self, target: scenes.PoseTarget, model: SystemFunctions, wanted: Matrix, x: Matrix, inputs: Matrix
+    ) -> Matrix:
         """Distance over the length, and the chord of the angle along its axis, 6×1."""
         position, quaternion = self._pose(target, model, x, inputs)
         position_error = (position - wanted[:3]) / length_of(model, target)
         return ca.vertcat(position_error, 2 * _half_rotation(wanted[3:], quaternion))
 
-    def gap(self, target: scenes.PoseTarget, solution: Solution) -> TargetMiss:
+    def gap(self, target: scenes.PoseTarget, solution: Equilibrium[Any]) -> TargetMiss:
         """The distance and the angle."""
         what, position, quaternion = self._reached(target, solution)
         distance = float(np.linalg.norm(position - np.array(target.position)))

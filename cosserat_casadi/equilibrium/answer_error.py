@@ -11,18 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.maths.pose_change import change_size, rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.strain import DiscreteRod
+
+Answer = TypeVar("Answer", bound=Equilibrium[Any])
 
 SAFETY = 1.1
 """Factor on the change that a richer model makes, which is not exact either."""
@@ -135,42 +137,22 @@ def estimated(solution: Solution) -> Solution:
     )
 
 
-def with_tolerance_note(solution: Solution) -> Solution:
+def with_tolerance_note(solution: Answer) -> Answer:
     """A solution whose message tells an estimated error above the tolerance."""
     return replace(solution, message=solution.message + _tolerance_note(solution))
 
 
-def _tolerance_note(solution: Solution) -> str:
+def _tolerance_note(solution: Equilibrium[Any]) -> str:
     """A sentence for an answer whose estimated error is above the tolerance; empty for other answers."""
     if solution.within_tolerance is not False or not solution.converged:
         return ""
-    accuracy = solution.model.scene.accuracy
-    error = solution.shape_error_estimate if accuracy.shape else solution.error_estimate
-    advice = remedy(solution)
+    error = solution.judged_error
     if error == UNKNOWN:
-        return f" Its error is not known, and may be as large as the rod; {advice}"
+        return f" Its error is not known, and may be as large as the rod; {solution.remedy}"
+    tolerance = solution.model.scene.accuracy.tolerance
     return (
-        f" Its estimated error, {error:.2g} of the length, is above the tolerance of {accuracy.tolerance:g}; {advice}"
+        f" Its estimated error, {error:.2g} of the length, is above the tolerance of {tolerance:g}; {solution.remedy}"
     )
-
-
-def remedy(solution: Solution) -> str:
-    """The remedy for an answer whose error is above the tolerance."""
-    accuracy = solution.model.scene.accuracy
-    if accuracy.fixed_by_hand:
-        return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
-    if _is_in_chosen_ranges(solution):
-        return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
-    return "the modes were chosen for other inputs: choose them for the range of these inputs."
-
-
-def _is_in_chosen_ranges(solution: Solution) -> bool:
-    """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
-    ranges = solution.model.scene.accuracy.chosen_ranges
-    indices = column_indices(solution.model.inputs)
-    if not ranges or not ranges.keys() <= indices.keys():
-        return False
-    return all(low <= solution.inputs[indices[column]] <= high for column, (low, high) in ranges.items())
 
 
 def answer_error(solution: Solution) -> AnswerError:

@@ -6,7 +6,6 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Protocol
 
 import casadi as ca
 import numpy as np
@@ -14,35 +13,12 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_layers import thinnest
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
 FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
-
-
-class PathFunctions(Protocol):
-    """The functions of a model, of rods or of concentric tubes, that a path of equilibria needs."""
-
-    @property
-    def path_residual(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ residual."""
-
-    @property
-    def path_jacobian(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ its derivative with x."""
-
-    @property
-    def path_rate(self) -> ca.Function:
-        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ its rate at fixed x."""
-
-    @property
-    def step_weights(self) -> FloatArray:
-        """How much each unknown counts in the length of a step, shape (size,)."""
-
-    @property
-    def is_assembly(self) -> bool:
-        """Whether the Jacobian is solved with as a sparse matrix."""
 
 
 def continuation_limits(model: Model) -> ContinuationSettings:
@@ -94,7 +70,7 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     )
 
 
-def input_path(model: PathFunctions, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
+def input_path(model: SystemFunctions, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
     """The path from an equilibrium of the scene to other inputs, on the straight line between them.
 
     Args:
@@ -136,7 +112,7 @@ def first_step(model: Model) -> float:
     return 1.0
 
 
-def _solvable(model: PathFunctions, jacobian: ca.DM) -> Jacobian:
+def _solvable(model: SystemFunctions, jacobian: ca.DM) -> Jacobian:
     """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
     if model.is_assembly:
         return jacobian

@@ -5,8 +5,9 @@ Fields between the nodes are interpolants through them: docs/theory.md, section 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -14,8 +15,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.result import Result
+
+ModelType = TypeVar("ModelType", bound=SystemFunctions)
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ class Contact:
 
 
 @dataclass(frozen=True, repr=False)
-class Solution(Result):
+class Equilibrium(Result, ABC, Generic[ModelType]):
     """The end of a solve; an equilibrium only where ``converged`` says so.
 
     Attributes:
@@ -99,21 +104,14 @@ class Solution(Result):
         x: unknowns, shape (model.size,).
         outcome: how the solve ended.
         message: a sentence for the user.
-        residual_norm: relative norm of the dimensionless residual at x, computed again at the end.
-        iterations: Newton iterations, all load steps together; of a scene, on all discretisations that were tried.
-        load_factor: share of the loads that was reached, 1 unless the load stalled.
-        smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
-        stable: whether every admissible variation costs energy; None where that has no meaning.
-        error_estimate: estimated error of the poses of the tips, as distance over the rod length and as angle in rad,
-            and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
+        residual_norm: size of the residual at x, computed again at the end.
+        iterations: Newton iterations of the search.
+        load_factor: share of the loads, or of the way, that was reached; 1 unless the load stalled.
+        error_estimate: estimated error of the poses of the tips, relative to a length and in rad; None if not
             estimated.
-        shape_error_estimate: the same over all sections, those between nodes included.
-        wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
-            that are unknown; None if not estimated.
-        contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
     """
 
-    model: Model
+    model: ModelType
     inputs: FloatArray
     x: FloatArray
     outcome: Outcome
@@ -121,17 +119,36 @@ class Solution(Result):
     residual_norm: float
     iterations: int
     load_factor: float = 1.0
-    smallest_eigenvalue: float | None = None
-    stable: bool | None = None
     error_estimate: float | None = None
-    shape_error_estimate: float | None = None
-    wrench_error_estimate: float | None = None
-    contacts: tuple[Contact, ...] = ()
+
+    @property
+    @abstractmethod
+    def stable(self) -> bool | None:
+        """Whether it is stable; None where that has no meaning."""
+
+    @property
+    @abstractmethod
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+
+    @abstractmethod
+    def tip(self, name: str | None = None) -> Any:
+        """Pose of the tip of a rod, or a tube: its position and quaternion."""
 
     @property
     def converged(self) -> bool:
         """Whether x is an equilibrium to the solver's tolerance."""
         return self.outcome is Outcome.CONVERGED
+
+    @property
+    def judged_error(self) -> float | None:
+        """Estimated error that the scene's tolerance is for; None if not estimated."""
+        return self.error_estimate
+
+    @property
+    def largest_error(self) -> float | None:
+        """Estimated error of the tips, or where it is known of all sections; None if not estimated."""
+        return self.error_estimate
 
     @property
     def within_tolerance(self) -> bool | None:
@@ -145,16 +162,76 @@ class Solution(Result):
             return None
         if not self.converged:
             return False
-        error = self.shape_error_estimate if accuracy.shape else self.error_estimate
-        if error is None:
+        if self.judged_error is None:
             return None
         # Written so that an estimate which is not a number counts as too large.
-        return error <= accuracy.tolerance
+        return self.judged_error <= accuracy.tolerance
 
-    def tip(self, rod: str | None = None) -> SolvedPoses:
+    def unresolved(self) -> Self:
+        """The same unknowns, as an equilibrium of the discrete model alone."""
+        return replace(self, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value)
+
+
+@dataclass(frozen=True, repr=False)
+class Solution(Equilibrium[Model]):
+    """The end of a solve of rods; an equilibrium only where ``converged`` says so.
+
+    The residual norm is that of the dimensionless residual, relative. The iterations of a scene are those on all
+    discretisations that were tried. The error estimate is that of the poses of the tips, as distance over the rod
+    length and as angle in rad, and of the lengths of cables over the rod length; of held rods at sections between the
+    ends too.
+
+    Attributes:
+        smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
+        stable: whether every admissible variation costs energy; None where that has no meaning.
+        shape_error_estimate: the error estimate over all sections, those between nodes included.
+        wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
+            that are unknown; None if not estimated.
+        contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
+    """
+
+    smallest_eigenvalue: float | None = None
+    stable: bool | None = None
+    shape_error_estimate: float | None = None
+    wrench_error_estimate: float | None = None
+    contacts: tuple[Contact, ...] = ()
+
+    @property
+    def judged_error(self) -> float | None:
+        """Estimated error of the tips, or of the shape where the scene asks for that; None if not estimated."""
+        return self.shape_error_estimate if self.model.scene.accuracy.shape else self.error_estimate
+
+    @property
+    def largest_error(self) -> float | None:
+        """Estimated error over all sections; None if not estimated."""
+        return self.shape_error_estimate
+
+    def unresolved(self) -> Self:
+        """The same unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
+        return replace(super().unresolved(), stable=None)
+
+    @property
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+        if self.model.scene.accuracy.fixed_by_hand:
+            return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
+        if self._is_in_chosen_ranges:
+            return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
+        return "the modes were chosen for other inputs: choose them for the range of these inputs."
+
+    @property
+    def _is_in_chosen_ranges(self) -> bool:
+        """Whether modes were chosen for ranges that have the inputs inside; not of ranges of parameters."""
+        ranges = self.model.scene.accuracy.chosen_ranges
+        indices = column_indices(self.model.inputs)
+        if not ranges or not ranges.keys() <= indices.keys():
+            return False
+        return all(low <= self.inputs[indices[column]] <= high for column, (low, high) in ranges.items())
+
+    def tip(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip."""
         tip = np.array([1.0])
-        return self.pose(tip, rod)
+        return self.pose(tip, name)
 
     def body(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rigid body, as that of one section; the name may be left out where there is one body.

@@ -28,6 +28,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint, follow
 from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
@@ -228,7 +229,7 @@ def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike |
     return model.pack(model.inputs.split(values))
 
 
-def check_potential(model: Model, inputs: FloatArray) -> None:
+def check_potential(model: SystemFunctions, inputs: FloatArray) -> None:
     """Refuse to look for a stable equilibrium where the sign of an energy does not tell which is.
 
     Raises:

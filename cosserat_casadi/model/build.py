@@ -120,6 +120,16 @@ class Model(ModelFunctions, MotionFunctions):
         return self.discrete.size
 
     @property
+    def lengths(self) -> dict[str, float]:
+        """Length of each rod in the scene, m."""
+        return {rod.name: rod.length for rod in self.scene.rods}
+
+    @property
+    def hessian_is_cheap(self) -> bool:
+        """Whether an optimiser is faster with exact second derivatives: it is."""
+        return True
+
+    @property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces less."""
         return self.discrete.unknowns.step_weights

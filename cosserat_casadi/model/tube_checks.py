@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
-
-
-class OfScene(Protocol):
-    """A model of rods or of concentric tubes."""
-
-    @property
-    def scene(self) -> scenes.Scene:
-        """The scene of the model."""
+from cosserat_casadi.model.system_functions import OfScene
 
 
 def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
@@ -25,5 +16,5 @@ def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
     scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     if scene.tubes:
         problem = "this works on rods, and the scene has concentric tubes"
-        remedy = "solve, path, sweep, export and check take them"
+        remedy = "solve, path, inverse, sweep, export and check take them"
         raise SceneError(Problem("tubes", problem, remedy))

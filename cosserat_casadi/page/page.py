@@ -13,7 +13,6 @@ from typing import Any
 
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.codegen.texts import fill
-from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
@@ -57,7 +56,7 @@ def export_page(solution: Solution, file: Path, asked: Given | None = None) -> P
 def asked_accuracy(solution: Solution) -> dict[str, Any]:
     """The tolerance by which errors are judged, None where none has a meaning, and the remedy above it."""
     accuracy = solution.model.scene.accuracy
-    return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": remedy(solution)}
+    return {"tolerance": accuracy.tolerance if accuracy.binds else None, "remedy": solution.remedy}
 
 
 def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:

@@ -21,9 +21,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.sections import SHAPES, sizes_along
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
-from cosserat_casadi.page.slider_ranges import movable, sliders
+from cosserat_casadi.page.slider_ranges import Slider, movable, sliders
 from cosserat_casadi.plots.arrows import STYLES
 from cosserat_casadi.plots.colours import BODIES, OBSTACLES, TARGETS, actuator_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners
@@ -52,29 +53,43 @@ def page_facts(solution: Solution, model: Model | None = None, asked: Given | No
     scene = model.scene
     shapes = rod_shapes(solution)
     points = _extent_points(solution, shapes.points)
-    of_inputs = sliders(model, asked)
+    return {
+        **facts_of_every_page(model, sliders(model, asked), points),
+        "layout": drawn_layout(model),
+        "poses": [*({"rod": rod} for rod in model.discrete.rods), *({"body": body.name} for body in scene.bodies)],
+        "rods": {rod.name: _rod(scene, rod, i) for i, rod in enumerate(scene.rods)},
+        "unloaded": [rounded(line[::STILL]) for line in shapes.unloaded.values()],
+        "actuators": {actuator.name: _actuator(actuator, i) for i, actuator in enumerate(scene.actuators)},
+        "bodies": {body.name: _body(scene, body) for body in scene.bodies},
+        "held": [rounded(np.array(support.position)) for support in scene.supports],
+        "derivatives": True,
+        "obstacles": [_obstacle(obstacle, solution, shapes) for obstacle in scene.obstacles],
+        "planar": all(set(rod.admitted) <= IN_PLANE for rod in scene.rods) and bool(np.ptp(points[:, 1]) == 0.0),
+        "stability": _stability(model),
+    }
+
+
+def facts_of_every_page(model: SystemFunctions, of_inputs: Sequence[Slider], points: FloatArray) -> dict[str, Any]:
+    """Facts of a page of rods or of concentric tubes.
+
+    Args:
+        model: whose inputs are moved.
+        of_inputs: a slider for each number of the inputs.
+        points: that the picture must hold, shape (k, 3), m.
+    """
+    scene = model.scene
+    by_hand = movable(model)
     return {
         "title": scene.title or "Cosserat rods",
         "unknowns": model.size,
         "sliders": [asdict(slider) for slider in of_inputs],
-        "hand": [slider.index for slider in of_inputs if slider.input in movable(model)],
-        "layout": drawn_layout(model),
-        "poses": [*({"rod": rod} for rod in model.discrete.rods), *({"body": body.name} for body in scene.bodies)],
-        "rods": {rod.name: _rod(scene, rod, i) for i, rod in enumerate(scene.rods)},
-        "unloaded": [_rounded(line[::STILL]) for line in shapes.unloaded.values()],
-        "actuators": {actuator.name: _actuator(actuator, i) for i, actuator in enumerate(scene.actuators)},
-        "bodies": {body.name: _body(scene, body) for body in scene.bodies},
-        "held": [_rounded(np.array(support.position)) for support in scene.supports],
-        "targets": [_rounded(np.array(point)) for point in _target_points(scene)],
-        "derivatives": True,
-        "obstacles": [_obstacle(obstacle, solution, shapes) for obstacle in scene.obstacles],
+        "hand": [slider.index for slider in of_inputs if slider.input in by_hand],
+        "targets": [rounded(np.array(point)) for point in target_points(scene)],
         "colours": _colours(),
         "arrow_lengths": {sort: style.share for sort, style in STYLES.items()},
         "arrow_units": dict(UNITS),
-        "planar": all(set(rod.admitted) <= IN_PLANE for rod in scene.rods) and bool(np.ptp(points[:, 1]) == 0.0),
-        "least": _rounded(points.min(axis=0)),
-        "most": _rounded(points.max(axis=0)),
-        "stability": _stability(model),
+        "least": rounded(points.min(axis=0)),
+        "most": rounded(points.max(axis=0)),
     }
 
 
@@ -83,7 +98,7 @@ def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
     scene = solution.model.scene
     parts = [points]
     parts += [solution.body(body.name).position for body in scene.bodies]
-    parts += [np.array([point]) for point in _target_points(scene)]
+    parts += [np.array([point]) for point in target_points(scene)]
     return np.concatenate(parts)
 
 
@@ -108,7 +123,7 @@ def _section(section: scenes.Section | None) -> dict[str, Any]:
     half_widths = SHAPES[section.shape].half_widths(sizes_along(section, SECTIONS))
     if half_widths is None:
         return {}
-    x, y = (_rounded(known(half_width)) for half_width in half_widths)
+    x, y = (rounded(known(half_width)) for half_width in half_widths)
     return {"shape": "rectangle" if section.radius_key is None else "circle", "x": x, "y": y}
 
 
@@ -128,7 +143,7 @@ def _actuator(actuator: Any, index: int) -> dict[str, Any]:
 def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
     """Corners of the polygon that stands for a body, and its joints, in its own axes, m."""
     joints = [joint.position for joint in scene.joints if joint.body == body.name]
-    return {"corners": _rounded(body_corners(scene, body)), "joints": _rounded(np.array(joints))}
+    return {"corners": rounded(body_corners(scene, body)), "joints": rounded(np.array(joints))}
 
 
 def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:
@@ -138,7 +153,7 @@ def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodSh
     """
     (near,) = seen_positions(solution, obstacle, shapes.points.mean(axis=0)[None])
     mesh = SURFACES[obstacle.kind].mesh(obstacle, near, shapes.size)
-    return {"name": obstacle.name, "body": obstacle.body, "net": _rounded(mesh)}
+    return {"name": obstacle.name, "body": obstacle.body, "net": rounded(mesh)}
 
 
 def _colours() -> dict[str, str]:
@@ -147,7 +162,8 @@ def _colours() -> dict[str, str]:
     return {"body": BODIES, "target": TARGETS, "obstacle": OBSTACLES, **of_arrows}
 
 
-def _target_points(scene: scenes.Scene) -> list[Sequence[float]]:
+def target_points(scene: scenes.Scene) -> list[Sequence[float]]:
+    """Points of the targets of a scene, world axes, m."""
     points: list[Sequence[float]] = []
     for target in scene.targets:
         points += TARGET_KINDS[target.kind].points(target)
@@ -163,6 +179,6 @@ def _stability(model: Model) -> dict[str, Any] | None:
     return {"free": allowed.free.tolist(), "held": allowed.held.tolist(), "units": allowed.units.tolist()}
 
 
-def _rounded(values: FloatArray) -> Any:
+def rounded(values: FloatArray) -> Any:
     """Numbers with few digits, as nested lists."""
     return np.vectorize(lambda value: float(f"{value:.{DIGITS}g}"), otypes=[float])(values).tolist()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from cosserat_casadi.accuracy.fixing import with_accuracy
 from cosserat_casadi.accuracy.ranges import Given, input_ranges
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.scene.input_fields import column_suffixes
 
 
@@ -60,10 +61,10 @@ def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
     return made
 
 
-def movable(model: Model) -> list[str]:
-    """Inputs that dragging the tip moves: inputs with bounds, else the actuators' inputs, else all."""
+def movable(model: SystemFunctions) -> list[str]:
+    """Inputs that dragging the tip moves: inputs with bounds, else those of actuators and of tubes, else all."""
     bounded = {bound.input for bound in model.scene.bounds}
-    actuators = {actuator.name for actuator in model.scene.actuators}
-    of_actuators = {entry.name for entry, _ in model.inputs if entry.owner in actuators and not entry.of_rod}
-    chosen = bounded or of_actuators or set(model.inputs.names)
+    drives = {owner.name for owner in (*model.scene.actuators, *model.scene.tubes)}
+    of_drives = {entry.name for entry, _ in model.inputs if entry.owner in drives and not entry.of_rod}
+    chosen = bounded or of_drives or set(model.inputs.names)
     return [name for name in model.inputs.names if name in chosen]

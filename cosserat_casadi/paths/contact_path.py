@@ -40,7 +40,7 @@ AT_SECTION = 1e-4
 """Distance of a place of contact from a section with a load at which a path that ends has been stopped by it."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class ContactPath(EquilibriumPath):
     """A path along which contacts come, go, slide and turn from points into lines and back.
 
@@ -323,7 +323,6 @@ def follow_contact_path(
     empty = ContactPath(
         model=model,
         name=name,
-        value=np.zeros(0),
         base=base,
         change=change,
         outcome=PathOutcome.NO_START,

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
+from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.numerics.trace import PathOutcome
+from cosserat_casadi.numerics.trace import PathOutcome, Trace
 from cosserat_casadi.result import Result
+
+EventType = TypeVar("EventType")
 
 
 @dataclass(frozen=True)
@@ -79,55 +82,39 @@ CONTACT_WORDS = {
 """Kinds of events that are changes of contact, in words."""
 
 
-@dataclass(frozen=True, repr=False)
-class EquilibriumPath(Result):
-    """Equilibria of a model along one of its inputs.
+@dataclass(frozen=True, repr=False, kw_only=True)
+class InputPath(Result, Generic[ModelType, EventType]):
+    """Equilibria of a model, of rods or of concentric tubes, while one of its inputs moves.
 
     Attributes:
         model: the model.
         name: the input that is followed.
-        value: its value at factor 1, shaped as the input.
         base: stacked inputs at factor 0, shape (model.inputs.size,).
         change: stacked inputs at factor 1 less those at factor 0, shape (model.inputs.size,).
         outcome: how the path ended.
         message: a sentence for the user.
-        factor: share of the value at each of k points in the order of travel, shape (k,).
+        factor: share of the way at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
-        smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
-        neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
         events: limit points and bifurcations in the order of travel.
-        branch: index of the first point on the branch that was switched to; None on the first path.
-        error_estimate: estimated error of the events' factors, relative, and of the tips there and at the end,
+        error_estimate: estimated error of where the events lie, relative, and of the tips there and at the end,
             relative to the lengths; None if not estimated.
     """
 
-    model: Model
+    model: ModelType
     name: str
-    value: FloatArray
     base: FloatArray
     change: FloatArray
     outcome: PathOutcome
     message: str
     factor: FloatArray
     x: FloatArray
-    smallest_eigenvalue: FloatArray | None
-    neutral: npt.NDArray[np.bool_] | None
-    events: tuple[PathEvent, ...]
-    branch: int | None = None
+    events: tuple[EventType, ...]
     error_estimate: float | None = None
 
     @property
     def converged(self) -> bool:
         """Whether factor 1 was reached as asked."""
         return self.outcome is PathOutcome.CONVERGED
-
-    @property
-    def stable(self) -> npt.NDArray[np.bool_] | None:
-        """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
-        if self.smallest_eigenvalue is None or self.neutral is None:
-            return None
-        every_variation_costs = self.smallest_eigenvalue > 0.0
-        return every_variation_costs | self.neutral
 
     @property
     def all_inputs(self) -> FloatArray:
@@ -138,6 +125,51 @@ class EquilibriumPath(Result):
         """Stacked inputs at a factor."""
         change = factor * self.change
         return self.base + change
+
+
+def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
+    """The events of a trace as those of a path.
+
+    Args:
+        traced: the computed part of the curve.
+        scale: units of the unknowns along the curve, shape (size,).
+    """
+    lengths = [point.length for point in traced.points]
+    events = []
+    for event in traced.events:
+        # An event that is a point of the path, where a branch leaves, lies before what follows it.
+        position = int(np.searchsorted(lengths, event.point.length, side="right"))
+        x = event.point.x * scale
+        events.append(PathEvent(event.kind, event.point.load_factor, x, event.multiplicity, position))
+    return tuple(events)
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class EquilibriumPath(InputPath[Model, PathEvent]):
+    """Equilibria of rods along one of their inputs, which grows from zero.
+
+    Attributes:
+        smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
+        neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
+        branch: index of the first point on the branch that was switched to; None on the first path.
+    """
+
+    smallest_eigenvalue: FloatArray | None
+    neutral: npt.NDArray[np.bool_] | None
+    branch: int | None = None
+
+    @property
+    def value(self) -> FloatArray:
+        """Value of the input at factor 1, shaped as the input."""
+        return self.model.inputs.unpack(self.change)[self.name]
+
+    @property
+    def stable(self) -> npt.NDArray[np.bool_] | None:
+        """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
+        if self.smallest_eigenvalue is None or self.neutral is None:
+            return None
+        every_variation_costs = self.smallest_eigenvalue > 0.0
+        return every_variation_costs | self.neutral
 
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path; none in a scene without obstacles."""

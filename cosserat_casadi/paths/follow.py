@@ -24,11 +24,11 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
-from cosserat_casadi.numerics.events import DETERMINANT, Arc, Event
+from cosserat_casadi.numerics.events import DETERMINANT, Arc
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,6 @@ class _Followed:
         return EquilibriumPath(
             model=self.model,
             name=self.name,
-            value=self.value(),
             base=self.base,
             change=self.change,
             outcome=outcome,
@@ -131,40 +130,8 @@ class _Followed:
             x=y[:, :-1] * self.scale,
             smallest_eigenvalue=smallest_eigenvalue,
             neutral=neutral,
-            events=self._events(traced),
+            events=path_events(traced, self.scale),
             branch=traced.branch,
-        )
-
-    def value(self) -> FloatArray:
-        """The followed input at the load factor 1, shaped as the input."""
-        layout = self.model.inputs
-        index = layout.names.index(self.name)
-        shape = layout.defaults[index].shape
-        stacked = self.change[layout.slices[self.name]]
-        return stacked.reshape(shape, order="F")
-
-    def _events(self, traced: Trace) -> tuple[PathEvent, ...]:
-        """The events of a trace as those of the path."""
-        lengths = np.array([point.length for point in traced.points])
-        events = [self._event(event, lengths) for event in traced.events]
-        return tuple(events)
-
-    def _event(self, event: Event, lengths: FloatArray) -> PathEvent:
-        """An event of the curve as one of the path.
-
-        Args:
-            event: of the curve in scaled unknowns.
-            lengths: arclengths of the points of the path, ascending.
-        """
-        point = event.point
-        # An event that is a point of the path, where a branch leaves, lies before what follows it.
-        position = np.searchsorted(lengths, point.length, side="right")
-        return PathEvent(
-            kind=event.kind,
-            factor=point.load_factor,
-            x=point.x * self.scale,
-            multiplicity=event.multiplicity,
-            position=int(position),
         )
 
 
@@ -204,7 +171,7 @@ def follow_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )
         message = _sentence(path.outcome, path.factor) + path.stopped_at
-        return replace(path, value=followed.value(), message=message)
+        return replace(path, message=message)
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero, estimate_error=False)
     if not start.converged:

@@ -24,8 +24,8 @@ from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.follow import follow_path
+from cosserat_casadi.paths.tube_path import TubePath, follow_tubes
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
-from cosserat_casadi.tubes.tube_path import TubePath, follow_tubes
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 MODES = (6, 9, 12, 16, 21, 28, 36)

@@ -32,6 +32,7 @@ from cosserat_casadi.plots.scenery import (
     draw_targets,
 )
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
+from cosserat_casadi.results.presentation import figure_of
 
 
 def plot_solution(solution: Solution) -> Any:
@@ -89,8 +90,8 @@ def _columns(pose: SolvedPoses) -> Poses:
 
 
 def plot_inverse(inverse: Inverse) -> Any:
-    """Figure of an inverse problem: the equilibrium at its inputs, with the targets; as :func:`plot_solution`."""
-    return plot_solution(inverse.solution)
+    """Figure of an inverse problem: the equilibrium at its inputs, with the targets."""
+    return figure_of(inverse.solution)
 
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:
@@ -101,7 +102,7 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_bodies(canvas, solution)
     draw_disks(canvas, solution)
     draw_arrows(canvas, arrows)
-    draw_targets(canvas, solution)
+    draw_targets(canvas, solution.model.scene)
     canvas.label_axes()
     canvas.equalise(shapes.points)
 

@@ -214,10 +214,10 @@ def disk_rim(row: Disks) -> FloatArray:
     return np.concatenate(faces)
 
 
-def draw_targets(canvas: Canvas, solution: Solution) -> None:
+def draw_targets(canvas: Canvas, scene: Scene) -> None:
     """Mark the points that an inverse problem wants to reach."""
     points: list[Sequence[float]] = []
-    for target in solution.model.scene.targets:
+    for target in scene.targets:
         points += TARGET_KINDS[target.kind].points(target)
     if points:
         canvas.markers(np.array(points), label="targets", **TARGET_STYLE)

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.scenery import draw_targets
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
@@ -59,6 +59,7 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
         _draw_angles(panel, equilibrium, number, several=len(solutions) > 1)
     # Loads that follow a tube turn with it: those of the first equilibrium are shown.
     draw_arrows(canvas, load_arrows(solutions[0]))
+    draw_targets(canvas, solutions[0].model.scene)
     canvas.label_axes()
     canvas.equalise(points)
     panel.set_xlabel("distance from the plate along the centre line, m")
@@ -107,7 +108,9 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
         here = _between(shape.distance, start, end)
         tubes = int(np.sum(reaches >= end))
         width = WIDEST * tubes / len(reaches)
-        line = _curve(shape.distance[here], shape.position[here], shape.quaternion[here])
+        stations = shape.distance[here]
+        between = np.linspace(stations[:-1], stations[1:], DRAWN, axis=1).ravel()
+        line, _ = shape.between(between)
         canvas.line(line, color=colour, linestyle=stroke, linewidth=width, label=label)
         label = None
 
@@ -117,26 +120,6 @@ def _between(distance: FloatArray, start: float, end: float) -> npt.NDArray[np.b
     # Distances are sums of steps: where a tube ends they are off by rounding.
     slack = 1e-9 * float(distance.max())
     return (distance >= start - slack) & (distance <= end + slack)
-
-
-def _curve(distance: FloatArray, position: FloatArray, quaternion: FloatArray) -> FloatArray:
-    """Points along a centre line between the few stations that are computed: cubics with its tangents there.
-
-    Args:
-        distance: of the stations along the line, ascending, shape (k,), m.
-        position: shape (k, 3), m.
-        quaternion: of the frames, whose z is the tangent, shape (k, 4).
-    """
-    tangent = quaternion_to_matrix(quaternion.T)[:, 2].T
-    share = np.linspace(0.0, 1.0, DRAWN)[:, None]
-    rising = share**2 * (3.0 - 2.0 * share)
-    leaving = share * (1.0 - share) ** 2
-    arriving = share**2 * (share - 1.0)
-    parts = []
-    for k, step in enumerate(np.diff(distance)):
-        chord = position[k] + rising * (position[k + 1] - position[k])
-        parts.append(chord + step * (leaving * tangent[k] + arriving * tangent[k + 1]))
-    return np.concatenate([position[:1], *parts])
 
 
 def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:
@@ -196,7 +179,7 @@ def plot_tube_path(path: TubePath) -> Any:
     if path.converged:
         colour = PLAIN_TEXT
     left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
-    add_title(figure, path.title)
+    add_title(figure, path.model.scene.title)
     return figure
 
 

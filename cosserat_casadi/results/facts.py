@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.results.presentation import facts_of
 
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
-    from cosserat_casadi.equilibrium.solution import Solution
+    from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
     from cosserat_casadi.estimation import Estimate
     from cosserat_casadi.identification import Identification
     from cosserat_casadi.motion.trajectory import Motion
     from cosserat_casadi.motion.vibration_modes import Modes
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+    from cosserat_casadi.paths.tube_path import TubePath
     from cosserat_casadi.sweeps.outcome_table import Sweep
     from cosserat_casadi.sweeps.sobol import SobolIndices
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-    from cosserat_casadi.tubes.tube_path import TubePath
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 Facts = list[tuple[str, str]]
@@ -35,15 +36,26 @@ MOST_OF_A_KIND = 4
 
 def solution_facts(solution: Solution) -> Titled:
     """Outcome, tips, error and stability of an equilibrium."""
-    scene = solution.model.scene
-    error = solution.shape_error_estimate if scene.accuracy.shape else solution.error_estimate
-    facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
-    rods = solution.model.discrete.rods
-    facts += _first("tips", [(f"tip of {name}", _point(solution.tip(name).position[0])) for name in rods])
-    facts.append(("error", _error(error, scene.accuracy.tolerance)))
-    facts.append(("stable", _stable(solution.stable, solution.smallest_eigenvalue)))
-    if scene.obstacles:
+    title, facts = _equilibrium_facts(solution, solution.smallest_eigenvalue)
+    if solution.model.scene.obstacles:
         facts.append(("contacts", str(len(solution.contacts))))
+    return title, facts
+
+
+def tube_facts(solution: TubeSolution) -> Titled:
+    """Outcome, tips, error, stability and energy of an equilibrium of tubes."""
+    title, facts = _equilibrium_facts(solution, None)
+    return title, [*facts, ("energy", f"{solution.energy:.6g} J")]
+
+
+def _equilibrium_facts(solution: Equilibrium[Any], smallest_eigenvalue: float | None) -> Titled:
+    """Outcome, tips, error and stability of an equilibrium."""
+    scene = solution.model.scene
+    facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
+    tips = [(f"tip of {name}", _point(np.ravel(solution.tip(name).position))) for name in solution.model.lengths]
+    facts += _first("tips", tips)
+    facts.append(("error", _error(solution.judged_error, scene.accuracy.tolerance)))
+    facts.append(("stable", _stable(solution.stable, smallest_eigenvalue)))
     return scene.title, facts
 
 
@@ -91,7 +103,7 @@ def modes_facts(modes: Modes) -> Titled:
 
 def inverse_facts(inverse: Inverse) -> Titled:
     """Whether the targets are met, the gaps, and the inputs."""
-    title, facts = solution_facts(inverse.solution)
+    title, facts = facts_of(inverse.solution)
     gaps = []
     for gap in inverse.gaps:
         angle = "" if gap.angle is None else f", {gap.angle:.3g} rad"
@@ -155,17 +167,6 @@ def sobol_facts(indices: SobolIndices) -> Titled:
     return None, [*facts, *_first("results", leading)]
 
 
-def tube_facts(solution: TubeSolution) -> Titled:
-    """Outcome, tips, error and stability of an equilibrium of tubes."""
-    robot = solution.robot
-    facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
-    facts += _first("tips", [(f"tip of {name}", _point(tip.position)) for name, tip in solution.tips.items()])
-    facts.append(("error", _error(solution.error_estimate, robot.tolerance)))
-    facts.append(("stable", _stable(solution.stable, None)))
-    facts.append(("energy", f"{solution.energy:.6g} J"))
-    return robot.scene.title, facts
-
-
 def tube_equilibria_facts(equilibria: TubeEquilibria) -> Titled:
     """Energies and stability of all equilibria."""
     numbered = []
@@ -190,7 +191,7 @@ def tube_path_facts(path: TubePath) -> Titled:
         facts += _first("tips", [(f"tip of {name}", _point(tip.position)) for name, tip in last.tips.items()])
     facts.append(("events", _listed(f"{event.kind} at {event.value:.6g} {path.unit}" for event in path.events)))
     facts.append(("error", _error(path.error_estimate, tolerance)))
-    return path.title, facts
+    return path.model.scene.title, facts
 
 
 def _outcome(converged: bool, label: str, message: str) -> str:

@@ -14,8 +14,6 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
-from cosserat_casadi.results.tubes_file import tube_path_result, tube_path_table
-from cosserat_casadi.tubes.tube_path import TubePath
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
@@ -45,10 +43,8 @@ class _RodPoints:
         return {"tip": tip, "section": section}
 
 
-def path_result(path: EquilibriumPath | TubePath) -> dict[str, Any]:
+def path_result(path: EquilibriumPath) -> dict[str, Any]:
     """A path as the plain data of its file; a number that is not finite becomes null."""
-    if isinstance(path, TubePath):
-        return tube_path_result(path)
     data = {
         "schema": SCHEMA,
         "title": path.model.scene.title,
@@ -69,13 +65,8 @@ def path_result(path: EquilibriumPath | TubePath) -> dict[str, Any]:
     return plain_data
 
 
-def path_table(path: EquilibriumPath | TubePath) -> str:
-    """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod.
-
-    Of concentric tubes: the input, stability, energy, and the tips of all tubes.
-    """
-    if isinstance(path, TubePath):
-        return tube_path_table(path)
+def path_table(path: EquilibriumPath) -> str:
+    """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod."""
     tips = {name: path.tip(name) for name in path.model.discrete.rods}
     pose_columns = [f"{name}.{axis}" for name in tips for axis in POSE_COLUMNS]
     lines = io.StringIO()
@@ -92,7 +83,7 @@ def path_table(path: EquilibriumPath | TubePath) -> str:
     return lines.getvalue()
 
 
-def write_path_table(path: EquilibriumPath | TubePath, file: Path) -> None:
+def write_path_table(path: EquilibriumPath, file: Path) -> None:
     """Write the points of a path as CSV, whole or not at all."""
     write_atomically(file, path_table(path).encode())
 

@@ -118,7 +118,7 @@ PRESENTATIONS = {
         data="results.tubes_file:tube_path_result",
         facts="results.facts:tube_path_facts",
         figure="plots.tubes_plot:plot_tube_path",
-        tables={".csv": "results.path_file:write_path_table"},
+        tables={".csv": "results.tubes_file:write_tube_path_table"},
     ),
 }
 """Presentations by the class of the result; a class without an entry is presented as its base."""
@@ -149,6 +149,12 @@ def figure_of(result: Any, **options: Any) -> Any:
         PlotUnavailableError: matplotlib is not installed.
     """
     return _function(presentation_of(result).figure)(result, **options)
+
+
+def facts_of(result: Any) -> tuple[str | None, list[tuple[str, str]]]:
+    """Title of the scene of a result, None where it has none, and what matters: labels and words."""
+    title, facts = _function(presentation_of(result).facts)(result)
+    return title, facts
 
 
 def write(result: Any, path: str | Path) -> None:
@@ -206,7 +212,7 @@ def _picture(result: Any) -> str:
 
 def _facts(result: Any) -> tuple[str, list[tuple[str, str]]]:
     """The class with the title of the scene where it has one; labels and words."""
-    title, facts = _function(presentation_of(result).facts)(result)
+    title, facts = facts_of(result)
     kind = type(result).__name__
     heading = f"{kind}: {title}" if title else kind
     return heading, facts

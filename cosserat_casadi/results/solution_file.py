@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,24 +15,13 @@ from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, pl
 
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
-    from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-    from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
 
 
-Solved: TypeAlias = "Solution | TubeSolution | TubeEquilibria"
-"""Solutions that a result file may hold: of rods, of concentric tubes, or all equilibria of these."""
-
-
-def result(solution: Solved) -> dict[str, Any]:
+def result(solution: Solution) -> dict[str, Any]:
     """A solution as the plain data of the result file; a number that is not finite becomes null."""
-    if not isinstance(solution, Solution):
-        # Imported here, because no scene of rods needs the modules of tubes.
-        from cosserat_casadi.results.tubes_file import tubes_result
-
-        return tubes_result(solution)
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)
@@ -130,6 +119,6 @@ def inverse_result(inverse: Inverse) -> dict[str, Any]:
             "angle_error_estimate": gap.angle_error,
         }
         targets.append(entry)
-    data = {**result(inverse.solution), "targets_met": inverse.met, "targets": targets}
+    data = {**inverse.solution.to_dict(), "targets_met": inverse.met, "targets": targets}
     plain_data: dict[str, Any] = plain(data)
     return plain_data

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
 from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubeEvent, TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
@@ -32,7 +34,7 @@ def tube_path_result(path: TubePath) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
-            "title": path.title,
+            "title": path.model.scene.title,
             "converged": path.converged,
             "outcome": path.outcome.label,
             "message": path.message,
@@ -62,6 +64,11 @@ def tube_path_table(path: TubePath) -> str:
         cells += [repr(float(entry)) for tip in solution.tips.values() for entry in tip.position]
         lines.append(",".join(cells))
     return "\n".join(lines) + "\n"
+
+
+def write_tube_path_table(path: TubePath, file: Path) -> None:
+    """Write the points of a path as CSV, whole or not at all."""
+    write_atomically(file, tube_path_table(path).encode())
 
 
 def _word(stable: bool | None) -> str:

@@ -33,7 +33,7 @@ class FrameTarget(TargetRecord):
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods", "body": "bodies"}
 
-    rod: str | None = Field(None, description="name of the rod; or body")
+    rod: str | None = Field(None, description="name of the rod, or of the tube; or body")
     at: Share = Field(1.0, description="abscissa X of the rod's section, without unit; the tip when left out")
     body: str | None = Field(None, description="name of the body; or rod")
 

@@ -14,7 +14,7 @@ from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
-BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds")
+BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds", "targets")
 """Keys of a scene that may stand beside tubes."""
 
 LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
@@ -160,6 +160,7 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
         yield Fault(("tubes", index, "translation"), "no tube stands out of the plate", "push one out: translation > 0")
     yield from _nesting_faults(scene)
     yield from _load_faults(scene)
+    yield from _target_faults(scene)
     yield from _weightless_tubes(scene)
 
 
@@ -184,6 +185,16 @@ def _load_faults(scene: SceneTables) -> Iterator[Fault]:
             first, _ = names[name]
             problem = f"{shown(name)} is already the name of tubes[{first}]"
             yield Fault(("loads", index, "name"), problem, "their inputs could not be told apart")
+
+
+def _target_faults(scene: SceneTables) -> Iterator[Fault]:
+    """Targets for other places of tubes than their tips."""
+    for index, target in scene.tables("targets"):
+        if target.get("kind") == "curve":
+            remedy = "of tubes, give the pose or the position of a tip"
+            yield Fault(("targets", index, "kind"), "is for points along a rod", remedy)
+        elif numbers_of(target.get("at", 1.0)) != [1.0]:
+            yield Fault(("targets", index, "at"), "is a place on a rod", "leave it out: of a tube it is the tip")
 
 
 def _spread_faults(load: Table) -> Iterator[Fault]:

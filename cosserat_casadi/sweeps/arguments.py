@@ -37,8 +37,8 @@ def argument_columns(
         values: of the table, shape (rows, columns).
         scratch: where they lie.
     """
-    # Rows of scenes with obstacles are not compiled.
-    if len(values) < COMPILED_FROM or tables.get("obstacles"):
+    # Rows of scenes with obstacles, and of tubes, are not compiled.
+    if len(values) < COMPILED_FROM or tables.get("obstacles") or tables.get("tubes"):
         return []
     # A column of one value is a constant, which costs nothing.
     low, high = column_ends(values, scratch)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
-from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.equilibrium.solution import Contact, Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -18,8 +19,11 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.load_checks import check_loads
-from cosserat_casadi.scene import parse_scene
+from cosserat_casadi.scene import Scene, parse_scene
 from cosserat_casadi.sweeps.outcome_table import ENDINGS
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs
 
 
 @dataclass(frozen=True)
@@ -40,10 +44,24 @@ class RowModel:
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
-        model = _model(self.scene)
-        columns = row_results(model.scene, estimate_errors=self.estimate_errors, stability=self.stability)
+        scene = _scene(self.scene)
+        columns = row_results(scene, estimate_errors=self.estimate_errors, stability=self.stability)
         width = len(columns)
         rows = []
+        for solution in self._of_tubes(inputs) if scene.tubes else self._of_rods(inputs):
+            judged = self._counted_in_measure(solution) if self.stability else None
+            rows.append(result_row(solution, width, judged, estimate_errors=self.estimate_errors))
+        return np.array(rows).reshape(len(inputs), width)
+
+    def _of_tubes(self, inputs: FloatArray) -> Iterator[TubeSolution]:
+        """Solutions of rows, from straight tubes each, with as many steps as the tolerance asks for."""
+        models = _tube_models(self.scene)
+        for row in inputs:
+            yield solve_inputs(models, row)
+
+    def _of_rods(self, inputs: FloatArray) -> Iterator[Solution]:
+        """Solutions of rows, on the discretisation of the scene."""
+        model = _model(self.scene)
         near: Solution | None = None
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
@@ -52,12 +70,12 @@ class RowModel:
             solution = solve(model, values, start=near, estimate_error=self.estimate_errors)
             if model.scene.touches_exactly and solution.converged:
                 near = solution
-            judged = self._counted_in_measure(solution) if self.stability else None
-            rows.append(result_row(solution, width, judged, estimate_errors=self.estimate_errors))
-        return np.array(rows).reshape(len(inputs), width)
+            yield solution
 
-    def _counted_in_measure(self, solution: Solution) -> Solution:
+    def _counted_in_measure(self, solution: Solution | TubeSolution) -> Solution | TubeSolution:
         """The same equilibrium with the unknowns that it has under the scaling of the measure."""
+        if isinstance(solution, TubeSolution):
+            return solution
         measured = _measured(self.scene, self.measure) if self.measure else None
         # What rods touch is among the unknowns of a solution in contact: those of the measure are others.
         if measured is None or not solution.converged or solution.model.scene.touches_exactly:
@@ -70,7 +88,7 @@ class RowModel:
 
 
 def result_row(
-    solution: Solution, width: int, judged: Solution | None = None, *, estimate_errors: bool = False
+    solution: Equilibrium[Any], width: int, judged: Equilibrium[Any] | None = None, *, estimate_errors: bool = False
 ) -> FloatArray:
     """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
 
@@ -86,8 +104,27 @@ def result_row(
     row[: len(JUDGED)] = (outcome, solution.iterations, solution.residual_norm)
     if not solution.converged:
         return row
-    scene = solution.model.scene
     numbers: list[float] = solved_poses(solution).tolist()
+    numbers += [solution.energy] if isinstance(solution, TubeSolution) else _efforts_and_contacts(solution)
+    if estimate_errors:
+        numbers += error_numbers(solution.error_estimate)
+    if judged is not None:
+        numbers += [np.nan if number is None else float(number) for number in _verdict(judged)]
+    row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
+    return row
+
+
+def _verdict(solution: Any) -> tuple[float | None, ...]:
+    """Stability in the columns that a row ends with; None where it has no meaning."""
+    if isinstance(solution, TubeSolution):
+        return solution.stability.falling, solution.stability.determinant, solution.stable
+    return solution.smallest_eigenvalue, solution.stable
+
+
+def _efforts_and_contacts(solution: Any) -> list[float]:
+    """Efforts of actuators with their conjugates, and contacts."""
+    scene = solution.model.scene
+    numbers: list[float] = []
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
@@ -95,22 +132,14 @@ def result_row(
         numbers += contact_numbers(_contacts_of(solution, rod, obstacle.name, of_body=False))
     for body, obstacle in body_pairs(scene):
         numbers += body_contact_numbers(_contacts_of(solution, body.name, obstacle.name, of_body=True))
-    if estimate_errors:
-        numbers += error_numbers(solution.error_estimate)
-    if judged is not None:
-        verdict = (judged.smallest_eigenvalue, judged.stable)
-        numbers += [np.nan if number is None else float(number) for number in verdict]
-    row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
-    return row
+    return numbers
 
 
-def solved_poses(solution: Solution) -> FloatArray:
+def solved_poses(solution: Any) -> FloatArray:
     """Positions and quaternions of the tips and the bodies of a solution, shape (7 tips and bodies,)."""
-    scene = solution.model.scene
-    tips = [solution.tip(rod.name) for rod in scene.rods]
-    bodies = [solution.body(body.name) for body in scene.bodies]
-    numbers = [number for pose in (*tips, *bodies) for number in (pose.position[0], pose.quaternion[0])]
-    return np.concatenate(numbers)
+    tips = [solution.tip(name) for name in solution.model.lengths]
+    bodies = [solution.body(body.name) for body in solution.model.scene.bodies]
+    return np.concatenate([np.ravel(part) for pose in (*tips, *bodies) for part in (pose.position, pose.quaternion)])
 
 
 def error_numbers(estimate: float | None) -> list[float]:
@@ -157,5 +186,15 @@ def _measured(scene: str, measure: str) -> Model | None:
 
 
 @lru_cache(maxsize=3)
+def _scene(text: str) -> Scene:
+    return parse_scene(text)
+
+
+@lru_cache(maxsize=3)
 def _model(text: str) -> Model:
     return build(parse_scene(text))
+
+
+@lru_cache(maxsize=3)
+def _tube_models(text: str) -> TubeModels:
+    return TubeModels(robot_of(parse_scene(text)))

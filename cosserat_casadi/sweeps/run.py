@@ -37,7 +37,6 @@ from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.shards import Shard, named, shard_files
 from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweeps.table import Table, read_table, table_of
-from cosserat_casadi.sweeps.tubes import TubeRows, tube_results, tube_variants
 from cosserat_casadi.sweeps.variants import Variants, variants_of
 from cosserat_casadi.sweeps.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
@@ -110,8 +109,7 @@ class Plan:
     @property
     def results(self) -> tuple[str, ...]:
         """Names of the numbers that a row is answered with."""
-        names = tube_results if self.scene.tubes else row_results
-        return names(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
+        return row_results(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
 
     @property
     def part(self) -> Path | None:
@@ -161,8 +159,7 @@ def plan_sweep(
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
         refuse_held_by_contact(scene)
-        seen = tube_variants(scene, table) if scene.tubes else variants_of(scene, table)
-        plan = Plan(scene, table, seen, output, samples, stability, estimate_errors)
+        plan = Plan(scene, table, variants_of(scene, table), output, samples, stability, estimate_errors)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -492,9 +489,6 @@ def _tasks(
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """Solver of a chunk in Python: a model for each variant that it has rows of."""
-    if plan.scene.tubes:
-        tubes = TubeRows(scene_text(plan.scene), plan.stability, plan.estimate_errors)
-        return [(tubes, plan.variants.inputs[chunk.rows])]
     parts: list[Part] = []
     # Text, since models of CasADi do not travel to other processes.
     measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""

@@ -30,6 +30,7 @@ from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweeps.arguments import accepts_parameters, argument_columns, extreme_rows
 from cosserat_casadi.sweeps.sampling import farthest_rows
 from cosserat_casadi.sweeps.table import Table
+from cosserat_casadi.tubes.robot import robot_of
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
 """Tables of a scene that do not change the computed results."""
@@ -118,12 +119,15 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     for block in table.scratch.blocks(len(p)):
         p[block] = table.values[block, argument_indices]
     problems = list(_set_twice(free, [*layout.names, *parameters], table))
-    problems += _refused_inputs(free, layout, inputs, table)
+    if not scene.tubes:
+        problems += _refused_inputs(free, layout, inputs, table)
     if arguments:
         free = scene_from_dict({**tables, "parameters": list(arguments)})
         problems += _refused_rows(free, table, arguments, p)
     others = [k for k in parameter_columns if k not in argument_indices]
     entries = list(_entries(free, table, others, problems))
+    if scene.tubes:
+        problems += _refused_tubes(entries, inputs, table)
     if problems:
         raise SceneError(*shortened(problems, table.where))
     return Variants(free.baked(), tuple(entries), inputs, layout, parameters, arguments, p)
@@ -177,7 +181,9 @@ def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: Floa
 
 
 def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
-    """The scene with the inputs that columns name, and no other."""
+    """The scene with the inputs that columns name, and no other; tubes have all."""
+    if scene.tubes:
+        return scene
     tables = scene_tables(scene)
     # Targets and bounds may name inputs that are none in a sweep.
     tables.pop("targets", None)
@@ -335,6 +341,18 @@ def _refused_inputs(
                     break
         elif values.shape[1] == 1:
             yield from _refused_numbers(scene, name, values, table)
+
+
+def _refused_tubes(entries: Sequence[Variant], inputs: FloatArray, table: Table) -> Iterator[Problem]:
+    """Rows of inputs beyond the ranges of their tubes, or at which no tube stands out of the plate."""
+    for entry in entries:
+        robot = robot_of(entry.scene)
+        for row in entry.rows.tolist():
+            try:
+                robot.packed(inputs[row])
+            except SceneError as error:
+                for problem in error.problems:
+                    yield Problem(table.where_of(row), f"{problem.where} {problem.problem}", problem.remedy)
 
 
 def _refused_numbers(

@@ -51,12 +51,12 @@ class LoadedTubeModel(TubeFunctions):
     """
 
     @property
-    def unknowns(self) -> int:
+    def size(self) -> int:
         """Number of unknowns: one a tube, and four of the frame at the tip."""
-        return self.size + FRAME
+        return self.tube_count + FRAME
 
     @cached_property
-    def unloaded(self) -> TubeModel:
+    def without_loads(self) -> TubeModel:
         """The same tubes with as many steps, without loads; of the inputs those of the loads have no effect."""
         return TubeModel(self.robot, self.steps)
 
@@ -67,13 +67,13 @@ class LoadedTubeModel(TubeFunctions):
             angles: at the tips, shape (n,), rad.
             inputs: of the robot.
         """
-        _, _, quaternion, _, _ = self.unloaded.stations(angles, inputs)
+        _, _, quaternion, _, _ = self.without_loads.stations(angles, inputs)
         return np.concatenate([angles, quaternion.full()[:, -1]])
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the tubes and the tangent turn along the robot; all loads have an energy."""
         stations, along, of_steps = self.variations(x, inputs)
-        return of_loaded(self.size, stations.full(), along.full(), of_steps.full())
+        return of_loaded(self.tube_count, stations.full(), along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
@@ -85,13 +85,13 @@ class LoadedTubeModel(TubeFunctions):
         """
         stations = self._varied.stations
         width = self._width
-        momenta = np.zeros((2 * self.size + 3 * VECTOR, self.size + VECTOR))
-        momenta[self.size : 2 * self.size, : self.size] = np.eye(self.size)
-        momenta[2 * self.size + VECTOR : 2 * self.size + 2 * VECTOR, self.size :] = np.eye(VECTOR)
+        momenta = np.zeros((2 * self.tube_count + 3 * VECTOR, self.tube_count + VECTOR))
+        momenta[self.tube_count : 2 * self.tube_count, : self.tube_count] = np.eye(self.tube_count)
+        momenta[2 * self.tube_count + VECTOR : 2 * self.tube_count + 2 * VECTOR, self.tube_count :] = np.eye(VECTOR)
         count = self._lengths.size2()
         starts = ca.vertcat(stations[:width, :-1], ca.repmat(ca.vec(ca.DM(momenta)), 1, count))
         ends = self._tangent_step.map(count)(starts, self._lengths, self._stacked_sections)
-        height = 2 * self.size + 3 * VECTOR
+        height = 2 * self.tube_count + 3 * VECTOR
         outputs = {
             "stations": stations[:width, :],
             "along": ca.reshape(stations[width:, :], height, -1),
@@ -103,7 +103,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def _step(self) -> ca.Function:
-        return loaded_step(self.size, spread=self._spread, potential=self.robot.has_energy)
+        return loaded_step(self.tube_count, spread=self._spread, potential=self.robot.has_energy)
 
     @property
     def _spread(self) -> bool:
@@ -145,12 +145,12 @@ class LoadedTubeModel(TubeFunctions):
     def _tip(self) -> LoadedState:
         """The state at the tip, which bears nothing yet."""
         x, _, _ = self._arguments
-        angles, quaternion = ca.vertsplit(x, [0, self.size, self.unknowns])
+        angles, quaternion = ca.vertsplit(x, [0, self.tube_count, self.size])
         zeros = ca.DM.zeros(3)
         unit = quaternion / ca.norm_2(quaternion)
         return LoadedState(
             angles=angles,
-            torques=ca.DM.zeros(self.size),
+            torques=ca.DM.zeros(self.tube_count),
             pose=Pose(zeros, unit),
             energy=ca.DM(0.0),
             moment=zeros,
@@ -190,7 +190,7 @@ class LoadedTubeModel(TubeFunctions):
     @cached_property
     def _point_ranks(self) -> dict[int, ca.MX]:
         """At which of the sorted places each of them acts."""
-        first = 2 * self.size
+        first = 2 * self.tube_count
         return {number: self._rank(first + index) for index, number in enumerate(self._point_loads)}
 
     def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
@@ -205,13 +205,13 @@ class LoadedTubeModel(TubeFunctions):
     @property
     def _width(self) -> int:
         """Entries of a stacked state."""
-        return 2 * self.size + 12
+        return 2 * self.tube_count + 12
 
     @property
     def _tangent_step(self) -> ca.Function:
         """A step of the state and its changes with the angles at the tips and a turn of the frame there."""
         follower = any(load.follower and not load.is_moment for load in self.robot.loads)
-        return tangent_step(self.size, self.size + VECTOR, spread=self._spread, follower=follower)
+        return tangent_step(self.tube_count, self.tube_count + VECTOR, spread=self._spread, follower=follower)
 
     @cached_property
     def _varied(self) -> March:
@@ -219,10 +219,10 @@ class LoadedTubeModel(TubeFunctions):
         steps = self._tangent_step.mapaccum("steps", self.steps)
         lengths = ca.horzsplit(self._lengths, self.steps)
         sections = ca.horzsplit(self._stacked_sections, self.steps)
-        height = 2 * self.size + 3 * VECTOR
-        at_tip = np.zeros((height, self.size + VECTOR))
-        at_tip[: self.size, : self.size] = np.eye(self.size)
-        at_tip[2 * self.size : 2 * self.size + VECTOR, self.size :] = np.eye(VECTOR)
+        height = 2 * self.tube_count + 3 * VECTOR
+        at_tip = np.zeros((height, self.tube_count + VECTOR))
+        at_tip[: self.tube_count, : self.tube_count] = np.eye(self.tube_count)
+        at_tip[2 * self.tube_count : 2 * self.tube_count + VECTOR, self.tube_count :] = np.eye(VECTOR)
         ends = [ca.vertcat(self._tip.stacked, ca.vec(ca.DM(at_tip)))]
         stations = list(ends)
         for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
@@ -246,17 +246,17 @@ class LoadedTubeModel(TubeFunctions):
         x, _, _ = self._arguments
         end = self._varied.ends[-1]
         quaternion = LoadedState.of(end[: self._width]).pose.quaternion
-        plate = LoadedTangent.of(ca.reshape(end[self._width :], 2 * self.size + 3 * VECTOR, -1))
-        missed = plate.angles - ca.repmat(self._compliance, 1, self.size + VECTOR) * plate.torques
+        plate = LoadedTangent.of(ca.reshape(end[self._width :], 2 * self.tube_count + 3 * VECTOR, -1))
+        missed = plate.angles - ca.repmat(self._compliance, 1, self.tube_count + VECTOR) * plate.torques
         # δQ = ½ (0, θ) ⊗ Q.
         turned = (quaternion[0] * plate.turn - hat(quaternion[1:]) @ plate.turn) / 2
         # The turn at the tip with the quaternion there, which need not have the norm one: θ = 2 δq ⊗ q̄ / |q|².
-        tip = x[self.size :]
+        tip = x[self.tube_count :]
         turns = 2 / ca.sumsqr(tip) * ca.horzcat(-tip[1:], tip[0] * ca.DM.eye(VECTOR) + hat(tip[1:]))
         rows = ca.vertcat(missed, turned)
-        by_x = ca.horzcat(rows[:, : self.size], rows[:, self.size :] @ turns)
-        norm = ca.horzcat(ca.DM.zeros(1, self.size), tip.T)
-        return ca.vertcat(by_x[: self.size, :], norm, by_x[self.size :, :])
+        by_x = ca.horzcat(rows[:, : self.tube_count], rows[:, self.tube_count :] @ turns)
+        norm = ca.horzcat(ca.DM.zeros(1, self.tube_count), tip.T)
+        return ca.vertcat(by_x[: self.tube_count, :], norm, by_x[self.tube_count :, :])
 
     @cached_property
     def _residual(self) -> Matrix:
@@ -267,12 +267,12 @@ class LoadedTubeModel(TubeFunctions):
         x, inputs, _ = self._arguments
         state = LoadedState.of(plate)
         missed = state.angles - self._compliance * state.torques - self.robot.rotations(inputs)
-        norm = (ca.sumsqr(x[self.size :]) - 1) / 2
+        norm = (ca.sumsqr(x[self.tube_count :]) - 1) / 2
         return ca.vertcat(missed, norm, state.pose.quaternion[1:])
 
     @property
     def _staged(self) -> Staged:
-        return loaded_stages(self.size, spread=self._spread, potential=False)
+        return loaded_stages(self.tube_count, spread=self._spread, potential=False)
 
     @property
     def _begun(self) -> Matrix:

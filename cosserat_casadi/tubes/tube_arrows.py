@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad
+from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.tube_loads import TubeLoad
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 ALONG = 8
@@ -18,46 +17,48 @@ ALONG = 8
 
 def load_arrows(solution: TubeSolution) -> list[Arrow]:
     """Arrows of all loads that are not zero, in world axes."""
-    robot = solution.robot
     arrows: list[Arrow] = []
-    for number, load in enumerate(robot.loads):
-        start = robot.load_start(number)
-        value = solution.inputs[start : start + COMPONENTS]
-        for index in range(robot.size):
-            vector = load.shares[index] * value
-            if load.follower:
-                vector = _frame(solution, load, index) @ vector
-            if np.any(vector):
-                arrows += _arrows_on(solution, load, index, vector)
+    for load, index in borne_loads(solution.robot):
+        starts, vector = arrows_on(solution, load, index)
+        if not np.any(vector):
+            continue
+        sort = sort_of(load)
+        # One of them speaks for all.
+        label = f"{load.name} on {solution.robot.names[index]}, {np.linalg.norm(vector):.3g} {UNITS[sort]}"
+        arrows += [Arrow(start, vector, sort, "" if number else label) for number, start in enumerate(starts)]
     return arrows
 
 
-def _arrows_on(solution: TubeSolution, load: TubeLoad, tube: int, vector: FloatArray) -> Iterator[Arrow]:
-    """Arrows of one load on one tube."""
-    robot = solution.robot
-    name = robot.names[tube]
-    sort: Sort = "point"
-    reach = float(robot.translations(solution.inputs)[tube]) - load.from_tip
-    starts = [solution.tips[name].position]
-    if load.from_tip > 0.0:
-        # The housing bears what acts in it.
-        starts = [_point(solution, reach)] if reach > 0.0 else []
+def borne_loads(robot: Robot) -> list[tuple[TubeLoad, int]]:
+    """Loads, each with the index of a tube that bears it."""
+    return [(load, index) for load in robot.loads for index in np.flatnonzero(load.shares).tolist()]
+
+
+def sort_of(load: TubeLoad) -> Sort:
+    """Kind of vector that the arrows of a load stand for."""
     if load.is_moment:
-        sort = "moment"
-    elif load.spread:
-        sort = "line"
-        starts = [_point(solution, distance) for distance in np.linspace(0.0, reach, ALONG)]
-    label = f"{load.name} on {name}, {np.linalg.norm(vector):.3g} {UNITS[sort]}"
-    for place in starts:
-        yield Arrow(place, vector, sort, label)
-        # One of them speaks for all.
-        label = ""
+        return "moment"
+    return "line" if load.spread else "point"
+
+
+def arrows_on(solution: TubeSolution, load: TubeLoad, tube: int) -> tuple[list[FloatArray], FloatArray]:
+    """Places of the arrows of one load on one tube, and their vector, world axes; none where the housing bears it."""
+    robot = solution.robot
+    vector = load.shares[tube] * solution.inputs[robot.layout.slices[load.name]]
+    if load.follower:
+        vector = _frame(solution, load, tube) @ vector
+    reach = float(robot.translations(solution.inputs)[tube]) - load.from_tip
+    if load.spread:
+        return [_point(solution, distance) for distance in np.linspace(0.0, reach, ALONG)], vector
+    if load.from_tip > 0.0:
+        return [_point(solution, reach)] if reach > 0.0 else [], vector
+    return [solution.tips[robot.names[tube]].position], vector
 
 
 def _point(solution: TubeSolution, distance: float) -> FloatArray:
     """Point of the centre line at a distance from the plate."""
-    shape = solution.shape
-    return np.array([np.interp(distance, shape.distance, column) for column in shape.position.T])
+    (point,), _ = solution.shape.between(np.array([distance]))
+    return np.asarray(point)
 
 
 def _frame(solution: TubeSolution, load: TubeLoad, tube: int) -> FloatArray:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,8 +28,18 @@ from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_model import TubeModel
-from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.tube_solve import MOST_STEPS, judged, loaded_from, solution_near, solve_at, solve_tubes
+from cosserat_casadi.tubes.tube_solution import TubeSolution
+from cosserat_casadi.tubes.tube_solve import (
+    MOST_STEPS,
+    error_beside,
+    finer_than,
+    judged,
+    loaded_from,
+    moved_to,
+    solution_near,
+    solve_at,
+    solve_tubes,
+)
 
 MOST_TUBES = 4
 """Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
@@ -123,25 +133,43 @@ def tubes_at_rest(
     subject: scenes.Scene | TubeFunctions,
     values: Values = None,
     *,
+    start: TubeSolution | FloatArray | None = None,
     stable: bool = False,
+    estimate_error: bool = True,
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> TubeSolution:
-    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps, whose error is not estimated.
+    """Equilibrium of a scene with tubes to its tolerance, or of a model with its steps.
 
     Args:
         subject: the scene or the model.
         values: as in :func:`solve_tubes`.
-        stable: of a scene, as in :func:`cosserat_casadi.solve`.
+        start: of a model: a solution whose inputs are followed to these, or unknowns near the equilibrium; where that
+            leads nowhere, and by default, straight tubes.
+        stable: as in :func:`cosserat_casadi.solve`.
+        estimate_error: of a model, whether its error is estimated, by the equilibrium with twice its steps.
         progress: not called: the search takes a moment.
         report: likewise.
 
     Raises:
         SceneError: a value is refused, or a stable equilibrium is wanted where the loads have no energy.
     """
-    if isinstance(subject, TubeFunctions):
-        return solve_at(subject, subject.robot.packed(values))
-    return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
+    if isinstance(subject, scenes.Scene):
+        return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
+    inputs = subject.pack(values)
+    if stable:
+        # The unknowns do not depend on the steps.
+        start = stable_tubes(subject.scene, inputs).x
+    found = None
+    if isinstance(start, TubeSolution):
+        found = moved_to(subject, start, inputs)
+    elif start is not None:
+        found = solution_near(subject, inputs, start)
+    if found is None or not found.converged:
+        found = solve_at(subject, inputs)
+    if not estimate_error:
+        return found
+    return replace(found, error_estimate=error_beside(found, finer_than(found)))
 
 
 def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
@@ -166,7 +194,7 @@ def stable_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
 def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
     """The equilibria that those without loads lead to."""
     robot = model.robot
-    without = _without_loads(model.unloaded, at)
+    without = _without_loads(model.without_loads, at)
     while True:
         finer = LoadedTubeModel(robot, 2 * model.steps)
         reached = [loaded_from(model, at, start) for start in without.solutions]
@@ -208,10 +236,7 @@ def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: 
     """An equilibrium of the finer model near one of a model, with the estimate of its error."""
     rough = solution_near(model, inputs, x)
     fine = solution_near(finer, inputs, x)
-    error = None
-    if rough.converged and fine.converged:
-        error = tip_error(rough, fine)
-    return judged(fine, error)
+    return judged(fine, error_beside(rough, fine))
 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
@@ -241,10 +266,10 @@ class _Search:
 
 def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
     """Look for every equilibrium of a model."""
-    if model.size == 1:
+    if model.tube_count == 1:
         # One tube does not twist.
         return _Search([model.robot.rotations(inputs).copy()], settled=True)
-    if model.size == PAIR:
+    if model.tube_count == PAIR:
         return _of_two_tubes(model, inputs)
     return _of_more_tubes(model, inputs)
 
@@ -361,7 +386,7 @@ def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> floa
 
 def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
     found: list[FloatArray] = []
-    for points in GRIDS[model.size]:
+    for points in GRIDS[model.tube_count]:
         before = len(found)
         for start in _starts(model, inputs, points):
             end = solution_near(model, inputs, start)
@@ -376,7 +401,7 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
 def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
     """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
-    for between in itertools.product(angles, repeat=model.size - 1):
+    for between in itertools.product(angles, repeat=model.tube_count - 1):
         tips = np.array([0.0, *between])
         missed = np.ravel(model.residual(tips, inputs).full())
         tips -= missed[0]

@@ -10,19 +10,19 @@ import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
-from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.robot import Robot, Values
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import TipVariations
 
@@ -59,7 +59,7 @@ class TubeFunctions(ABC):
         return type(self), (self.robot, self.steps)
 
     @property
-    def size(self) -> int:
+    def tube_count(self) -> int:
         """Number of tubes."""
         return self.robot.size
 
@@ -73,11 +73,33 @@ class TubeFunctions(ABC):
         """Names, order and default values of the inputs."""
         return self.robot.layout
 
+    @property
+    def lengths(self) -> dict[str, float]:
+        """Length that the pose error of each tube is relative to, m: that of the longest one."""
+        return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
+
+    def at(self, values: Any = None) -> Self:
+        """The model itself: tubes have no parameters."""
+        return self
+
+    def pack(self, values: Values = None) -> FloatArray:
+        """The stacked inputs, as :meth:`Robot.packed`."""
+        return self.robot.packed(values)
+
+    def unloaded(self) -> FloatArray:
+        """Unknowns of straight tubes, shape (size,)."""
+        frame = [1.0, 0.0, 0.0, 0.0][: self.size - self.tube_count]
+        return np.concatenate([self.robot.rotations(self.robot.inputs), frame])
+
+    def has_potential(self, inputs: FloatArray) -> bool:
+        """Whether an energy tells which equilibria are stable, whatever the inputs."""
+        return self.robot.has_energy
+
     # What a model says
 
     @property
     @abstractmethod
-    def unknowns(self) -> int:
+    def size(self) -> int:
         """Number of unknowns."""
 
     @abstractmethod
@@ -162,11 +184,16 @@ class TubeFunctions(ABC):
     @property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a step: angles and numbers of a quaternion alike."""
-        return np.ones(self.unknowns)
+        return np.ones(self.size)
 
     @property
     def is_assembly(self) -> bool:
         """Whether the Jacobian is sparse: it never is."""
+        return False
+
+    @property
+    def hessian_is_cheap(self) -> bool:
+        """Whether an optimiser is faster with exact second derivatives: all steps would be integrated for each."""
         return False
 
     @cached_property
@@ -208,6 +235,16 @@ class TubeFunctions(ABC):
         return self._function("tips", {"position": position, "quaternion": quaternion})
 
     @cached_property
+    def tip(self) -> dict[str, ca.Function]:
+        """(x, inputs) ↦ position, m, quaternion and rotation of the tip of a tube, in base axes, by name."""
+        functions = {}
+        for name, pose in zip(self.robot.names, self._tips, strict=True):
+            rotation = quaternion_to_matrix(pose.quaternion)
+            outputs = {"position": pose.position, "quaternion": pose.quaternion, "rotation": rotation}
+            functions[name] = self._function("tip", outputs)
+        return functions
+
+    @cached_property
     def tip_jacobian(self) -> ca.Function:
         """(x, inputs) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
 
@@ -233,13 +270,13 @@ class TubeFunctions(ABC):
         axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
         """
         x, inputs, _ = self._arguments
-        directions = Directions(self.robot, self.unknowns)
+        directions = Directions(self.robot, self.size)
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
         at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
         _, missed = at_plate(plate, x, inputs, plate_changes)
         # A rotation turns its drive, and changes nothing else.
-        by_rotations = ca.vertcat(-ca.DM.eye(self.size), ca.DM(self.unknowns - self.size, self.size))
+        by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
         changes: list[Matrix] = []
         for index, rank in enumerate(self._ranks):
@@ -251,11 +288,11 @@ class TubeFunctions(ABC):
             changes.append(moved)
         moved = ca.vertcat(*changes)
         outputs = {
-            "jacobian": missed[:, : self.unknowns],
+            "jacobian": missed[:, : self.size],
             "by_inputs": directions.by_inputs(missed, by_rotations),
             "poses": ca.horzcat(*poses),
-            "poses_by_x": moved[:, : self.unknowns],
-            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.size)),
+            "poses_by_x": moved[:, : self.size],
+            "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.tube_count)),
         }
         return self._function("sensitivity", outputs)
 
@@ -321,7 +358,7 @@ class TubeFunctions(ABC):
     @cached_property
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
         """Unknowns, inputs and load factor, of which all functions are."""
-        return ca.MX.sym("x", self.unknowns), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
+        return ca.MX.sym("x", self.size), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
 
     @cached_property
     def _lengths(self) -> ca.MX:
@@ -374,7 +411,7 @@ class TubeFunctions(ABC):
         """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
         _, inputs, _ = self._arguments
         ends = []
-        for index in range(self.size):
+        for index in range(self.tube_count):
             tip = inputs[2 * index + 1]
             straight = tip - self.robot.curved[index]
             # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
@@ -385,7 +422,7 @@ class TubeFunctions(ABC):
     @cached_property
     def _ranks(self) -> list[ca.MX]:
         """Of every tube at which of the sorted places its tip is, 1×1."""
-        return [self._rank(2 * index) for index in range(self.size)]
+        return [self._rank(2 * index) for index in range(self.tube_count)]
 
     def _rank(self, own: int) -> ca.MX:
         """Index among the sorted places of one of `_unsorted`, 1×1; places that coincide have different indices."""

@@ -23,14 +23,14 @@ class TubeModel(TubeFunctions):
     """A robot of concentric tubes without loads; unknown are the angles x at the tips of the tubes (n)."""
 
     @property
-    def unknowns(self) -> int:
+    def size(self) -> int:
         """Number of unknowns: one a tube."""
-        return self.size
+        return self.tube_count
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the angles and torques change along the robot."""
         along, of_steps = self.variations(x, inputs)
-        return of_angles(self.size, along.full(), of_steps.full())
+        return of_angles(self.tube_count, along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
@@ -39,7 +39,7 @@ class TubeModel(TubeFunctions):
         With the angles at the tips, (2 n k)×n, column after column of the stations from the tip to the plate; and, for
         each step, the angles at its end with the torques at its start, n×(n (k − 1)).
         """
-        size = self.size
+        size = self.tube_count
         x, _, _ = self._arguments
         stations = self._twist.stations
         angles = ca.MX.sym("angles", size)
@@ -62,12 +62,12 @@ class TubeModel(TubeFunctions):
     def _twist(self) -> March:
         """Angles and torques alone: what decides on equilibrium and stability."""
         x, _, _ = self._arguments
-        return self._marched(twist_step(self.size), ca.vertcat(x, ca.DM.zeros(self.size)))
+        return self._marched(twist_step(self.tube_count), ca.vertcat(x, ca.DM.zeros(self.tube_count)))
 
     @cached_property
     def _whole(self) -> March:
         """The same with the frame of the centre line and the energy."""
-        return self._marched(whole_step(self.size), self._begun)
+        return self._marched(whole_step(self.tube_count), self._begun)
 
     def _marched(self, step: ca.Function, state: Matrix) -> March:
         """Take the steps of all pieces from the tip on."""
@@ -89,7 +89,7 @@ class TubeModel(TubeFunctions):
 
     def _missed(self, plate: Matrix) -> Matrix:
         _, inputs, _ = self._arguments
-        angles, torques, _ = ca.vertsplit(plate, [0, self.size, 2 * self.size, plate.size1()])
+        angles, torques, _ = ca.vertsplit(plate, [0, self.tube_count, 2 * self.tube_count, plate.size1()])
         return angles - self._compliance * torques - self.robot.rotations(inputs)
 
     def _state(self, stacked: Matrix) -> FlowState:
@@ -97,12 +97,12 @@ class TubeModel(TubeFunctions):
 
     @property
     def _staged(self) -> Staged:
-        return whole_stages(self.size)
+        return whole_stages(self.tube_count)
 
     @property
     def _begun(self) -> Matrix:
         x, _, _ = self._arguments
-        return ca.vertcat(x, ca.DM.zeros(self.size), START)
+        return ca.vertcat(x, ca.DM.zeros(self.tube_count), START)
 
     def _passing(self, piece: int, stacked: Matrix) -> Matrix:
         return stacked

@@ -7,12 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.pose_change import change_size, rotation_vectors
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -37,50 +37,38 @@ class TubeShape:
     angles: FloatArray
     torques: FloatArray
 
+    def between(self, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Positions, shape (m, 3), and quaternions, shape (m, 4), at distances from the plate, shape (m,).
+
+        Positions are cubics with the tangents at the places of the robot, quaternions between two places are blended.
+        """
+        # Of places at one distance the last begins the piece behind it.
+        before = np.clip(np.searchsorted(self.distance, distance, side="right") - 1, 0, len(self.distance) - 2)
+        step = np.diff(self.distance)[before][:, None]
+        share = (distance - self.distance[before])[:, None] / np.where(step > 0.0, step, 1.0)
+        tangent = quaternion_to_matrix(self.quaternion.T)[:, 2].T
+        chord = self.position[before] + share**2 * (3.0 - 2.0 * share) * np.diff(self.position, axis=0)[before]
+        leaving = share * (1.0 - share) ** 2 * tangent[before]
+        arriving = share**2 * (share - 1.0) * tangent[before + 1]
+        blended = (1.0 - share) * self.quaternion[before] + share * self.quaternion[before + 1]
+        return chord + step * (leaving + arriving), blended / np.linalg.norm(blended, axis=1, keepdims=True)
+
 
 @dataclass(frozen=True, repr=False)
-class TubeSolution(Result):
+class TubeSolution(Equilibrium[TubeFunctions]):
     """An equilibrium of concentric tubes.
 
-    Attributes:
-        model: the robot with its steps.
-        inputs: rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,).
-        x: angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
-            quaternion in world axes behind them, shape (n + 4,).
-        outcome: how the solve ended.
-        residual_norm: largest angle that the tubes miss their drives by, rad.
-        error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
-            it was not estimated.
-        iterations: Newton steps of the search with this model; 0 at points of a path.
+    The inputs are the rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,). The
+    unknowns are the angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
+    quaternion in world axes behind them, shape (n + 4,). The residual norm is the largest angle that the tubes miss
+    their drives by, rad; distances in the error estimate are relative to the length that stands out. The iterations
+    are those of the search with this model; 0 at points of a path.
     """
-
-    model: TubeFunctions
-    inputs: FloatArray
-    x: FloatArray
-    outcome: Outcome
-    residual_norm: float
-    error_estimate: float | None
-    iterations: int = 0
 
     @property
     def robot(self) -> Robot:
         """The tubes."""
         return self.model.robot
-
-    @property
-    def converged(self) -> bool:
-        """Whether this is an equilibrium within tolerance."""
-        return self.outcome is Outcome.CONVERGED
-
-    @property
-    def within_tolerance(self) -> bool:
-        """Whether the estimated error is within the scene's tolerance."""
-        return self.error_estimate is not None and self.error_estimate <= self.robot.tolerance
-
-    @property
-    def message(self) -> str:
-        """A sentence for the user."""
-        return self.outcome.value
 
     @cached_property
     def stability(self) -> TubeStability:
@@ -126,13 +114,17 @@ class TubeSolution(Result):
             for index, name in enumerate(self.robot.names)
         }
 
-    def tip(self, tube: str | None = None) -> NumericPose:
+    @property
+    def remedy(self) -> str:
+        """The remedy where the error is above the tolerance."""
+        return f"it has {self.model.steps} steps a piece: allow more of them, or ask for a larger tolerance."
+
+    def tip(self, name: str | None = None) -> NumericPose:
         """Pose of a tube's tip in the world; without a name that of the tube that reaches farthest.
 
         Raises:
             SceneError: there is no such tube.
         """
-        name = tube
         if name is None:
             name = self.robot.names[int(np.argmax(self.robot.translations(self.inputs)))]
         if name not in self.tips:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,6 +22,8 @@ from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_model import TubeModel
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
+
+Found = TypeVar("Found")
 
 FEWEST_STEPS = 2
 """Steps of a piece that the search begins with."""
@@ -80,33 +84,63 @@ def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
         models: of the robot.
         at: all inputs, in their range.
     """
-    steps = FEWEST_STEPS
-    found = solve_at(models.of(steps), at)
+    found, error = doubled(
+        lambda steps: solve_at(models.of(steps), at),
+        FEWEST_STEPS,
+        error_beside,
+        models.robot.tolerance,
+        lambda steps, coarse, fine: steps >= ENOUGH_STEPS and not coarse.converged and not fine.converged,
+    )
+    return judged(found, error)
+
+
+def doubled(
+    at: Callable[[int], Found],
+    steps: int,
+    error_of: Callable[[Found, Found], float | None],
+    tolerance: float,
+    lost: Callable[[int, Found, Found], bool],
+) -> tuple[Found, float | None]:
+    """The first of several results that differs from that of half of its steps by less than a tolerance.
+
+    Args:
+        at: steps of a piece ↦ result.
+        steps: the number of steps to begin with.
+        error_of: (coarse, fine) ↦ their difference; None where it has no meaning.
+        tolerance: the difference that is allowed.
+        lost: (steps, coarse, fine) ↦ whether more steps are not worth trying.
+
+    Returns:
+        The last result, and its difference from that of half of its steps.
+    """
+    coarse = at(steps)
     while True:
         steps *= 2
-        finer = solve_at(models.of(steps), at)
-        error = None
-        if found.converged and finer.converged:
-            error = tip_error(found, finer)
-        resolved = error is not None and error <= models.robot.tolerance
-        lost = steps >= ENOUGH_STEPS and not found.converged and not finer.converged
-        if resolved or lost or steps >= MOST_STEPS:
-            return judged(finer, error)
-        found = finer
+        fine = at(steps)
+        error = error_of(coarse, fine)
+        agree = error is not None and error <= tolerance
+        if agree or steps >= MOST_STEPS or lost(steps, coarse, fine):
+            return fine, error
+        coarse = fine
+
+
+def error_beside(solution: TubeSolution, finer: TubeSolution) -> float | None:
+    """The error of the tips of a solution beside a finer one; None where one of them is no equilibrium."""
+    return tip_error(solution, finer) if solution.converged and finer.converged else None
 
 
 def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
-    """A solution with the estimate of its error, and its outcome by that."""
+    """A solution with the estimate of its error; unresolved where that is above the tolerance, or not known."""
     estimated = replace(solution, error_estimate=error)
     if estimated.converged and not estimated.within_tolerance:
-        return replace(estimated, outcome=Outcome.UNRESOLVED)
+        return estimated.unresolved()
     return estimated
 
 
 def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
     """The equilibrium of a model that straight tubes lead to, while their curvature grows, and then their loads."""
     if isinstance(model, LoadedTubeModel):
-        curved = solve_at(model.unloaded, inputs)
+        curved = solve_at(model.without_loads, inputs)
         return loaded_from(model, inputs, curved)
     path = Path(
         residual=lambda x, t: column(model.path_residual(x, inputs, t)),
@@ -159,6 +193,17 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
     return solution_at(model, inputs, end.x, found=False, iterations=iterations)
 
 
+def moved_to(model: TubeFunctions, start: TubeSolution, inputs: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that one at other inputs leads to, along the straight line between them."""
+    end = _followed(input_path(model, start.x, start.inputs, inputs))
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def finer_than(solution: TubeSolution) -> TubeSolution:
+    """The equilibrium beside a solution with twice the steps."""
+    return solution_near(model_of(solution.robot, 2 * solution.model.steps), solution.inputs, solution.x)
+
+
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
     """The equilibrium of a model that Newton's method leads to from a start."""
     equations = Equations(
@@ -186,4 +231,4 @@ def solution_at(
         outcome = Outcome.CONVERGED
     residual = model.residual(x, inputs).full()
     missed = float(np.abs(residual).max())
-    return TubeSolution(model, inputs, x, outcome, missed, None, iterations)
+    return TubeSolution(model, inputs, x, outcome, outcome.value, missed, iterations)

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
-from cosserat_casadi.equilibrium.answer_error import remedy
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -18,7 +17,7 @@ def stacked_inputs(inputs: Sequence[float | None]) -> FloatArray:
     return np.array([np.nan if value is None else value for value in inputs], dtype=np.float64)
 
 
-def state_of(found: Solution | CompiledSolution, drawn: FloatArray, *, anew: bool) -> dict[str, Any]:
+def state_of(found: Equilibrium[Any] | CompiledSolution, drawn: FloatArray, *, anew: bool) -> dict[str, Any]:
     """The end of a solve for a page.
 
     Args:
@@ -37,7 +36,7 @@ def state_of(found: Solution | CompiledSolution, drawn: FloatArray, *, anew: boo
     }
 
 
-def accuracy_of(solution: Solution | None) -> dict[str, Any]:
+def accuracy_of(solution: Equilibrium[Any] | None) -> dict[str, Any]:
     """The estimated error of an equilibrium for a page: in words, and whether it is within the tolerance.
 
     Args:
@@ -46,11 +45,12 @@ def accuracy_of(solution: Solution | None) -> dict[str, Any]:
     if solution is None or solution.within_tolerance is None:
         return {"within": None, "text": "", "refines": False}
     accuracy = solution.model.scene.accuracy
-    error = solution.shape_error_estimate if accuracy.shape else solution.error_estimate
+    error = solution.judged_error
     if error is None or not solution.converged:
         return {"within": False, "text": solution.message, "refines": False}
     text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
     if not solution.within_tolerance:
-        text += " " + remedy(solution)
-    refines = not solution.within_tolerance and not accuracy.fixed_by_hand and not solution.model.scene.touches_exactly
+        text += " " + solution.remedy
+    scene = solution.model.scene
+    refines = not (solution.within_tolerance or accuracy.fixed_by_hand or scene.touches_exactly or scene.tubes)
     return {"within": solution.within_tolerance, "text": text, "refines": refines}

@@ -26,6 +26,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.questions import Question, QuestionError
+from cosserat_casadi.view.tube_session import TubeSession
 from cosserat_casadi.view.view_session import ViewSession
 
 HOST = "127.0.0.1"
@@ -69,7 +70,7 @@ class Desk:
         policy: what the page may do, as the header Content-Security-Policy says it.
     """
 
-    session: ViewSession | ContactSession
+    session: ViewSession | ContactSession | TubeSession
     page: bytes = field(init=False)
     policy: str = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
@@ -112,7 +113,7 @@ class Desk:
                 return session.eigenvalues()
             if name == "accuracy":
                 return session.accuracy()
-            if name == "reach" and isinstance(session, ViewSession):
+            if name == "reach" and isinstance(session, ViewSession | TubeSession):
                 pose = question.pose(_pose_names(session))
                 position = question.position()
                 return _refusable(lambda: session.reach(pose, position))
@@ -121,10 +122,10 @@ class Desk:
         raise QuestionError("the page asks no such question")
 
 
-def _pose_names(session: ViewSession) -> dict[str, list[str]]:
+def _pose_names(session: ViewSession | TubeSession) -> dict[str, list[str]]:
     """Names of what can be led to a point, by kind."""
     scene = session.first.model.scene
-    return {"rod": [rod.name for rod in scene.rods], "body": [body.name for body in scene.bodies]}
+    return {"rod": list(session.first.model.lengths), "body": [body.name for body in scene.bodies]}
 
 
 def _refusable(answer: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -160,7 +161,7 @@ def _digest(text: str) -> str:
 class RobotServer(ThreadingHTTPServer):
     """A server of a session's page, ready to serve."""
 
-    def __init__(self, session: ViewSession | ContactSession, port: int = 0) -> None:
+    def __init__(self, session: ViewSession | ContactSession | TubeSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
         self._secret = secrets.token_urlsafe(SECRET_BYTES)

@@ -25,7 +25,7 @@ from cosserat_casadi.control.inverse import search
 from cosserat_casadi.control.inverse_result import with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.equilibrium.metrics import prolong
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.errors import SceneError
@@ -38,8 +38,10 @@ from cosserat_casadi.motion.vibration_modes import modes_of
 from cosserat_casadi.page.drawn_model import DrawnModel, drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.page.slider_ranges import movable, sliders
+from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 from cosserat_casadi.view.contact_session import ContactSession
+from cosserat_casadi.view.tube_session import TubeSession
 
 NAME = "viewed"
 """Prefix of the symbols of the compiled library."""
@@ -186,7 +188,7 @@ class ViewSession:
         """
         target = scenes.PositionTarget(kind="position", position=tuple(position), **pose)
         problem = self._problem(*pose.items())
-        model = problem.model
+        model = self.first.model
         start = solve(model, model.inputs.unpack(self._inputs), start=self._x, estimate_error=False)
         origin = problem.variables.clipped(start.inputs)
         asked = replace(problem, targets=(target,), origin=origin)
@@ -281,7 +283,9 @@ class ViewSession:
 
 
 def is_compiled(scene: scenes.Scene) -> bool:
-    """Whether the compiled library moves a scene; exact contact is looked for by Python alone."""
+    """Whether the compiled library moves a scene; tubes and exact contact are solved by Python alone."""
+    if scene.tubes:
+        return False
     try:
         refuse_obstacles(scene, "a compiled library")
     except SceneError:
@@ -290,8 +294,8 @@ def is_compiled(scene: scenes.Scene) -> bool:
 
 
 def opened(
-    solution: Solution, progress: Progress | None = None, asked: Given | None = None
-) -> ViewSession | ContactSession:
+    solution: Equilibrium[Any], progress: Progress | None = None, asked: Given | None = None
+) -> ViewSession | ContactSession | TubeSession:
     """A session of a solved scene, with its library compiled, or found compiled, where it has one.
 
     Args:
@@ -302,6 +306,9 @@ def opened(
     Raises:
         ExportError: there is no C compiler, or it fails.
     """
+    if isinstance(solution, TubeSolution):
+        return TubeSession(solution)
+    assert isinstance(solution, Solution)
     if not is_compiled(solution.model.scene):
         return ContactSession(solution, asked)
     with tempfile.TemporaryDirectory() as folder:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.plots.tubes_plot import _between, _curve
+from cosserat_casadi.plots.tubes_plot import _between
+from cosserat_casadi.tubes.tube_solution import TubeShape
 
 CURVATURE = 3.0
 LENGTH = 0.5
@@ -19,8 +20,10 @@ def distance_from_arc(stations: int) -> float:
     zeros = np.zeros(stations)
     position = np.stack([(1.0 - np.cos(turned)) / CURVATURE, zeros, np.sin(turned) / CURVATURE], axis=1)
     quaternion = np.stack([np.cos(turned / 2.0), zeros, np.sin(turned / 2.0), zeros], axis=1)
-    line = _curve(s, position, quaternion)
+    none = np.zeros((stations, 0))
+    line, frames = TubeShape(s, position, quaternion, none, none).between(np.linspace(0.0, LENGTH, 12 * stations))
     assert_allclose(line[-1], position[-1], rtol=0, atol=1e-15)
+    assert_allclose(frames[-1], quaternion[-1], rtol=0, atol=1e-15)
     radius = np.hypot(line[:, 0] - 1.0 / CURVATURE, line[:, 2])
     return float(np.abs(radius - 1.0 / CURVATURE).max())
 

@@ -34,13 +34,13 @@ from cosserat_casadi import (
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.estimation.consistency import Consistency
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.result import Result
 from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, presentation_of
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.sweeps.outcome_file import read_sweep
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubePath
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 from tests.conftest import ROOT
 from tests.identification.made_up import WIRE, measured_shapes
@@ -137,9 +137,19 @@ def tube_equilibria() -> TubeEquilibria:
 
 
 def tube_path() -> TubePath:
-    ends = (tube_solution(), tube_solution())
-    name = next(iter(tube_solution().robot.columns))
-    return TubePath("Tubes", name, "rad", path().outcome, np.array([0.0, 1.0]), ends, (), 1e-8)
+    end = tube_solution()
+    return TubePath(
+        model=end.model,
+        name=next(iter(end.robot.columns)),
+        base=end.inputs,
+        change=np.zeros_like(end.inputs),
+        outcome=path().outcome,
+        message=path().message,
+        factor=np.array([0.0, 1.0]),
+        x=np.array([end.x, end.x]),
+        events=(),
+        error_estimate=1e-8,
+    )
 
 
 MAKERS: dict[str, Callable[[], Any]] = {

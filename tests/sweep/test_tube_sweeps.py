@@ -11,9 +11,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Outcome, SceneError, parse_scene, read_scene, read_sweep, solve, sweep
+from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.outcome_table import LABELS
-from cosserat_casadi.sweeps.tubes import TubeRows, tube_results
+from cosserat_casadi.sweeps.row_model import result_row
 from tests.commands import cosserat
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -50,6 +51,17 @@ def test_rows_are_what_solve_finds() -> None:
     assert swept["stable"].tolist() == [1.0, 1.0, 0.0, 1.0]
 
 
+def test_other_numbers_of_tubes_are_swept_beside_inputs() -> None:
+    curvatures = [10.0, 18.0, 18.0]
+    turns = [1.0, 1.0, 2.0]
+    swept = sweep(SCENE, {"inner.curvature": curvatures, "inner.rotation": turns}, cores=1)
+    assert swept.record["parameters"] == ["inner.curvature"]
+    for row, (curvature, turn) in enumerate(zip(curvatures, turns, strict=True)):
+        bent = read_scene(EXAMPLES / "concentric_tubes.toml", [f"inner.curvature={curvature}"])
+        solution = solve(bent, {"inner.rotation": turn})
+        assert_allclose(swept.positions("inner")[row], solution.tip("inner").position, rtol=0, atol=1e-15)
+
+
 @pytest.mark.slow
 def test_loads_are_swept_and_moments_leave_stability_open() -> None:
     scene = parse_scene(scene_text(SCENE) + MOMENT)
@@ -65,9 +77,9 @@ def test_loads_are_swept_and_moments_leave_stability_open() -> None:
     ("outcome", "label"), [(Outcome.LOAD_STALLED, "load_stalled"), (Outcome.UNRESOLVED, "unresolved")]
 )
 def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> None:
-    names = tube_results(SCENE, stability=True)
+    names = row_results(SCENE, stability=True)
     solution = replace(solve(SCENE), outcome=outcome)
-    row = TubeRows(scene_text(SCENE), stability=True)._row(solution, len(names))
+    row = result_row(solution, len(names), solution)
     assert LABELS[int(row[0])] == label
     assert np.isfinite(row[:3]).all()
     assert np.isnan(row[3:]).all()
@@ -75,13 +87,20 @@ def test_what_did_not_converge_has_no_poses(outcome: Outcome, label: str) -> Non
 
 def test_refusals_name_all_rows_and_columns() -> None:
     with pytest.raises(SceneError) as refused:
-        sweep(SCENE, {"inner.rotatoin": [0.0], "inner.curvature": [3.0]})
-    assert "'inner.rotatoin' is no input of the tubes (did you mean 'inner.rotation'?)" in str(refused.value)
-    assert "'inner.curvature' is no input of the tubes (rotations, translations and loads are" in str(refused.value)
+        sweep(SCENE, {"inner.rotatoin": [0.0]})
+    assert "row 1, inner.rotatoin: unknown key (did you mean 'rotation'?)" in str(refused.value)
+    with pytest.raises(SceneError) as refused:
+        sweep(SCENE, {"inner.straight": [0.18, -0.1]})
+    assert "row 2, inner.straight: must be >= 0, got -0.1" in str(refused.value)
     with pytest.raises(SceneError) as refused:
         sweep(SCENE, {"inner.translation": [0.1, 0.4, -0.1]})
     assert "row 2: inner.translation must be from 0 to the length of the tube" in str(refused.value)
     assert "row 3: inner.translation" in str(refused.value)
+    with pytest.raises(SceneError, match="row 1: tubes no tube stands out of the plate"):
+        sweep(SCENE, {"inner.translation": [0.0], "outer.translation": [0.0]})
+    # A tube that is shorter in a row has a range of its own there.
+    with pytest.raises(SceneError, match=r"row 2: inner\.translation must be .* length of the tube, 0\.25 m, got 0\.3"):
+        sweep(SCENE, {"inner.translation": [0.3, 0.3], "inner.straight": [0.18, 0.11]})
 
 
 def test_on_the_command_line(tmp_path: Path) -> None:

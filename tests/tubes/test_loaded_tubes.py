@@ -357,7 +357,7 @@ def test_the_jacobian_is_that_of_the_residual(loads: str) -> None:
     model = LoadedTubeModel(robot_of(parse_scene(weighed(TWO) + loads)), 2)
     symbols = [ca.MX.sym(f"x{i}", model.path_jacobian.size1_in(i)) for i in range(3)]
     differentiated = ca.Function("d", symbols, [ca.jacobian(model.path_residual(*symbols), symbols[0])])
-    x = np.random.default_rng(5).standard_normal(model.unknowns)
+    x = np.random.default_rng(5).standard_normal(model.size)
     at = (x, model.robot.inputs, 0.7)
     assert_allclose(model.path_jacobian(*at).full(), differentiated(*at).full(), rtol=0, atol=1e-13)
     jacobian, residual = model.jacobian(*at[:2])
@@ -369,7 +369,7 @@ def test_the_rate_of_a_path_is_that_of_differences() -> None:
     """Of inputs and load factor together, as a path of rods has it."""
     model = LoadedTubeModel(robot_of(parse_scene(TWO + PUSH)), 2)
     random = np.random.default_rng(6)
-    x, inputs_rate = random.standard_normal(model.unknowns), 0.1 * random.standard_normal(model.robot.inputs.size)
+    x, inputs_rate = random.standard_normal(model.size), 0.1 * random.standard_normal(model.robot.inputs.size)
     ahead, behind = (
         model.path_residual(x, model.robot.inputs + step * inputs_rate, 0.7 + 0.3 * step).full()
         for step in (DIFFERENCE, -DIFFERENCE)

@@ -468,7 +468,7 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
     [
         ("simulate tubes.toml --output out.csv", "works on rods"),
         ("modes tubes.toml --output out.json", "works on rods"),
-        ("inverse tubes.toml --output out.json", "works on rods"),
+        ("inverse tubes.toml --output out.json", "targets: missing"),
         ("identify tubes.toml --output out.json", "works on rods"),
         ("estimate tubes.toml --output out.csv", "works on rods"),
         ("sweep tubes.toml --output out.csv --over t.csv --set tubes[1].translation=9", "must be at most the length"),
@@ -476,7 +476,7 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
         ("export tubes.toml --page out.html", "is for rods"),
         ("tune tubes.toml --output out.toml --range inner.rotation=0:1", "works on rods"),
         ("bench tubes.toml --output out", "works on rods"),
-        ("view tubes.toml", "works on rods"),
+        ("view tubes.toml --range inner.rotation=0:1", "works on rods"),
         ("path tubes.toml --input inner.rotation --to 3 --branch --output out.json", "is for rods"),
         ("path tubes.toml --input inner.turn --to 3 --output out.json", "is no input"),
         ("path tubes.toml --input inner.rotation --to [3,4] --output out.json", "must be one number"),

@@ -30,11 +30,10 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.paths.path_refinement import follow
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.results.json_text import json_text
-from cosserat_casadi.results.path_file import path_table
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
-from cosserat_casadi.tubes.tube_path import TubePath
 
 
 def path(
@@ -76,7 +75,7 @@ def path(
     if output is not None:
         write_atomically(output, json_text(followed.to_dict()).encode())
     if table is not None:
-        write_atomically(table, path_table(followed).encode())
+        followed.write(table)
     if plot is not None:
         followed.write(plot)
     written = given_files(output, table, plot)

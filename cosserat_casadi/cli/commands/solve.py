@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -20,12 +20,14 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.json_text import json_text
-from cosserat_casadi.results.solution_file import Solved
 from cosserat_casadi.scene import read_scene, with_exact_contact
+
+if TYPE_CHECKING:
+    from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 
 
 def solve(
@@ -92,7 +94,9 @@ def solve(
         raise typer.Exit(NOT_FOUND)
 
 
-def _give(solution: Solved, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
+def _give(
+    solution: Equilibrium[Any] | TubeEquilibria, output: Path | None, plot: Path | None, *, as_json: bool
+) -> None:
     """Write, draw and print the solution."""
     if output is not None:
         write_atomically(output, json_text(solution.to_dict()).encode())

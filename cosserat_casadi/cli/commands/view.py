@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import webbrowser
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
-from cosserat_casadi.cli.commands.solving import solve_rods_with_progress
+from cosserat_casadi.cli.commands.solving import solve_rods_with_progress, solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
@@ -18,6 +18,7 @@ from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import locking_note, locking_sentence
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.scene import read_scene
 
 
@@ -46,9 +47,12 @@ def view(
     if is_compiled(viewed_scene):
         find_compiler()
     choice = None
+    solution: Equilibrium[Any]
     # Every answer in the view tells its error: modes that the scene fixes need not be verified beforehand, and in exact
     # contact, where a choice takes up to minutes, modes suit the scene's own inputs.
-    if not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly):
+    if viewed_scene.tubes:
+        solution = solve_with_progress(viewed_scene)
+    elif not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly):
         solution = solve_rods_with_progress(viewed_scene)
         print_locking(Console(stderr=True), locking_note(solution))
     else:

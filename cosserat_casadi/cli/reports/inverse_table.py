@@ -12,7 +12,6 @@ from cosserat_casadi.cli.reports.format import print_plain, print_written
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
-from cosserat_casadi.equilibrium.answer_error import remedy
 from cosserat_casadi.results.inverse_table import MET
 from cosserat_casadi.spelling import counted
 
@@ -61,5 +60,5 @@ def _error_sentence(targets: TargetTable, found: Sequence[Inverse]) -> str | Non
     missed = sum(found[row].solution.within_tolerance is False for row in errors)
     sentence = f"Estimated error at most {error} (line {targets.lines[worst]})"
     if missed:
-        return f"{sentence}, as in {counted(missed, 'row')}: {remedy(solution)}"
+        return f"{sentence}, as in {counted(missed, 'row')}: {solution.remedy}"
     return f"{sentence}."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Console
@@ -14,7 +14,7 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits, error_words
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.spelling import counted
 
@@ -32,7 +32,7 @@ def print_solution(console: Console, solution: Solution, written: Sequence[Path]
     _print_equilibrium(console, solution, counted(solution.iterations, "iteration"), written)
 
 
-def _print_outcome(console: Console, solution: Solution, colour: str) -> None:
+def _print_outcome(console: Console, solution: Equilibrium[Any], colour: str) -> None:
     print_plain(console, title_line(solution.model.scene.title))
     print_plain(console, f"[bold {colour}]{escape(solution.message)}[/]")
 
@@ -88,7 +88,15 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
         print_plain(console, "± is the estimated error of the model that the gap was measured on.")
     # The equilibrium was found by the optimiser: the solve that judges it has next to nothing left to do.
     work = f"{counted(inverse.rounds, 'round')} of the optimiser from {counted(inverse.starts, 'start')}"
-    _print_equilibrium(console, inverse.solution, work, written)
+    if isinstance(inverse.solution, Solution):
+        _print_equilibrium(console, inverse.solution, work, written)
+        return
+    # Imported here, because no scene of rods needs the modules of tubes.
+    from cosserat_casadi.cli.reports.tubes import print_tubes_and_merit
+
+    print_tubes_and_merit(console, inverse.solution)
+    print_plain(console, work)
+    print_written(console, written)
 
 
 def _angle(gap: TargetMiss) -> str:
@@ -104,7 +112,7 @@ def _with_error(gap: float, error: float | None) -> str:
     return f"{gap:.3g} ± {error:.1g}"
 
 
-def _outcome_colour(solution: Solution) -> str:
+def _outcome_colour(solution: Equilibrium[Any]) -> str:
     if not solution.converged:
         return "red"
     if solution.stable is False or solution.within_tolerance is False:

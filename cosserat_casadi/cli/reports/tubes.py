@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -11,26 +12,28 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits
+from cosserat_casadi.equilibrium.solution import Equilibrium
+from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
-from cosserat_casadi.tubes.tube_path import TubePath
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, model_of
 
 
-def print_tubes(console: Console, solution: TubeSolution | TubeEquilibria, written: Sequence[Path]) -> None:
+def print_tubes(console: Console, solution: Equilibrium[Any] | TubeEquilibria, written: Sequence[Path]) -> None:
     """Print an equilibrium, or all at the same inputs, and the files that were written."""
-    if isinstance(solution, TubeSolution):
-        _print_equilibrium(console, solution)
-    else:
+    if isinstance(solution, TubeEquilibria):
         _print_equilibria(console, solution)
+    else:
+        _print_message(console, solution.model.scene.title, solution.message, good=solution.converged)
+        print_tubes_and_merit(console, solution)
     print_written(console, written)
 
 
-def _print_equilibrium(console: Console, solution: TubeSolution) -> None:
-    """Print the outcome, the tubes, and the figures of merit."""
-    _print_message(console, solution.robot.scene.title, solution.message, good=solution.converged)
+def print_tubes_and_merit(console: Console, solution: Equilibrium[Any]) -> None:
+    """Print the tubes, and the figures of merit."""
+    assert isinstance(solution, TubeSolution)
     table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
     for index, (name, tip) in enumerate(solution.tips.items()):
         rotation, translation = solution.inputs[2 * index : 2 * index + 2]
@@ -52,7 +55,7 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
     """Print the files, their accuracy, and how to try them."""
     robot = solution.robot
     print_plain(console, title_line(robot.scene.title))
-    sizes = f"{solution.model.unknowns} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
+    sizes = f"{solution.model.size} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
     print_plain(
         console, f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}."
     )
@@ -82,7 +85,7 @@ def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
     """Print the outcome, the events and the end of a path, and the files that were written."""
-    _print_message(console, path.title, path.message, good=path.converged)
+    _print_message(console, path.model.scene.title, path.message, good=path.converged)
     if path.solutions:
         console.print(_path_table(path))
     parts = [counted(len(path.values), "point"), counted(len(path.events), "event")]
@@ -100,7 +103,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
-    unknowns = model_of(robot, FEWEST_STEPS).unknowns
+    unknowns = model_of(robot, FEWEST_STEPS).size
     print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 

@@ -82,7 +82,7 @@ class CompiledTubes(LoadedLibrary):
         return list(self.manifest[TUBES])
 
     @property
-    def unknowns(self) -> int:
+    def size(self) -> int:
         """Number of unknowns."""
         return int(self.manifest["unknowns"])
 
@@ -170,13 +170,13 @@ class CompiledTubes(LoadedLibrary):
     def residual(self, x: npt.ArrayLike, inputs: ArgumentValues) -> FloatArray:
         """The residual, shape (unknowns,)."""
         given = self.inputs.stacked(inputs)
-        result = np.zeros(self.unknowns)
-        own = vector(x, self.unknowns, "x")
+        result = np.zeros(self.size)
+        own = vector(x, self.size, "x")
         self._function("residual")(pointer(own), pointer(given), pointer(result), self._workspace())
         return result
 
     def _start(self, start: CompiledTubesSolution | None) -> FloatArray:
-        return np.zeros(self.unknowns) if start is None else start.x.copy()
+        return np.zeros(self.size) if start is None else start.x.copy()
 
     def _ended(self, word: str, *arguments: Any) -> TubeInfo:
         """How a call of a function of the solver ended."""

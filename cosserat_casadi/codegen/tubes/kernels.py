@@ -42,7 +42,7 @@ class TubeKernels:
         y, inputs, t = self._arguments
         change = ca.MX.sym("inputs_rate", inputs.size1())
         t_rate = ca.MX.sym("t_rate")
-        step = ca.MX.sym("step", self.model.unknowns)
+        step = ca.MX.sym("step", self.model.size)
         at = self._given(t)
         residual = self.model.path_residual(*at)
         jacobian = self.model.path_jacobian(*at)
@@ -62,7 +62,7 @@ class TubeKernels:
     @cached_property
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
         """Twist, inputs, and place t on the way from straight tubes."""
-        return ca.MX.sym("y", self.model.unknowns), ca.MX.sym("inputs", self.model.robot.inputs.size), ca.MX.sym("t")
+        return ca.MX.sym("y", self.model.size), ca.MX.sym("inputs", self.model.robot.inputs.size), ca.MX.sym("t")
 
     def _given(self, t: ca.MX) -> tuple[Matrix, Matrix, Matrix]:
         """Unknowns, inputs and load factor of the model at a place on the way."""
@@ -80,7 +80,7 @@ class TubeKernels:
         """Unknowns of the model."""
         y, inputs, _ = self._arguments
         robot = self.model.robot
-        frame = ca.DM([1, 0, 0, 0])[: self.model.unknowns - robot.size]
+        frame = ca.DM([1, 0, 0, 0])[: self.model.size - robot.size]
         return y + ca.vertcat(robot.rotations(inputs), frame)
 
     @cached_property
@@ -98,7 +98,7 @@ class TubeKernels:
         other_positions, other_quaternions = self._halved.tips(self._x + step, inputs)
         length = ca.mmax(self.model.robot.translations(inputs))
         changes = []
-        for index in range(self.model.size):
+        for index in range(self.model.tube_count):
             difference = quaternion_product(quaternion_conjugate(quaternions[:, index]), other_quaternions[:, index])
             angle = 2 * ca.atan2(ca.norm_2(difference[1:]), ca.fabs(difference[0]))
             distance = ca.norm_2(other_positions[:, index] - positions[:, index])
@@ -110,8 +110,8 @@ class TubeKernels:
         """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both."""
         jacobian, by_inputs, _, poses_by_x, poses_by_inputs = self.model.sensitivity(self._x, self._arguments[1])
         # At the same twist a tip turns with its drive.
-        size = self.model.size
-        turning = ca.DM(self.model.unknowns, self.model.robot.inputs.size)
+        size = self.model.tube_count
+        turning = ca.DM(self.model.size, self.model.robot.inputs.size)
         for index in range(size):
             turning[index, 2 * index] = 1
         return [jacobian, by_inputs + jacobian @ turning, poses_by_x, poses_by_inputs + poses_by_x @ turning]

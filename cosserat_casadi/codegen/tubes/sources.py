@@ -24,7 +24,7 @@ from cosserat_casadi.codegen.library import (
 from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.parameter_sources import ROWS_OF_INPUTS
+from cosserat_casadi.codegen.parameter_sources import WITHOUT
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
@@ -54,6 +54,9 @@ RANGES = (
     "   stands out of the plate, each of which is in its range; at bounds and ranges it does not look."
 )
 """Which ranges inputs have, and what the solver does beyond them, for the header."""
+
+ONE_SIDED = " Where two tubes end at one\n   place, or a curved part begins in the plate, they are those of one side."
+"""Which derivatives a library has where there is none to both sides."""
 
 VERBATIM = (*(file for file in SHARED if file not in OTHERS), "linear_dense.c", *OWN)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
@@ -90,8 +93,8 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
     generated = kernel_sources(kernels, names)
     words = _words(model, names, generated, error_estimate)
     files = {
-        f"{name}.h": render("tubes.h.in", words),
-        f"{name}.c": render("tubes_library.c.in", words),
+        f"{name}.h": render("library.h.in", words),
+        f"{name}.c": render("library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("tubes_demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
@@ -110,7 +113,7 @@ def _words(
     model: TubeFunctions, names: Names, generated: dict[str, str], error_estimate: float | None
 ) -> dict[str, Any]:
     robot = model.robot
-    size = model.unknowns
+    size = model.size
     basics: dict[str, Any] = {
         "name": names.name,
         "MACRO": names.macro,
@@ -131,18 +134,24 @@ def _words(
         "title": comment(robot.scene.title or names.name),
         **PLAIN_BUILD,
         "of_tubes": True,
+        **WITHOUT,
+        **dict.fromkeys(("functions", "prototypes"), ""),
         "inner": "any_",
-        "inner_equations": "",
+        "solves_tangent": True,
         "first": 1.0,
+        "input_room": robot.inputs.size,
+        "batch_workspace": f"{names.name}_workspace",
+        "pose_owners": "the tip of each tube",
+        "one_sided": ONE_SIDED,
+        "turn_jacobians": 3,
         "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
         "kept_steps": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
-        **ROWS_OF_INPUTS,
         "batch_solve": "tubes_solve",
         "unknowns_under_loads": under_loads if robot.loads else "",
-        "number_macros": _number_macros(names, robot),
+        "pose_macros": _number_macros(names, robot),
         "first_tube": int(np.argmax(robot.translations(robot.inputs))),
         "halved_residual": repr(RESOLVED * robot.tolerance),
         "lengths": numbers(robot.length.tolist()),
@@ -181,7 +190,7 @@ def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) 
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(model),
         TUBES: list(robot.names),
-        "unknowns": model.unknowns,
+        "unknowns": model.size,
         "steps": model.steps,
         "tolerance": robot.tolerance,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),

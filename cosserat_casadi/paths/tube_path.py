@@ -7,6 +7,7 @@ equilibrium that the path has at the same inputs, which lies beyond the next fol
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -16,14 +17,14 @@ from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.events import DETERMINANT, Event
+from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.progress import Progress
-from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
-from cosserat_casadi.result import Result
+from cosserat_casadi.numerics.trace import PathOutcome, trace
+from cosserat_casadi.paths.equilibrium_path import InputPath, PathEvent, path_events
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.tube_solve import MOST_STEPS, model_of, solution_at, solution_near, solve_at, solve_tubes
+from cosserat_casadi.tubes.tube_solve import doubled, model_of, solution_at, solution_near, solve_at, solve_tubes
 
 TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
 """Limits of a path over a rotation or a load; angles at the tips count in rad, the input as the share of its way."""
@@ -70,45 +71,39 @@ class TubeEvent:
         return self.solution.energy - self.snaps_to.energy
 
 
-@dataclass(frozen=True, repr=False)
-class TubePath(Result):
-    """Equilibria of concentric tubes along one input.
+@dataclass(frozen=True, repr=False, kw_only=True)
+class TubePath(InputPath[TubeFunctions, TubeEvent]):
+    """Equilibria of concentric tubes along one input, from the value that it has to another.
 
-    Attributes:
-        title: of the scene.
-        name: of the input that moves.
-        unit: of the input.
-        outcome: how the path ended.
-        values: of the input at k points in the order of travel, shape (k,).
-        solutions: the equilibria at these points.
-        events: limit points and bifurcations in the order of travel.
-        error_estimate: estimated error of the events' values, relative to the input's way, and of the tips there and
-            at the end; None where it was not estimated.
+    The error of the events is that of the input's values there, relative to its way.
     """
 
-    title: str
-    name: str
-    unit: str
-    outcome: PathOutcome
-    values: FloatArray
-    solutions: tuple[TubeSolution, ...]
-    events: tuple[TubeEvent, ...]
-    error_estimate: float | None
+    @property
+    def robot(self) -> Robot:
+        """The tubes."""
+        return self.model.robot
 
     @property
-    def converged(self) -> bool:
-        """Whether the input's value was reached within tolerance."""
-        return self.outcome is PathOutcome.CONVERGED
+    def unit(self) -> str:
+        """Unit of the input."""
+        index = self.robot.input_index(self.name)
+        return next(entry.unit for entry, span in self.robot.layout if index < span.stop)
 
     @property
-    def message(self) -> str:
-        """A sentence for the user."""
-        return WORDS.get(self.outcome, self.outcome.value)
+    def values(self) -> FloatArray:
+        """The input at the points of the path, shape (k,)."""
+        return self.all_inputs[:, self.robot.input_index(self.name)]
+
+    @cached_property
+    def solutions(self) -> tuple[TubeSolution, ...]:
+        """The equilibria at the points of the path."""
+        # The path is corrected at each of its points.
+        return tuple(solution_at(self.model, *point, found=True) for point in zip(self.all_inputs, self.x, strict=True))
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:
         """Whether each point is stable, shape (k,); None where the loads have no energy."""
-        if self.solutions and not self.solutions[0].robot.has_energy:
+        if not self.robot.has_energy:
             return None
         return np.array([solution.stable for solution in self.solutions], dtype=np.bool_)
 
@@ -161,26 +156,25 @@ def follow_tubes(
     end = robot.packed({**dict(zip(robot.columns, start, strict=True)), name: to})
     if end[index] == start[index]:
         raise SceneError(Problem(name, f"is {end[index]:g} where the path begins", "give another value to go to"))
-    way = _Way(robot, name, start, end, first, settings)
+
+    def followed(steps: int) -> TubePath:
+        return _followed(model_of(robot, steps), name, start, end, first, settings, progress)
+
     if isinstance(subject, TubeFunctions):
-        return way.followed(subject.steps, progress)
+        return followed(subject.steps)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
-    rough = way.followed(steps, progress)
-    while True:
-        steps *= 2
-        fine = way.followed(steps, progress)
-        error = _difference(rough, fine)
-        if not fine.converged and fine.outcome is rough.outcome:
-            return fine
-        if error is not None and error <= robot.tolerance:
-            return replace(fine, error_estimate=error)
-        if steps >= MOST_STEPS:
-            outcome = fine.outcome
-            if fine.converged:
-                outcome = PathOutcome.UNRESOLVED
-            return replace(fine, outcome=outcome, error_estimate=error)
-        rough = fine
+    path, error = doubled(
+        followed,
+        steps,
+        _difference,
+        robot.tolerance,
+        lambda _, rough, fine: not fine.converged and fine.outcome is rough.outcome,
+    )
+    path = replace(path, error_estimate=error)
+    if path.converged and not (error is not None and error <= robot.tolerance):
+        return replace(path, outcome=PathOutcome.UNRESOLVED, message=WORDS[PathOutcome.UNRESOLVED])
+    return path
 
 
 def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
@@ -198,121 +192,83 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
     """Largest error of events and end of a path beside a finer one; None where they do not correspond."""
-    if not (rough.converged and fine.converged) or len(rough.events) != len(fine.events):
+    kinds = [[event.kind for event in path.events] for path in (rough, fine)]
+    if not (rough.converged and fine.converged) or kinds[0] != kinds[1]:
         return None
     errors = [tip_error(rough.solutions[-1], fine.solutions[-1])]
     way = abs(fine.values[-1] - fine.values[0])
     for event, exact in zip(rough.events, fine.events, strict=True):
-        if event.kind != exact.kind:
-            return None
         errors += [abs(event.value - exact.value) / way, tip_error(event.solution, exact.solution)]
     return float(max(errors))
 
 
-@dataclass(frozen=True)
-class _Way:
-    """One input of a robot that moves.
+def _followed(
+    model: TubeFunctions,
+    name: str,
+    start: FloatArray,
+    end: FloatArray,
+    at_start: TubeSolution | None,
+    limits: ArcSettings | None,
+    progress: Progress | None,
+) -> TubePath:
+    """The path of a model while one input moves.
 
-    Attributes:
-        robot: the tubes.
+    Args:
+        model: the robot.
         name: of the input.
         start: inputs at factor 0.
         end: inputs at factor 1.
         at_start: an equilibrium to begin at; None for that of a solve.
         limits: of the path; None for those of the kind of the input.
+        progress: receives the largest share of the way.
     """
-
-    robot: Robot
-    name: str
-    start: FloatArray
-    end: FloatArray
-    at_start: TubeSolution | None
-    limits: ArcSettings | None
-
-    @property
-    def unit(self) -> str:
-        """Unit of the input."""
-        index = self.robot.input_index(self.name)
-        return next(entry.unit for entry, span in self.robot.layout if index < span.stop)
-
-    def inputs(self, factor: float) -> FloatArray:
-        """All inputs at a factor."""
-        return self.start + factor * (self.end - self.start)
-
-    def value(self, factor: float) -> float:
-        """The moving input at a factor."""
-        return float(self.inputs(factor)[self.robot.input_index(self.name)])
-
-    def followed(self, steps: int, progress: Progress | None) -> TubePath:
-        """The path of the model with a number of steps."""
-        model = model_of(self.robot, steps)
-        if self.at_start is None:
-            first = solve_at(model, self.start)
-        else:
-            first = solution_near(model, self.start, self.at_start.x)
-        if not first.converged:
-            return self._path(model, Trace([], outcome=PathOutcome.NO_START))
-        path = input_path(model, first.x, self.start, self.end)
-        usual = SLIDING if self.unit == "m" else TURNING
-        traced = trace(Curve(path, DETERMINANT, self.limits or usual), progress=progress)
-        return self._path(model, traced)
-
-    def _path(self, model: TubeFunctions, traced: Trace) -> TubePath:
-        factors = [point.load_factor for point in traced.points]
-        solutions = [self._solution(model, point.x, point.load_factor) for point in traced.points]
-        lengths = [point.length for point in traced.points]
-        events = []
-        for event in traced.events:
-            position = int(np.searchsorted(lengths, event.point.length, side="right"))
-            events.append(self._event(model, event, position, factors, solutions))
-        return TubePath(
-            title=self.robot.scene.title,
-            name=self.name,
-            unit=self.unit,
-            outcome=traced.outcome or PathOutcome.MAX_STEPS,
-            values=np.array([self.value(factor) for factor in factors]),
-            solutions=tuple(solutions),
-            events=tuple(events),
-            error_estimate=None,
-        )
-
-    def _solution(self, model: TubeFunctions, x: FloatArray, factor: float) -> TubeSolution:
-        # The path is corrected at each of its points.
-        return solution_at(model, self.inputs(factor), x, found=True)
-
-    def _event(
-        self, model: TubeFunctions, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]
-    ) -> TubeEvent:
-        factor = event.point.load_factor
-        at_event = self._solution(model, event.point.x, factor)
-        snaps_to = None
-        if event.kind == "limit" and solutions[position - 1].stable:
-            snaps_to = _next_stable(model, at_event.inputs, factor, factors[position:], solutions[position:])
-        return TubeEvent(event.kind, self.value(factor), at_event, position, snaps_to)
+    first = solve_at(model, start) if at_start is None else solution_near(model, start, at_start.x)
+    path = TubePath(
+        model=model,
+        name=name,
+        base=start,
+        change=end - start,
+        outcome=PathOutcome.NO_START,
+        message=WORDS[PathOutcome.NO_START],
+        factor=np.zeros(0),
+        x=np.zeros((0, model.size)),
+        events=(),
+    )
+    if not first.converged:
+        return path
+    usual = SLIDING if path.unit == "m" else TURNING
+    curve = Curve(input_path(model, first.x, start, end), DETERMINANT, limits or usual)
+    traced = trace(curve, progress=progress)
+    outcome = traced.outcome or PathOutcome.MAX_STEPS
+    y = np.array([point.y for point in traced.points]).reshape(-1, model.size + 1)
+    path = replace(path, outcome=outcome, message=WORDS.get(outcome, outcome.value), factor=y[:, -1], x=y[:, :-1])
+    events = path_events(traced, np.ones(model.size))
+    return replace(path, events=tuple(_event(path, event) for event in events))
 
 
-def _next_stable(
-    model: TubeFunctions, inputs: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
-) -> TubeSolution | None:
-    """The first stable equilibrium that a path comes to at a factor.
+def _event(path: TubePath, event: PathEvent) -> TubeEvent:
+    """An event of the path with its equilibrium, and where the robot snaps to."""
+    inputs = path.inputs(event.factor)
+    at_event = solution_at(path.model, inputs, event.x, found=True)
+    snaps_to = None
+    if event.kind == "limit" and path.solutions[event.position - 1].stable:
+        snaps_to = _next_stable(path, at_event.inputs, event)
+    return TubeEvent(event.kind, float(inputs[path.robot.input_index(path.name)]), at_event, event.position, snaps_to)
 
-    Args:
-        model: the robot.
-        inputs: at the factor.
-        factor: the factor.
-        factors: of the points of the path from there on.
-        solutions: the equilibria at these points.
-    """
-    for index in range(1, len(factors)):
-        before = factors[index - 1] - factor
-        after = factors[index] - factor
+
+def _next_stable(path: TubePath, inputs: FloatArray, event: PathEvent) -> TubeSolution | None:
+    """The first stable equilibrium that a path comes to at the inputs of an event, beyond it."""
+    beyond = path.factor[event.position :] - event.factor
+    solutions = path.solutions[event.position :]
+    for index in range(1, len(beyond)):
+        before, after = beyond[index - 1], beyond[index]
         if before * after > 0.0 or not solutions[index].stable:
             continue
         share = 0.0
         if after != before:
             share = -before / (after - before)
         start = solutions[index - 1].x + share * (solutions[index].x - solutions[index - 1].x)
-        reached = solution_near(model, inputs, start)
+        reached = solution_near(path.model, inputs, start)
         if reached.converged and reached.stable:
             return reached
     return None
