@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, discretise, parse_scene, solve
+from cosserat_casadi import Solution, build, discretise, export, parse_scene, solve
 from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
 from cosserat_casadi.equilibrium.contact.cushions import cushioned
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, is_inside_between
 from cosserat_casadi.equilibrium.load_path import load_path
+from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.numerics.continuation import ContinuationSettings, PathPoint, follow
 from cosserat_casadi.numerics.outcome import Outcome
@@ -135,6 +137,38 @@ def test_a_rod_touches_a_thin_bar(height: float, radius: float, tip: tuple[float
     x, _, z = solution.tip().position[0]
     assert_allclose([x, z], tip, rtol=0, atol=5e-5)
     assert solution.stable
+
+
+HEAVY = PLANAR + weight(-49.05) + plane("t", 0.0)
+"""A rod of 5 N that is clamped on a plane, along it."""
+
+
+@pytest.mark.parametrize(("load", "end", "tip"), [(0.0, 1.0, 0.0), (-1.0, 1.0, 1.0), (0.5, 0.8, 0.5)])
+def test_a_rod_that_is_clamped_on_a_plane_lies_on_it_from_its_base(load: float, end: float, tip: float) -> None:
+    """The plane bears all; a tip that a force F lifts leaves it where 2 F / weight of the rod are left."""
+    solution = on_coarse_modes(HEAVY + push(load))
+    assert solution.converged, solution.message
+    check_holds(solution)
+    (line,) = solution.contacts
+    assert line.start == 0.0
+    # Of second order in the slope of what is lifted.
+    assert_allclose(line.end, end, rtol=0, atol=1e-6)
+    assert_allclose(line.ends, [0.0, tip], rtol=0, atol=1e-5)
+    assert_allclose(line.force, [0.0, 0.0, 5.0 - load], rtol=0, atol=1e-9)
+    assert_allclose(solution.base_wrench().force, 0.0, rtol=0, atol=1e-9)
+
+
+def test_a_rod_that_is_clamped_above_a_plane_meets_it_at_the_fourth_root_of_the_gap() -> None:
+    """So small a gap is one: the rod falls through h = q s⁴ / 72 EI."""
+    solution = on_coarse_modes(HEAVY.replace("point = [0, 0, 0.0]", "point = [0, 0, -1e-10]"))
+    (line,) = solution.contacts
+    assert_allclose(line.start, (72 * 1e-10 / 5.0) ** 0.25, rtol=1e-3, atol=0)
+
+
+def test_c_is_not_written_for_a_line_from_the_base(tmp_path: Path) -> None:
+    model = build(parse_scene(HEAD + HEAVY), discretise(parse_scene(HEAD + HEAVY), 5))
+    with pytest.raises(ExportError, match="lies on 't' from its base on"):
+        export(model, tmp_path)
 
 
 def test_planes_that_coincide_are_as_one() -> None:

@@ -119,6 +119,7 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> C
         met.add(state_in(case.model.scene))
         before = row
     met.add(ContactState(()))
+    _refuse_lines_from_the_base(list(met.states.values()))
     _refuse_split_lines(list(met.states.values()))
     count = len(met.states)
     if count > MOST_ARRANGEMENTS:
@@ -155,6 +156,25 @@ def _refuse_split_lines(states: Sequence[ContactState]) -> None:
             "give each obstacle a width, m, for a contact that is smooth",
         )
         for rod, obstacle, X in sorted(split)
+    ]
+    if problems:
+        raise ExportError(*problems)
+
+
+def _refuse_lines_from_the_base(states: Sequence[ContactState]) -> None:
+    """Refuse lines of contact that begin where the rod does.
+
+    Raises:
+        ExportError: there are some.
+    """
+    lines = {(touch.owner, touch.obstacle) for state in states for touch in state.touches if touch.starts_at_base}
+    problems = [
+        Problem(
+            f"rods.{rod}",
+            f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C",
+            "give the obstacle a width, m, or move it off the base",
+        )
+        for rod, obstacle in sorted(lines)
     ]
     if problems:
         raise ExportError(*problems)

@@ -17,8 +17,17 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR, instead_of_pulling, met, otherwise
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, Placed
 from cosserat_casadi.equilibrium.contact.contact_newton import sought
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, body_gap, body_pairs, gap_along, pairs, runs
+from cosserat_casadi.equilibrium.contact.contact_state import BASE, TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.gaps import (
+    DENSE,
+    body_gap,
+    body_pairs,
+    gap_along,
+    lies_at_base,
+    obstacle_of,
+    pairs,
+    runs,
+)
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
@@ -212,6 +221,8 @@ class Settling:
             candidate = candidate.apart.split(self.sections)
             if not candidate.in_order or any(_alike(candidate, other) for other in tried):
                 continue
+            if any(touch.starts_at_base and not _lies_at_base(start, touch) for touch in candidate.touches):
+                continue
             tried.append(candidate)
             found = self.solve(candidate, start)
             if found is None:
@@ -317,6 +328,12 @@ def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[Contact
             continue
         if touch not in pulling:
             changes.append(Replacement(touch, tuple(_instead_of_entering(penetrated, touch))))
+    changed = [change.touch for change in changes]
+    for touch in found.state.touches:
+        # Where a base lies on the obstacle already only rounding says where the line begins.
+        beside_base = touch.is_line and not touch.starts_at_base and touch.start < NEAR
+        if beside_base and touch not in changed and _lies_at_base(found.solution, touch):
+            changes.append(Replacement(touch, ((replace(touch, start=BASE),),)))
     if not changes:
         return
     # All that is at fault is changed at once; then each in another way.
@@ -326,6 +343,10 @@ def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[Contact
         others = likeliest[:index] + likeliest[index + 1 :]
         for option in change.options[1:]:
             yield _changed(found.state, [*others, (change.touch, option)])
+
+
+def _lies_at_base(solution: Solution, touch: Touch) -> bool:
+    return lies_at_base(solution, touch.owner, obstacle_of(solution.model.scene, touch.obstacle))
 
 
 def _by_touch(found: ContactEquilibrium, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:

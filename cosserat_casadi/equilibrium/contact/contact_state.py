@@ -20,6 +20,9 @@ from cosserat_casadi.model.element_ends import element_ends
 Place = Any
 """An abscissa X: a number, or an expression while it is sought."""
 
+BASE = 0.0
+"""Abscissa from which a rod lies on an obstacle that its base lies on already: a line of contact there has no end."""
+
 TIP = 1.0
 """Abscissa of the section that contact cannot move beyond."""
 
@@ -74,10 +77,10 @@ class Touch:
 
     @property
     def moves(self) -> tuple[bool, ...]:
-        """Whether each of its ends is sought: all but the tip, none of a body."""
+        """Whether each of its ends is sought: all but the base of a line and the tip, none of a body."""
         if self.of_body:
             return (False,)
-        return tuple(is_symbolic(end) or end < TIP for end in self.ends)
+        return tuple(is_symbolic(end) or BASE < end < TIP for end in self.ends)
 
     @property
     def moving(self) -> tuple[Place, ...]:
@@ -86,25 +89,39 @@ class Touch:
 
     @property
     def carriers(self) -> tuple[Place, ...]:
-        """Abscissae of the forces at sections, base to tip: of the one point, or of both ends and the seams."""
-        return (self.start, *self.seams, self.end) if self.is_line else (self.start,)
+        """Abscissae of the forces at sections, base to tip: of the one point, or of both ends and the seams.
+
+        What presses on the base the clamp bears, and no rod.
+        """
+        if not self.is_line:
+            return (self.start,)
+        sections = (*self.seams, self.end)
+        return sections if self.starts_at_base else (self.start, *sections)
 
     @property
     def carriers_move(self) -> tuple[bool, ...]:
         """Whether each of these is sought."""
-        return (self.moves[0], *(False for _ in self.seams), *self.moves[1:])
+        seams = tuple(False for _ in self.seams)
+        if self.starts_at_base:
+            return (*seams, self.moves[-1])
+        return (self.moves[0], *seams, *self.moves[1:])
 
     def sorted_forces(self, forces: FloatArray) -> tuple[tuple[float, ...], tuple[SectionForce, ...]]:
         """Forces at sections as those at the ends, and those inside a line."""
         if not self.is_line:
             return tuple(forces.tolist()), ()
-        first, *inside, last = forces.tolist()
+        first, *inside, last = [0.0, *forces.tolist()] if self.starts_at_base else forces.tolist()
         return (first, last), tuple(map(SectionForce, self.seams, inside))
 
     @property
     def stretches(self) -> tuple[tuple[Place, Place], ...]:
         """Start and end of each part of a line along which its force per length is smooth; none of a point."""
-        return tuple(pairwise(self.carriers))
+        return tuple(pairwise((BASE, *self.carriers) if self.starts_at_base else self.carriers))
+
+    @property
+    def starts_at_base(self) -> bool:
+        """Whether it is a line that begins where the rod does."""
+        return self.is_line and not is_symbolic(self.start) and self.start == BASE
 
     @property
     def reaches_tip(self) -> bool:
@@ -120,7 +137,10 @@ class Touch:
         """The same contact at other places, one for each that is sought."""
         if self.of_body:
             return self
-        ends = [*places, TIP][: len(self.ends)]
+        ends = [*places, TIP]
+        if self.starts_at_base:
+            ends.insert(0, BASE)
+        ends = ends[: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
 
     def split(self, sections: Sequence[float]) -> Touch:
@@ -132,7 +152,7 @@ class Touch:
         if not self.is_line:
             place = _beside(self.start, sections, CLEAR) if self.moves[0] else self.start
             return replace(self, start=place, end=place)
-        start = _beside(self.start, sections, -CLEAR)
+        start = BASE if self.starts_at_base else _beside(self.start, sections, -CLEAR)
         end = self.end if self.reaches_tip else _beside(self.end, sections, CLEAR)
         return replace(self, start=start, end=end, seams=tuple(X for X in sections if start < X < end))
 
@@ -140,11 +160,12 @@ class Touch:
         """Number of polynomials of the force per length on each stretch.
 
         In a stretch whose curvature has n polynomials the distance has n + 2. At its start distance and slope are
-        known: where the line begins as the conditions of a sought end, at a seam from the stretch before. At its end a
-        sought end takes two more, a seam or the tip the distance alone; with the rest all are met, and none twice.
+        known: where the line begins as the conditions of a sought end or of the clamp, at a seam from the stretch
+        before. At its end a sought end takes two more, a seam or the tip the distance alone; with the rest all are
+        met, and none twice.
         """
         counts = []
-        for moves in self.carriers_move[1:]:
+        for moves in self.carriers_move[-len(self.stretches) :]:
             conditions = 2 + (2 if moves else 1)
             counts.append(max(modes + 2 - conditions, 1))
         return tuple(counts)
@@ -185,10 +206,11 @@ class ContactState:
         return cls(tuple(sorted(touches, key=_order)))
 
     @property
-    def signature(self) -> tuple[tuple[str, str, str, bool, bool], ...]:
+    def signature(self) -> tuple[tuple[str, str, str, bool, bool, bool], ...]:
         """The discrete part of the state: two states with the same signature differ in their places alone."""
         return tuple(
-            (touch.owner, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
+            (touch.owner, touch.obstacle, touch.kind, touch.starts_at_base, touch.reaches_tip, touch.of_body)
+            for touch in self.touches
         )
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:

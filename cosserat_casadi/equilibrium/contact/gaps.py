@@ -18,6 +18,9 @@ from cosserat_casadi.rod.properties import RodProperties
 DENSE = np.linspace(0.0, 1.0, 801)
 """Abscissae at which rods are held against obstacles; they are no nodes."""
 
+ROUNDING = 1e-14
+"""Gap and slope at a base, relative to the length, that are zero."""
+
 
 def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
     """Every rod with every obstacle that it touches exactly, if at all; of obstacles that coincide with the first."""
@@ -103,6 +106,21 @@ def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: Fl
     positions = seen_sections(solution, rod, obstacle, X)
     _, gradient, _ = surface(obstacle).map(len(X))(positions.T)
     return world_directions(solution, obstacle, gradient.full().T)
+
+
+def lies_at_base(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord) -> bool:
+    """Whether a clamp holds the base of a rod on an obstacle and along it: gap and slope are zero to rounding.
+
+    A line of contact begins at the fourth root of such a gap: one of 1e-12 of the length is no rounding.
+    """
+    if obstacle.body is not None or solution.model.discrete.unloaded.floating_base(rod) is not None:
+        return False
+    at_base = np.zeros(1)
+    properties = solution.model.discrete.rods[rod].properties
+    base, tip = section_radius(properties, np.array([0.0, 1.0]))
+    tangent = solution.pose(at_base, rod).rotation[0, :, 2]
+    slope = normals(solution, rod, obstacle, at_base)[0] @ tangent - (tip - base) / properties.length
+    return bool(max(abs(gap_along(solution, rod, obstacle, at_base)[0]), abs(slope)) <= ROUNDING)
 
 
 def touching_points(solution: Solution, contact: Contact, along: int) -> FloatArray:
