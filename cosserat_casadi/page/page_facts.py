@@ -108,7 +108,7 @@ def _rod(scene: scenes.Scene, rod: scenes.Rod, index: int) -> dict[str, Any]:
     described |= _section(rod.section)
     # The middle of each disk, X, with its radius and thickness, m.
     rows = [row for row in scene.disks if row.rod == rod.name]
-    described["disks"] = [_rounded(np.array([at, row.radius, row.thickness])) for row in rows for at in row.places]
+    described["disks"] = [rounded(np.array([at, row.radius, row.thickness])) for row in rows for at in row.places]
     inside = [
         actuator for actuator in scene.actuators if actuator.rod == rod.name and _runs_inside(actuator, described)
     ]
