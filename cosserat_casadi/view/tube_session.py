@@ -198,7 +198,7 @@ class TubeSession:
 
 def _tube(tube: scenes.Tube, index: int) -> dict[str, Any]:
     """Colour and outer radius of a tube, m; nothing of one that is given by its stiffness."""
-    described: dict[str, Any] = {"colour": rod_colour(index), "carried": index > 0, "see_through": True}
+    described: dict[str, Any] = {"colour": rod_colour(index), "carried": index > 0, "see_through": True, "disks": []}
     if tube.section is not None:
         radii = [float(tube.section.outer_radius)] * len(SECTIONS)
         described |= {"shape": "circle", "x": radii, "y": radii}

@@ -68,6 +68,7 @@ def test_the_page_is_told_as_much_as_of_rods() -> None:
     of_rods = page_facts(solve(build(scene(push()), discretise(scene(push()), 1, 2))))
     assert set(session_of().facts()) == {*of_rods, "motion", "modes", "note"}
     tube = session_of().facts()["rods"]["inner"]
+    assert {*of_rods["rods"]["rod"], "shape", "x", "y"} == set(tube)
     assert tube["x"] == [0.9e-3] * len(SECTIONS)
 
 
