@@ -120,24 +120,23 @@ class SceneSolver:
 
     def solve(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
         """Solution on a discretisation, from one with fewer modes where that is near, else from the unloaded scene."""
-        solution = self._solved(discretisation, coarser)
-        sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in discretisation.items()}
-        LOG.info("modes and intervals %s: %s, %d iterations so far", sizes, solution.outcome.label, self.iterations)
-        return solution
-
-    def _solved(self, discretisation: dict[str, Discretisation], coarser: Solution | None) -> Solution:
         model = self.build(discretisation)
         if coarser is not None:
             # Stays on the branch of the coarser solution, and costs a few Newton steps only.
             corrected = corrected_from(model, prolong(coarser, model), coarser.inputs)
             if corrected is not None:
-                self.iterations += corrected.iterations
-                return corrected
-        solution = solve(model, self.values, progress=self.progress, estimate_error=False)
-        self.iterations += solution.iterations
+                return self._counted(corrected)
+        solution = self._counted(solve(model, self.values, progress=self.progress, estimate_error=False))
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
             return self.relax(solution)
+        return solution
+
+    def _counted(self, solution: Solution) -> Solution:
+        """The same solution; its iterations are counted, and the log tells of it."""
+        self.iterations += solution.iterations
+        sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in solution.model.discretisation.items()}
+        LOG.info("modes and intervals %s: %s, %d iterations", sizes, solution.outcome.label, solution.iterations)
         return solution
 
     def relax(self, solution: Solution) -> Solution:
