@@ -21,7 +21,7 @@ def test_a_solve_tells_its_levels(caplog: pytest.LogCaptureFixture) -> None:
     }
     (last,) = [record.message for record in caplog.records if "Enough" in record.message]
     assert last.startswith("level of ")
-    assert "converged" in caplog.text
+    assert "CONVERGED" in caplog.text
     assert solution.converged
 
 

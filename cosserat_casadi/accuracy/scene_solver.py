@@ -136,7 +136,7 @@ class SceneSolver:
         """The same solution; its iterations are counted, and the log tells of it."""
         self.iterations += solution.iterations
         sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in solution.model.discretisation.items()}
-        LOG.info("modes and intervals %s: %s, %d iterations", sizes, solution.outcome.label, solution.iterations)
+        LOG.info("modes and intervals %s: %s, %d iterations", sizes, solution.outcome.name, solution.iterations)
         return solution
 
     def relax(self, solution: Solution) -> Solution:
