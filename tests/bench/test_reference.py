@@ -26,6 +26,8 @@ UNKNOWN = (
     'kind = "flow"',
     "[[obstacles]]",
     "[[tubes]]",
+    "[[disks]]",
+    'law = "',
 )
 """Words of scenes that shooting does not know."""
 
