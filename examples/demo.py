@@ -41,6 +41,7 @@ SCENES = (
     "finger_to_point",
     "helical_tendon",
     "two_section_robot",
+    "disk_robot",
     "soft_arm",
     "branching_rod",
     "six_rod_platform",

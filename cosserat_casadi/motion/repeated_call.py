@@ -42,9 +42,9 @@ class RepeatedCall:
         self._buffer = buffer
 
     def __call__(self, *values: FloatArray) -> FloatArray:
-        """The first result, a column, as an array of shape (n,), for arguments in their order."""
+        """The first result, column after column, as an array of shape (n,), for arguments in their order."""
         self._evaluated(values)
-        return self._results[0].flatten()
+        return self._results[0].flatten(order="F")
 
     def matrices(self, *values: FloatArray) -> list[FloatArray]:
         """All results for arguments in their order."""

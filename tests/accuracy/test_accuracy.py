@@ -103,14 +103,14 @@ def test_coarsened_model_is_where_the_reference_foresees() -> None:
     wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT, HOOK, strain="reissner")
     reference = fine(wanted, 9, 22)
     preview = Preview(reference)
-    coarsened = Coarsening(preview, 1e-6).run()
-    solution = solve(build(wanted, coarsened.discretisation))
-    modes = {name: d.modes for name, d in coarsened.discretisation.items()}
+    chosen, handed_over = Coarsening(preview, 1e-6).run()
+    solution = solve(build(wanted, chosen))
+    modes = {name: d.modes for name, d in chosen.items()}
     start = preview.with_modes(modes)
-    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, coarsened.discretisation)
+    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, chosen)
     assert_allclose(Preview(solution).tips.change_from(preview.tips), foreseen, rtol=0, atol=2e-8)
     assert change_size(foreseen) <= 1.01e-6
-    assert_allclose(coarsened.start, solution.x, rtol=0, atol=1e-3)
+    assert_allclose(handed_over, solution.x, rtol=0, atol=1e-3)
 
 
 def test_reference_knows_its_own_error() -> None:
