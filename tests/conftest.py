@@ -14,6 +14,8 @@ from tests.once import once
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT.parent / "shared" / "cases"
+AWAY = ROOT / "tests" / "scenes_away"
+"""Scenes whose inputs are moved away from the scene's own numbers."""
 
 
 C_FLAGS = "COSSERAT_CASADI_TEST_C_FLAGS"

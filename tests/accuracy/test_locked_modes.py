@@ -10,7 +10,7 @@ from cosserat_casadi import build, discretise, read_scene, solve
 from cosserat_casadi.accuracy.preview import LEAST_COMPLIANCE, Preview
 from cosserat_casadi.equilibrium.locking import locked_inputs, residual_by_inputs
 from cosserat_casadi.model.build import Model
-from tests.conftest import CASES
+from tests.conftest import AWAY
 from tests.scenes import push, scene
 
 PUSH = {"load.force": [0.3, 0.2, 0.1]}
@@ -27,7 +27,7 @@ def moved_by_push(model: Model) -> float:
 
 @pytest.fixture(scope="module")
 def platform() -> Model:
-    legs = read_scene(CASES / "away" / "platform_locks.toml")
+    legs = read_scene(AWAY / "platform_locks.toml")
     return build(legs, discretise(legs, 4, 8))
 
 

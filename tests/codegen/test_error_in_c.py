@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium import answer_error
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene.accuracy import Accuracy
-from tests.conftest import CASES, ROOT
+from tests.conftest import AWAY, ROOT
 from tests.scenes import push, scene
 
 ROOM = 1 << 20
@@ -34,7 +34,7 @@ AGE = 0.02
 
 @pytest.fixture(scope="module")
 def robot() -> Model:
-    read = read_scene(CASES / "away" / "tendon_robot.toml")
+    read = read_scene(AWAY / "tendon_robot.toml")
     return build(read, discretise(read, (1, 3, 1), 4, "magnus4"))
 
 

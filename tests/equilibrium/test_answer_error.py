@@ -12,13 +12,11 @@ from cosserat_casadi import Solution, build, discretise, read_scene, solve
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
-from tests.conftest import CASES, ROOT
+from tests.conftest import AWAY, ROOT
 from tests.families import mostly_slow
 from tests.pose_errors import pose_error
 from tests.scenes import push, scene
 from tests.shooting_near import shoot
-
-AWAY = CASES / "away"
 
 MOST_ABOVE = 3.0
 """Most that an estimate may be above the true error."""
@@ -151,7 +149,7 @@ def test_estimate_falls_as_fast_as_the_error() -> None:
 
 def test_wrench_at_the_clamp_knows_its_error() -> None:
     """A soft foundation lets the moment decay near the clamp: poses are right long before it is."""
-    read = read_scene(CASES / "effects" / "foundation.toml")
+    read = read_scene(AWAY / "foundation.toml")
     coarse = solve(build(read, discretise(read, 5, 14)))
     fine = solve(build(read, discretise(read, 16, 40)), estimate_error=False)
     wanted = fine.base_wrench()
