@@ -14,14 +14,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import final
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.numbers import Scalar, is_symbolic, rows_of, stacked_rows
+from cosserat_casadi.maths.numbers import Scalar, among, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import StrainSum
 
@@ -54,12 +53,7 @@ class ChamberActuator(Actuator[scenes.Chamber]):
         channel = routing(actuator, grid)
         x, y = rows_of(channel.offset)
         along = _area(actuator) * stacked_rows([y, -x, np.ones(len(channel.nodes))])
-        if is_symbolic(along):
-            to_nodes = ca.DM(np.eye(grid.size)[channel.nodes])
-            return StrainSum(BENDINGS_AND_EXTENSION, along @ ca.sparsify(to_nodes))
-        densities = np.zeros((3, grid.size))
-        densities[:, channel.nodes] = along
-        return StrainSum(BENDINGS_AND_EXTENSION, densities)
+        return StrainSum(BENDINGS_AND_EXTENSION, among(along, channel.nodes, grid.size))
 
 
 def _area(actuator: scenes.Chamber) -> Scalar:

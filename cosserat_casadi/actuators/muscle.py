@@ -10,15 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import final
 
-import casadi as ca
-import numpy as np
-
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.loads.load import coefficients, legendre_series
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_zero, known, rows_of, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, among, is_zero, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import StrainSum
 
@@ -57,10 +54,4 @@ def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
     stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
     components = [c for c, stress in enumerate(stresses) if not is_zero(stress)]
     along = [stresses[c] * profile for c in components]
-    densities = stacked_rows(along)
-    if any_symbolic(along):
-        to_nodes = ca.DM(np.eye(grid.size)[nodes])
-        return StrainSum(components, as_matrix(densities) @ ca.sparsify(to_nodes))
-    everywhere = np.zeros((len(components), grid.size))
-    everywhere[:, nodes] = known(densities)
-    return StrainSum(components, everywhere)
+    return StrainSum(components, among(stacked_rows(along), nodes, grid.size))
