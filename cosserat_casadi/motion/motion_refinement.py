@@ -185,17 +185,12 @@ def simulate(
     progress: Tell | None = None,
     source: KernelSource | None = None,
 ) -> Motion:
-    """Motion of a scene, or of a model on its modes and nodes.
-
-    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
-    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
-    the error of the time steps is controlled, and told.
+    """Motion of a scene, or of a model on its modes and nodes, as the public ``simulate`` describes it.
 
     Args:
-        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
-            ``build(scene.with_motion_inputs(), …, moving=True)``.
-        start: an equilibrium of the scene to start from at rest; by default the one that the simulation asks for.
-        simulation: duration, frames, tolerance; by default the scene's.
+        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions.
+        start: an equilibrium of the scene to start from at rest; None for the start of the simulation.
+        simulation: duration, frames, tolerance; None for those of the scene.
         progress: told of every step.
         source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
 

@@ -95,7 +95,7 @@ def _with_fixed(masses: Numbers, added: Scalar, fixed: FixedMass, rod: DiscreteR
 
 
 def masses_along(rod: DiscreteRod) -> SectionMasses | None:
-    """Mass and second moments of a rod's own sections; None where the rod has no mass."""
+    """Mass and second moments of a rod's sections alone; None where the rod has no mass."""
     properties = rod.properties
     if properties.linear_density is None:
         return None
