@@ -26,7 +26,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 
 Answer = TypeVar("Answer", bound=Equilibrium[Any])
 
-SAFETY = 1.1
+SAFETY = 1.2
 """Factor on the change that a richer model makes, which is not exact either."""
 
 MOST_SWEEPS = 4

@@ -124,7 +124,7 @@ def test_the_scene_says_what_was_chosen_for_which_ranges(chosen: Choice) -> None
 
 
 def test_beyond_its_ranges_a_choice_says_what_to_do(chosen: Choice) -> None:
-    answer = solve(chosen.model, {"push.force": [9.0, 9.0, 0.0]})
+    answer = solve(chosen.model, {"push.force": [14.0, 14.0, 0.0]})
     assert answer.within_tolerance is False
     assert "the modes were chosen for other inputs: choose them for the range of these inputs" in answer.message
 
