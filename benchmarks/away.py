@@ -37,9 +37,10 @@ from cosserat_casadi import (  # noqa: E402
     solve,
 )
 from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
+from cosserat_casadi.codegen.contact.compiled import CompiledContact  # noqa: E402
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_error_estimate  # noqa: E402
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong  # noqa: E402
-from cosserat_casadi.errors import CosseratError  # noqa: E402
+from cosserat_casadi.errors import CosseratError, ExportError  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.model.watched import SAMPLES  # noqa: E402
 from cosserat_casadi.page.slider_ranges import sliders  # noqa: E402
@@ -147,13 +148,13 @@ class Subject:
     Attributes:
         model: on the modes of the scene's own inputs.
         finer: that gives the reference.
-        in_c: the model in C; None where C estimates nothing.
+        in_c: the model in C; None where there is none.
         parameters: that are bound in the models; none where the scene has none.
     """
 
     model: Model
     finer: Model
-    in_c: Compiled | None
+    in_c: Compiled | CompiledContact | None
     parameters: FloatArray
 
     def at_random_parameters(self, rng: np.random.Generator) -> Subject:
@@ -176,11 +177,20 @@ def cases_of(scene: Scene, points: int) -> list[Case]:
         return []
     rng = np.random.default_rng(len(model.pack()))
     with tempfile.TemporaryDirectory() as folder:
-        in_c = None if scene.touches_exactly else load(export(model, Path(folder) / "robot", "robot"))
-        assert in_c is None or isinstance(in_c, Compiled)
+        in_c = _in_c(model, Path(folder) / "robot")
         subject = Subject(model, _finer(model), in_c, model.parameters.pack())
         found = [_case(subject, rng, inside=k % 6 != 5) for k in range(points)]
     return [case for case in found if case is not None]
+
+
+def _in_c(model: Model, folder: Path) -> Compiled | CompiledContact | None:
+    """The model in C; None where C does not have its exact contact."""
+    try:
+        in_c = load(export(model, folder, "robot"))
+    except ExportError:
+        return None
+    assert isinstance(in_c, (Compiled, CompiledContact))
+    return in_c
 
 
 def _finer(model: Model) -> Model:
@@ -226,8 +236,14 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
     return replace(case, decided=decided)
 
 
-def _estimate_in_c(here: Subject, compiled: Compiled, answer: Solution) -> float | None:
-    """What the C says of the error where it finds the same equilibrium from the unloaded rods."""
+def _estimate_in_c(here: Subject, compiled: Compiled | CompiledContact, answer: Solution) -> float | None:
+    """What the C says of the error where it finds the same equilibrium: from the unloaded rods, or the own contacts."""
+    if isinstance(compiled, CompiledContact):
+        touching = compiled.solve(answer.inputs)
+        if not touching.converged:
+            return None
+        ways = [np.linalg.norm(tip[:3] - answer.tip(rod).position[0]) for rod, tip in touching.tips.items()]
+        return touching.error_estimate if max(ways) <= SAME * min(rod.length for rod in here.model.scene.rods) else None
     parameters = here.parameters if here.parameters.size else None
     solved = compiled.solve(answer.inputs, parameters=parameters)
     same = np.linalg.norm(solved.x - answer.x) <= SAME * (1 + np.linalg.norm(answer.x))

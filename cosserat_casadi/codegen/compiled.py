@@ -153,13 +153,6 @@ class Compiled(LoadedLibrary, CompiledMotion):
         self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
         return solution_of(x, info, self.tolerance)
 
-    @property
-    def tolerance(self) -> float | None:
-        """Wanted error of the scene; None where no tolerance has a meaning."""
-        if not self.manifest["tolerance_binds"]:
-            return None
-        return float(self.manifest["tolerance"])
-
     def error_estimate(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> float | None:

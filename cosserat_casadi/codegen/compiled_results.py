@@ -49,7 +49,7 @@ def answer_words(info: Info, outcomes: Sequence[Outcome]) -> dict[str, Any]:
 class AnswerInfo(Info):
     """The same of a solve whose answer may know its error."""
 
-    _fields_ = (("error_estimate", ctypes.c_double),)
+    _fields_: ClassVar[Fields] = (("error_estimate", ctypes.c_double),)
 
 
 def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:

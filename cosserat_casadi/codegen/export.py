@@ -75,7 +75,7 @@ def export(
         period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
             measured with the compiler of this machine, or foreseen where there is none.
         estimate_errors: whether the library estimates the errors of its answers; the code of its kernels is about half
-            as long again. In exact contact it does not.
+            as long again.
 
     Returns:
         the folder.
@@ -104,7 +104,8 @@ def export(
         files = tube_files(model, chosen, error_estimate)
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
-        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate, verified)
+        arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors)
+        files = contact_files(model, arrangements, names, error_estimate, verified)
     else:
         files = folder_files(
             model,

@@ -66,6 +66,13 @@ class LoadedLibrary(ABC):
         """The scene's own inputs, stacked."""
         return self.inputs.pack()
 
+    @property
+    def tolerance(self) -> float | None:
+        """Wanted error of the scene; None where no tolerance has a meaning."""
+        if not self.manifest["tolerance_binds"]:
+            return None
+        return float(self.manifest["tolerance"])
+
     def in_range(self, inputs: ArgumentValues = None) -> bool:
         """Whether every input is in its range, by what it is and by the bounds of the scene.
 

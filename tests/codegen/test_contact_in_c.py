@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -180,13 +181,55 @@ def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
     assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
 
 
-def test_a_library_in_contact_says_that_it_estimates_no_error(bar: ContactLibrary) -> None:
+def test_errors_in_contact(bar: ContactLibrary, table: ContactLibrary) -> None:
+    """They are those of Python, without contact, at a point, at the tip and along a line, and bound the true ones."""
+    for library, force, kinds in (
+        (bar, 0.2, []),
+        (bar, 8.0, ["point"]),
+        (table, 10.0, ["point"]),
+        (table, 55.0, ["line"]),
+    ):
+        found = library.loaded.solve(down(force))
+        assert [contact.kind for contact in found.contacts] == kinds
+        assert found.error_estimate is not None
+        wanted = solve(library.model, down(force))
+        # Estimates are differences of answers that are solved to 1e-12.
+        np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-4, atol=2e-12)
+        assert found.within_tolerance == wanted.within_tolerance
+        assert library.loaded.error_estimate(found) == found.error_estimate
+    fine = solve(build(over_bar(), discretise(over_bar(), 11, 22)), down(8.0))
+    answer = bar.loaded.solve(down(8.0))
+    true = np.linalg.norm(answer.tips["rod"][:3] - fine.tip().position[0])
+    assert answer.error_estimate is not None
+    assert true <= answer.error_estimate <= 10 * true
+
+
+def test_where_other_contacts_hold_on_richer_modes_the_error_is_not_known(tmp_path: Path) -> None:
+    """With one polynomial a rod does not come to the bar at 0.6 N, and with more it does."""
+    library = exported_contact(over_bar(), tmp_path / "stiff", np.zeros((0, 3)), 1, 4)
+    found = library.loaded.solve(down(0.6))
+    assert found.converged and not found.contacts
+    assert found.error_estimate == 1.0
+    assert found.within_tolerance is False
+
+
+def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
+    """A state that is none has none; a turn makes no estimate, and its solution has one on request."""
     found = bar.loaded.start()
-    assert found.converged
-    assert found.error_estimate is None
-    assert found.within_tolerance is None
+    assert bar.loaded.track(down(3.1), found).error_estimate is None
+    moved = bytearray(found.state)
+    # The first unknown stands behind two whole numbers.
+    moved[8:16] = np.float64(0.5).tobytes()
+    assert bar.loaded.error_estimate(replace(found, state=bytes(moved))) is None
+
+
+def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
+    wanted = over_bar()
+    folder = export(build(wanted, discretise(wanted, 1, 2)), tmp_path / "bar", estimate_errors=False)
+    assert not (folder / "contact_error.c").exists()
+    assert "richer" not in (folder / "bar_kernels.c").read_text()
     for file in ("bar.h", "README.md"):
-        assert "tells its own error" in (bar.folder / file).read_text()
+        assert "No answer here tells its own error" in (folder / file).read_text()
 
 
 def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ static contact_info no_result(void) {
                              .jacobians = 0,
                              .residual_norm = 0,
                              .load_factor = 0,
+                             .error_estimate = -1,
                              .arrangement = 0,
                              .tries = 0,
                              .parts = 0};
@@ -95,6 +96,18 @@ void contact_start(contact_state *state) {
   memcpy(state->inputs, START_INPUTS, sizeof START_INPUTS);
 }
 
+/* Whether a state is a solution. */
+static int is_in_equilibrium(const contact_state *state, workspace *work) {
+  if (!is_known(state)) return 0;
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  const real norm = residual_at(at, state->z, state->inputs, work->residual, work);
+  return norm <= 10 * TOLERANCE * (1 + norm_of(state->z, at->size));
+}
+
+#if CONTACT_ESTIMATES_ERRORS
+#include "contact_error.c"
+#endif
+
 contact_status contact_solve(const real *inputs, contact_state *state, workspace *work, contact_info *info) {
   contact_info found = no_result();
   contact_status status = CONTACT_NOT_FINITE;
@@ -111,6 +124,11 @@ contact_status contact_solve(const real *inputs, contact_state *state, workspace
     }
   }
   found.status = status;
+#if CONTACT_ESTIMATES_ERRORS
+  if (info && status == CONTACT_CONVERGED) {
+    found.error_estimate = estimated_error(state->arrangement, state->z, inputs, work);
+  }
+#endif
   if (info) *info = found;
   return status;
 }
@@ -180,10 +198,7 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
 }
 
 contact_status contact_solve_sensitivity(const contact_state *state, real *d_poses_d_inputs, workspace *work) {
-  if (!is_known(state)) return CONTACT_NOT_IN_EQUILIBRIUM;
-  const arrangement *at = ARRANGEMENT + state->arrangement;
-  const real norm = residual_at(at, state->z, state->inputs, work->residual, work);
-  if (!(norm <= 10 * TOLERANCE * (1 + norm_of(state->z, at->size)))) return CONTACT_NOT_IN_EQUILIBRIUM;
+  if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
   return derivatives(state->inputs, state, d_poses_d_inputs, work);
 }
 

@@ -2,7 +2,8 @@
    equations.
 
    The library's own source includes, in this order: its configuration, its kernels, this header, its tables, then
-   contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c. All is one translation unit, so that
+   contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c, which includes contact_error.c
+   where errors are estimated. All is one translation unit, so that
    nothing but the functions of the library's header is visible to a linker.
 
    An arrangement says who touches what, at points or along lines. Its unknowns are z = (x, f, p): the unknowns of the rods,
@@ -27,7 +28,6 @@ enum {
   INPUTS = CONTACT_INPUTS,
   RODS = CONTACT_RODS,
   PAIRS = CONTACT_PAIRS,
-  LARGEST = CONTACT_LARGEST,      /* unknowns, forces and places of the largest arrangement */
   MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
   TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
   CANDIDATES = CONTACT_CANDIDATES,
@@ -58,6 +58,17 @@ typedef struct {
   const real *nominal;     /* that abscissa; else where strains are counted in the element's own width */
 } rod_elements;
 
+/* A rod on the modes and nodes of an arrangement. */
+typedef struct {
+  int intervals;            /* of each element, one less than its nodes */
+  const int *modes;         /* polynomials of each admitted strain in an element */
+  int points;               /* at which strains are fitted */
+  const real *local_points; /* these, in an element */
+  const real *const *fits;  /* for each strain the matrix from its values there to coefficients, row after row */
+  const real *local_nodes;
+  const real *barycentric; /* weights of the interpolation between nodes */
+} rod_modes;
+
 typedef struct {
   int size; /* of z */
   int unknowns;
@@ -67,6 +78,7 @@ typedef struct {
   int touches;
   const contact_entry *touch;
   const rod_elements *rods;
+  const rod_modes *modes; /* of every rod */
   kernel residual;
   kernel jacobian;
   kernel rate;     /* of the residual, as z and the inputs change at some rates */
@@ -78,18 +90,12 @@ typedef struct {
 
 /* What a rod is in every arrangement. */
 typedef struct {
-  int intervals; /* of each element, one less than its nodes */
-  int components;
-  const int *modes;         /* polynomials of each admitted strain in an element */
-  int points;               /* at which strains are fitted */
-  const real *local_points; /* these, in an element */
-  const real *const *fits;  /* for each strain the matrix from its values there to coefficients, row after row */
-  const real *local_nodes;
-  const real *barycentric; /* weights of the interpolation between nodes */
-  int is_chebyshev;          /* polynomials of strains; else Legendre's */
+  int components;   /* admitted strains */
+  int is_chebyshev; /* polynomials of strains; else Legendre's */
   real radius_at_base;
   real radius_at_tip;
   real length;
+  real force_unit; /* EI/l2, N */
 } rod_entry;
 
 /* A rod and an obstacle that it must not enter. */

@@ -40,14 +40,15 @@ static real strain_at(const arrangement *at, const real *z, int rod, int first, 
   return value * nominal_width(elements, e) / width;
 }
 
-/* Unknowns of the shape `old` on the elements of another arrangement, whose places stand in z already; forces are zero. */
+/* Unknowns of the shape `old` on the elements and modes of another arrangement, whose places stand in z already; forces are zero. */
 static void project(const arrangement *from, const real *old, const arrangement *to, real *z) {
   for (int rod = 0; rod < RODS; rod++) {
-    const rod_entry *own = ROD + rod;
+    const rod_modes *own = to->modes + rod;
     const rod_elements *elements = to->rods + rod;
     int old_first = from->rods[rod].first_strain;
     int first = elements->first_strain;
-    for (int c = 0; c < own->components; c++) {
+    for (int c = 0; c < ROD[rod].components; c++) {
+      const int old_modes = from->modes[rod].modes[c];
       const int modes = own->modes[c];
       for (int e = 0; e < elements->elements; e++) {
         const real start = end_of_element(to, z, rod, e);
@@ -56,11 +57,11 @@ static void project(const arrangement *from, const real *old, const arrangement 
         for (int m = 0; m < modes; m++) target[m] = 0;
         for (int k = 0; k < own->points; k++) {
           const real X = start + own->local_points[k] * width;
-          const real strain = strain_at(from, old, rod, old_first, modes, X) * width / nominal_width(elements, e);
+          const real strain = strain_at(from, old, rod, old_first, old_modes, X) * width / nominal_width(elements, e);
           for (int m = 0; m < modes; m++) target[m] += own->fits[c][m * own->points + k] * strain;
         }
       }
-      old_first += modes * from->rods[rod].elements;
+      old_first += old_modes * from->rods[rod].elements;
       first += modes * elements->elements;
     }
   }
@@ -133,7 +134,7 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
 
 /* Position of the section at an abscissa, from the positions of all nodes. */
 static void position_at(const arrangement *at, const real *z, const real *nodes, int rod, real X, real *position) {
-  const rod_entry *own = ROD + rod;
+  const rod_modes *own = at->modes + rod;
   const int count = own->intervals + 1;
   const int e = element_at(at, z, rod, X);
   const real local = local_abscissa(at, z, rod, e, X);

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
@@ -37,6 +38,7 @@ class Chosen:
         layout: its inputs.
         given: stacked inputs that the library starts from: the scene's own.
         equations: of each arrangement, at places where it was met.
+        richer: of each arrangement with modes and intervals added; none where no error is estimated.
         start: number of the arrangement for these inputs.
         z: unknowns, forces and places that solve its equations.
     """
@@ -45,6 +47,7 @@ class Chosen:
     layout: InputLayout
     given: FloatArray
     equations: Sequence[ContactEquations]
+    richer: Sequence[ContactEquations]
     start: int
     z: FloatArray
 
@@ -90,12 +93,13 @@ class _Met:
         return state.signature, tuple(ends)
 
 
-def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> Chosen:
+def chosen_arrangements(model: Model, load_cases: FloatArray | None, *, estimate_errors: bool) -> Chosen:
     """The arrangements that a scene meets, and no contact.
 
     Args:
         model: of a scene with obstacles.
         load_cases: stacked inputs, a row for each case, shape (k, m).
+        estimate_errors: whether the library estimates the errors of its answers.
 
     Raises:
         ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
@@ -127,7 +131,9 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> C
         raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
     equations = [ContactEquations(scene, given, grids, state) for state in met.states.values()]
     start = list(met.states).index(met.key(first))
-    return Chosen(scene, layout, given, equations, start, _z_of(equations[start], own))
+    finer = richer(grids, scene)
+    richer_equations = [ContactEquations(scene, given, finer, own.state) for own in equations if estimate_errors]
+    return Chosen(scene, layout, given, equations, richer_equations, start, _z_of(equations[start], own))
 
 
 def _solved(scene: scenes.Scene, grids: Grids, inputs: FloatArray, what: str) -> Solution:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import SOLVED, Info, JudgedAnswer, answer_words
+from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, JudgedAnswer, judged_words
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
@@ -22,7 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
 
-class ContactInfo(Info):
+class ContactInfo(AnswerInfo):
     """The struct in C that says how a call ended: what there is of every solve, then what there is of contact."""
 
     _fields_ = (
@@ -54,7 +54,7 @@ class ContactInC(ctypes.Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class CompiledContactSolution(JudgedAnswer):
-    """What the solver in C found; ``error_estimate`` is None, since a library in exact contact makes no estimate.
+    """What the solver in C found.
 
     Attributes:
         arrangement: number of the arrangement of contacts, in the order of the manifest.
@@ -110,7 +110,7 @@ class CompiledContact(LoadedLibrary):
         """The solution of the scene's own inputs."""
         state = self._room()
         self._function("start")(state)
-        info = ContactInfo(load_factor=1.0)
+        info = ContactInfo(load_factor=1.0, error_estimate=-1.0)
         return self._answer(state, info, solved=True)
 
     def solve(
@@ -172,6 +172,12 @@ class CompiledContact(LoadedLibrary):
         status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
         return None if status != 0 else by_tip(self.rods, columns)
 
+    def error_estimate(self, solution: CompiledContactSolution) -> float | None:
+        """Estimated error of a solution, such as one of a turn; None where it is none."""
+        estimate = ctypes.c_double()
+        status = self._function("error_estimate")(self._state(solution), ctypes.byref(estimate), self._workspace())
+        return estimate.value if CONTACT_OUTCOMES[status] is Outcome.CONVERGED else None
+
     def _answer(
         self,
         state: Any,
@@ -181,7 +187,8 @@ class CompiledContact(LoadedLibrary):
         solved: bool,
     ) -> CompiledContactSolution:
         return CompiledContactSolution(
-            **answer_words(info, CONTACT_OUTCOMES),
+            **judged_words(info, CONTACT_OUTCOMES),
+            tolerance=self.tolerance,
             arrangement=self._arrangement_of(state),
             tips=self._tips(state) if solved else {},
             contacts=self._contacts(state) if solved else (),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -29,6 +29,9 @@ from cosserat_casadi.model.system import System
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
 """What there is a kernel of for every arrangement, in the order of the table in C."""
 
+RICHER_WORDS = ("residual", "jacobian", "nodes", "tips", "contacts")
+"""The same on the modes and intervals that an estimate of errors adds."""
+
 
 @dataclass(frozen=True)
 class ArrangementKernels:
@@ -37,30 +40,30 @@ class ArrangementKernels:
     Attributes:
         equations: of the arrangement.
         name: what their names begin with.
+        words: what there is a kernel of.
     """
 
     equations: ContactEquations
     name: str
+    words: Sequence[str] = WORDS
 
     @cached_property
     def _written(self) -> Written:
         return self.equations.written
 
     def all(self) -> list[Kernel]:
-        """In the order of WORDS."""
-        written = self._written
-        tips = self._tips()
-        plain = {
-            "residual": [written.residual],
-            "nodes": [self._nodes(), self._indices()],
-            "tips": [tips],
-            "contacts": [self._resultants(), self._point_forces()],
+        """In the order of the words."""
+        residual = self._written.residual
+        kernels: dict[str, Callable[[], Kernel]] = {
+            "residual": lambda: self._kernel("residual", [residual]),
+            "jacobian": self._jacobian,
+            "rate": lambda: self._rate_kernel("rate", residual),
+            "nodes": lambda: self._kernel("nodes", [self._nodes(), self._indices()]),
+            "tips": lambda: self._kernel("tips", [self._tips()]),
+            "tip_rate": lambda: self._rate_kernel("tip_rate", self._tips()),
+            "contacts": lambda: self._kernel("contacts", [self._resultants(), self._point_forces()]),
         }
-        kernels: dict[str, Kernel] = {word: self._kernel(word, results) for word, results in plain.items()}
-        kernels["jacobian"] = self._jacobian()
-        kernels["rate"] = self._rate_kernel("rate", written.residual)
-        kernels["tip_rate"] = self._rate_kernel("tip_rate", tips)
-        return [kernels[word] for word in WORDS]
+        return [kernels[word]() for word in self.words]
 
     def _jacobian(self) -> Kernel:
         """The Jacobian, by columns where it has such a form that is not too long."""

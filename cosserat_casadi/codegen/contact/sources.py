@@ -12,7 +12,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
+from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, ArrangementKernels, distance_kernels
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, version_words
@@ -28,6 +28,7 @@ from cosserat_casadi.equilibrium.contact import (
     contact_state,
     passing_through,
 )
+from cosserat_casadi.equilibrium.metrics import ROUNDING, SAFETY
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.strain_margins import VANISHED
@@ -36,6 +37,9 @@ from cosserat_casadi.scene.writing import scene_text
 
 VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_faults.c", "contact_settle.c", "contact.c")
 """Files of the folder ``c`` that the library's own source includes, as they are."""
+
+ERROR_FILES = ("contact_error.c",)
+"""The same of a library that estimates errors."""
 
 MOST_TRIES = 24
 """Most arrangements that are solved for one change of the inputs."""
@@ -101,6 +105,8 @@ def contact_files(
     kernels = distance_kernels(chosen, names.kernel("distance"))
     for number, own in enumerate(chosen.equations):
         kernels += ArrangementKernels(own, names.kernel(str(number))).all()
+    for number, own in enumerate(chosen.richer):
+        kernels += ArrangementKernels(own, names.kernel(f"richer_{number}"), RICHER_WORDS).all()
     generated = kernel_sources(kernels, names)
     tables = Tables(chosen, names.name)
     words = _words(chosen, names, tables, generated)
@@ -113,7 +119,7 @@ def contact_files(
         f"{name}_demo.c": render("contact_demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
-        **{file: resource("c", file) for file in VERBATIM},
+        **{file: resource("c", file) for file in (*VERBATIM, *(ERROR_FILES if chosen.richer else ()))},
         **generated,
         "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
     }
@@ -163,6 +169,11 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "most_forces": forces,
         "columns": max(forces, 1),
         "largest": tables.largest,
+        "largest_of_all": tables.largest_of_all,
+        "estimates_errors": int(bool(chosen.richer)),
+        "error_safety": SAFETY,
+        "error_floor": ROUNDING,
+        "scene_tolerance": f"{chosen.scene.accuracy.tolerance:g}",
         "nodes_of_all": tables.nodes_of_all,
         "tries": tries,
         "candidates": CANDIDATES,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import WORDS
+from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, WORDS
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.loads.penetration import section_radius
@@ -20,6 +20,21 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
 POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
+
+
+@dataclass(frozen=True)
+class _Level:
+    """The arrangements on some modes.
+
+    Attributes:
+        prefix: what tells their tables from those of the other level.
+        equations: of each.
+        words: what there is a kernel of.
+    """
+
+    prefix: str
+    equations: Sequence[ContactEquations]
+    words: Sequence[str]
 
 
 @dataclass(frozen=True)
@@ -59,11 +74,21 @@ class Tables:
         """Number of entries of the longest z."""
         return max(sum(self.sizes(equations)) for equations in self.chosen.equations)
 
+    @property
+    def _all(self) -> list[ContactEquations]:
+        """The arrangements, then those on richer modes."""
+        return [*self.chosen.equations, *self.chosen.richer]
+
+    @property
+    def largest_of_all(self) -> int:
+        """The same of those on richer modes too."""
+        return max(sum(self.sizes(equations)) for equations in self._all)
+
     @cached_property
     def nodes_of_all(self) -> int:
         """Most nodes of all rods together."""
         counts = []
-        for equations in self.chosen.equations:
+        for equations in self._all:
             rods = equations.nominal.model.discrete.rods.values()
             counts.append(sum(rod.grid.size for rod in rods))
         return max(counts)
@@ -71,21 +96,48 @@ class Tables:
     def text(self) -> str:
         """All tables."""
         parts = [
-            *(self._rod(number, name) for number, name in enumerate(self.rods)),
+            *(self._modes(level) for level in self._levels),
             self._rod_table(),
             self._pair_table(),
-            *(self._arrangement(number, own) for number, own in enumerate(self.chosen.equations)),
+            *(
+                self._arrangement(level, number, own)
+                for level in self._levels
+                for number, own in enumerate(level.equations)
+            ),
             self._arrangement_table(),
             self._start(),
         ]
         return "\n".join(parts)
 
-    def _discrete(self, name: str) -> DiscreteRod:
-        """A rod where it touches nothing."""
-        return self.chosen.equations[0].nominal.model.discrete.rods[name]
+    @property
+    def _levels(self) -> list[_Level]:
+        """The modes that are solved with, and the richer ones of estimates where there are such."""
+        levels = [_Level("", self.chosen.equations, WORDS)]
+        if self.chosen.richer:
+            levels.append(_Level("RICHER_", self.chosen.richer, RICHER_WORDS))
+        return levels
 
-    def _rod(self, number: int, name: str) -> str:
-        rod = self._discrete(name)
+    def _modes(self, level: _Level) -> str:
+        """Modes and nodes of all rods."""
+        lines = []
+        entries = []
+        for number, name in enumerate(self.rods):
+            rod = level.equations[0].nominal.model.discrete.rods[name]
+            suffix = f"{level.prefix}{number}"
+            lines += [f"\n/* {name} */", *self._modes_of_rod(suffix, rod)]
+            fields = {
+                "intervals": rod.grid.intervals,
+                "modes": f"MODES_{suffix}",
+                "points": max(rod.discretisation.modes) + 2,
+                "local_points": f"LOCAL_POINTS_{suffix}",
+                "fits": f"FITS_{suffix}",
+                "local_nodes": f"LOCAL_NODES_{suffix}",
+                "barycentric": f"BARYCENTRIC_{suffix}",
+            }
+            entries.append(_initialiser(fields))
+        return "\n".join([*lines, _table("rod_modes", f"{level.prefix}ROD_MODES", "RODS", entries)])
+
+    def _modes_of_rod(self, number: str, rod: DiscreteRod) -> list[str]:
         intervals = rod.grid.intervals
         modes = rod.discretisation.modes
         points = max(modes) + 2
@@ -93,7 +145,6 @@ class Tables:
         local = (1 - np.cos(np.pi * (np.arange(points) + 0.5) / points)) / 2
         polynomials = POLYNOMIALS[rod.properties.basis]
         lines = [
-            f"\n/* {name} */",
             f"static const int MODES_{number}[] = {{{numbers(list(modes))}}};",
             _reals(f"LOCAL_POINTS_{number}", local),
         ]
@@ -105,27 +156,21 @@ class Tables:
             _reals(f"LOCAL_NODES_{number}", chebyshev.nodes(intervals)),
             _reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(intervals)),
         ]
-        return "\n".join(lines)
+        return lines
 
     def _rod_table(self) -> str:
         entries = []
-        for number, name in enumerate(self.rods):
-            rod = self._discrete(name)
+        for name in self.rods:
+            discrete = self.chosen.equations[0].nominal.model.discrete
+            rod = discrete.rods[name]
             radii = section_radius(rod.properties, np.array([0.0, 1.0])).tolist()
-            modes = rod.discretisation.modes
             fields = {
-                "intervals": rod.grid.intervals,
-                "components": len(modes),
-                "modes": f"MODES_{number}",
-                "points": max(modes) + 2,
-                "local_points": f"LOCAL_POINTS_{number}",
-                "fits": f"FITS_{number}",
-                "local_nodes": f"LOCAL_NODES_{number}",
-                "barycentric": f"BARYCENTRIC_{number}",
+                "components": len(rod.discretisation.modes),
                 "is_chebyshev": int(rod.properties.basis == "chebyshev"),
                 "radius_at_base": repr(radii[0]),
                 "radius_at_tip": repr(radii[1]),
                 "length": repr(float(rod.properties.length)),
+                "force_unit": repr(float(discrete.tension_unit(name))),
             }
             entries.append(_initialiser(fields))
         return _table("rod_entry", "ROD", "RODS", entries)
@@ -142,7 +187,7 @@ class Tables:
             entries.append(_initialiser(fields))
         return _table("pair_entry", "PAIR", "PAIRS", entries)
 
-    def _arrangement(self, number: int, equations: ContactEquations) -> str:
+    def _arrangement(self, level: _Level, number: int, equations: ContactEquations) -> str:
         lines = [f"\n/* {described(equations)} */"]
         model = equations.nominal.model
         elements = []
@@ -150,7 +195,7 @@ class Tables:
         for rod_number, name in enumerate(self.rods):
             discretisation = model.discretisation[name]
             rod = model.discrete.rods[name]
-            suffix = f"{number}_{rod_number}"
+            suffix = f"{level.prefix}{number}_{rod_number}"
             places = self._places_of_ends(equations, name)
             lines.append(f"static const int PLACES_{suffix}[] = {{{numbers(places)}}};")
             lines.append(_reals(f"NOMINAL_{suffix}", np.array(discretisation.breaks)))
@@ -163,9 +208,9 @@ class Tables:
             }
             elements.append(_initialiser(fields))
             first_node += rod.grid.size
-        lines.append(_table("rod_elements", f"ELEMENTS_{number}", "RODS", elements))
+        lines.append(_table("rod_elements", f"ELEMENTS_{level.prefix}{number}", "RODS", elements))
         if equations.state.touches:
-            lines.append(_table("contact_entry", f"TOUCHES_{number}", "", self._touches(equations)))
+            lines.append(_table("contact_entry", f"TOUCHES_{level.prefix}{number}", "", self._touches(equations)))
         return "\n".join(lines)
 
     def _places_of_ends(self, equations: ContactEquations, rod: str) -> list[int]:
@@ -201,24 +246,28 @@ class Tables:
         return entries
 
     def _arrangement_table(self) -> str:
-        entries = []
-        for number, equations in enumerate(self.chosen.equations):
-            unknowns, forces, places = self.sizes(equations)
-            touches = len(equations.state.touches)
-            fields: dict[str, object] = {
-                "size": unknowns + forces + places,
-                "unknowns": unknowns,
-                "strains": equations.nominal.model.discrete.unknowns.count(BlockKind.STRAIN),
-                "forces": forces,
-                "places": places,
-                "touches": touches,
-                "touch": f"TOUCHES_{number}" if touches else "0",
-                "rods": f"ELEMENTS_{number}",
-            }
-            for word in WORDS:
-                fields[word] = f"{self.name}_k_{number}_{word}"
-            entries.append(_initialiser(fields))
-        return "\n" + _table("arrangement", "ARRANGEMENT", "ARRANGEMENTS", entries)
+        """The arrangements, then those on richer modes in the same order."""
+        entries = [self._entry(level, number) for level in self._levels for number in range(len(level.equations))]
+        return "\n" + _table("arrangement", "ARRANGEMENT", "", entries)
+
+    def _entry(self, level: _Level, number: int) -> str:
+        equations = level.equations[number]
+        unknowns, forces, places = self.sizes(equations)
+        touches = len(equations.state.touches)
+        fields: dict[str, object] = {
+            "size": unknowns + forces + places,
+            "unknowns": unknowns,
+            "strains": equations.nominal.model.discrete.unknowns.count(BlockKind.STRAIN),
+            "forces": forces,
+            "places": places,
+            "touches": touches,
+            "touch": f"TOUCHES_{level.prefix}{number}" if touches else "0",
+            "rods": f"ELEMENTS_{level.prefix}{number}",
+            "modes": f"{level.prefix}ROD_MODES",
+        }
+        for word in level.words:
+            fields[word] = f"{self.name}_k_{level.prefix.lower()}{number}_{word}"
+        return _initialiser(fields)
 
     def _start(self) -> str:
         given = self.chosen.given.tolist() or [0.0]

@@ -17,6 +17,7 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.numerics.newton import NewtonSettings
+from cosserat_casadi.scene import Scene
 
 
 def with_error_in_contact(
@@ -35,14 +36,23 @@ def with_error_in_contact(
     if not solution.converged:
         return solution
     scene = without_contacts(solution.model.scene)
-    modes = signal_modes(scene)
-    grids = {
-        name: enriched(chosen, modes, meets_obstacles=True) for name, chosen in solution.model.discretisation.items()
-    }
-    finer = solve_contact(scene, Grids(grids), values, start=solution, newton=newton)
+    finer = solve_contact(
+        scene, richer(Grids(solution.model.discretisation), scene), values, start=solution, newton=newton
+    )
     if finer.converged and same_contacts(solution, finer):
         return with_tolerance_note(with_contact_error(solution, finer))
     return with_tolerance_note(replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN))
+
+
+def richer(grids: Grids, scene: Scene) -> Grids:
+    """The grids on which the error of an answer shows.
+
+    Args:
+        grids: of the answer.
+        scene: without contacts.
+    """
+    modes = signal_modes(scene)
+    return Grids({name: enriched(rod, modes, meets_obstacles=True) for name, rod in grids.rods.items()})
 
 
 def same_contacts(first: Solution, second: Solution) -> bool:
