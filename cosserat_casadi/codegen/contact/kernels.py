@@ -27,7 +27,7 @@ from cosserat_casadi.model.strain_margins import strain_margins
 from cosserat_casadi.model.system import System
 
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
-"""What there is a kernel of for every arrangement, in the order of the table in C."""
+"""Kernels of every arrangement, in the order of the table in C."""
 
 RICHER_WORDS = ("residual", "jacobian", "nodes", "tips", "contacts")
 """The same on the modes and intervals that an estimate of errors adds."""
@@ -39,8 +39,8 @@ class ArrangementKernels:
 
     Attributes:
         equations: of the arrangement.
-        name: what their names begin with.
-        words: what there is a kernel of.
+        name: beginning of their names.
+        words: the kernels that are wanted.
     """
 
     equations: ContactEquations

@@ -27,9 +27,9 @@ class _Level:
     """The arrangements on some modes.
 
     Attributes:
-        prefix: what tells their tables from those of the other level.
-        equations: of each.
-        words: what there is a kernel of.
+        prefix: beginning of the names of their tables.
+        equations: of each arrangement.
+        words: the kernels of each.
     """
 
     prefix: str
@@ -81,7 +81,7 @@ class Tables:
 
     @property
     def largest_of_all(self) -> int:
-        """The same of those on richer modes too."""
+        """Number of entries of the longest z, on richer modes too."""
         return max(sum(self.sizes(equations)) for equations in self._all)
 
     @cached_property
@@ -111,7 +111,7 @@ class Tables:
 
     @property
     def _levels(self) -> list[_Level]:
-        """The modes that are solved with, and the richer ones of estimates where there are such."""
+        """The modes of answers, and the richer ones of estimates where errors are estimated."""
         levels = [_Level("", self.chosen.equations, WORDS)]
         if self.chosen.richer:
             levels.append(_Level("RICHER_", self.chosen.richer, RICHER_WORDS))
