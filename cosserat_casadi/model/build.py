@@ -221,7 +221,7 @@ def build(
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
             :func:`cosserat_casadi.solve` to have it chosen for a tolerance.
-        moving: whether it is for a motion, in which bodies may turn freely.
+        moving: whether it is for a motion, in which bodies may turn freely and stress may relax.
 
     Raises:
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
@@ -230,7 +230,7 @@ def build(
     refuse_tubes(scene)
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
-    nominal = discrete_scene(scene, input_layout(scene), chosen)
+    nominal = discrete_scene(scene, input_layout(scene), chosen, moving)
     check_loads(nominal)
     if scene.obstacles:
         check_obstacles(nominal)

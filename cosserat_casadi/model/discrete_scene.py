@@ -1,7 +1,7 @@
 """A scene with everything settled that does not depend on the unknowns.
 
 The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
-tensions of the cables of given length, as in docs/theory.md, section 8.
+tensions of the cables of given length, as in docs/theory.md, section 8; in motion flows of the rods whose stress relaxes.
 """
 
 from __future__ import annotations
@@ -92,6 +92,7 @@ class DiscreteScene:
         rods: the constant matrices of each rod.
         parameters: the parameters that its expressions are of.
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
+        moving: whether it is for a motion, in which stress that relaxes has unknowns of its own.
     """
 
     scene: scenes.Scene
@@ -99,12 +100,13 @@ class DiscreteScene:
     rods: dict[str, DiscreteRod]
     parameters: ParameterLayout = NO_PARAMETERS
     scaling: DiscreteScene | None = None
+    moving: bool = False
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
         """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
         if self.scaling is None:
             discretisation = {name: rod.discretisation for name, rod in self.rods.items()}
-            return discrete_scene, (self.scene, self.layout, discretisation)
+            return discrete_scene, (self.scene, self.layout, discretisation, self.moving)
         if self.parameters.size:
             return with_parameters, (self.scaling,)
         return with_numbers, (self.scaling, self.scene)
@@ -207,12 +209,13 @@ class DiscreteScene:
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """The unknowns x in their order: strains, multipliers, poses, tensions."""
+        """The unknowns x in their order: strains, multipliers, poses, tensions, flows."""
         blocks = [
             *self._strain_blocks(),
             *self._multiplier_blocks(),
             *self._pose_blocks(),
             *self._tension_blocks(),
+            *self._flow_blocks(),
         ]
         return Unknowns(tuple(blocks))
 
@@ -261,6 +264,19 @@ class DiscreteScene:
                 unit=self.rods[tendon.rod].energy_unit,
                 step_weight=FORCE_WEIGHT,
             )
+
+    def _flow_blocks(self) -> Iterator[UnknownBlock]:
+        for name, rod in self.rods.items():
+            branches = len(rod.properties.branches)
+            if branches and self.moving:
+                yield UnknownBlock(
+                    kind=BlockKind.FLOW,
+                    owner=name,
+                    rod=name,
+                    size=branches * rod.size,
+                    unit=rod.energy_unit,
+                    step_weight=1.0,
+                )
 
     @property
     def size(self) -> int:
@@ -411,14 +427,14 @@ class Richer:
 
 
 def discrete_scene(
-    scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]
+    scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation], moving: bool = False
 ) -> DiscreteScene:
-    """Constant matrices of every rod of a scene."""
+    """Constant matrices of every rod of a scene, be it for a motion."""
     rods = {}
     for rod in scene.rods:
         properties = replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name))
         rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
-    return DiscreteScene(scene, layout, rods)
+    return DiscreteScene(scene, layout, rods, moving=moving)
 
 
 def with_numbers(
@@ -438,7 +454,7 @@ def with_numbers(
         properties = replace(own, fixed_masses=fixed_masses(scene, rod.name))
         ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
         rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)
-    return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)
+    return DiscreteScene(scene, nominal.layout, rods, parameters, nominal, nominal.moving)
 
 
 def with_parameters(nominal: DiscreteScene) -> DiscreteScene:

@@ -51,8 +51,8 @@ class MotionEnergy:
 
     @cached_property
     def elastic(self) -> Matrix:
-        """Elastic energy of the rods, 1×1, J."""
-        return self.system.energy()
+        """Elastic energy of the rods and of their branches, 1×1, J."""
+        return _sum([self.system.energy(), *(branches.energy for branches in self.system.relaxations.values())])
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
@@ -76,7 +76,8 @@ class MotionEnergy:
     @cached_property
     def dissipated_power(self) -> Matrix:
         """Power that the viscous stress of the rods and the damping of contact turn into heat, 1×1, W."""
-        of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
+        stresses = [*self.system.viscosities.values(), *self.system.relaxations.values()]
+        of_rods = [stress.dissipated_power for stress in stresses]
         # What contact presses with at rest is stored: what it takes beyond that is lost.
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
@@ -269,6 +270,9 @@ class MotionEnergy:
         viscosity = self.system.viscosities.get(rod)
         if viscosity is not None:
             powers.append(viscosity.shrinking_power)
+        relaxation = self.system.relaxations.get(rod)
+        if relaxation is not None:
+            powers.append(relaxation.lengthening_power)
         masses = masses_along(igm.rod)
         if masses is not None:
             # The rod that comes along has the speed of its section already; what is fixed to it is there for good.

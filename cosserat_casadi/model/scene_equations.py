@@ -6,6 +6,7 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
     constraints   their residual = 0
     frames        balance of every floating frame = 0
     cables        length, or slack = 0
+    flows         at rest none, w = 0
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import casadi as ca
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.assembly_equations import Assembly
 from cosserat_casadi.model.system import System
+from cosserat_casadi.model.unknowns import BlockKind
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,17 @@ class SceneEquations:
         """Residuals of rods, constraints, floating frames and cables of given length, without unit, size×1."""
         rod_rows = [igm.residual for igm in self.system.rods.values()]
         assembly = self.assembly
-        return ca.vertcat(*rod_rows, *assembly.constraint_rows, *assembly.balance_rows, *assembly.cable_rows)
+        assembly_rows = [*assembly.constraint_rows, *assembly.balance_rows, *assembly.cable_rows]
+        return ca.vertcat(*rod_rows, *assembly_rows, *self._flow_rows)
+
+    @property
+    def _flow_rows(self) -> list[Matrix]:
+        """Rows of the flows: w, which is counted from rest; in motion theirs are none of statics."""
+        rows: list[Matrix] = []
+        for _, entries in self.system.discrete.unknowns.of_kind(BlockKind.FLOW):
+            of_rest = self.system.arguments.x[entries]
+            rows.append(of_rest if self.system.arguments.motion is None else ca.DM(*of_rest.shape))
+        return rows
 
     @cached_property
     def jacobian(self) -> Matrix:
@@ -45,8 +57,13 @@ class SceneEquations:
         # The literal linear system of the report has no variations of its own (theory, 4): it is differentiated.
         if any(rod.discretisation.transport == "permuted" for rod in discrete.rods.values()):
             return ca.jacobian(self.residual, self.system.arguments.x)
+        flows = discrete.unknowns.count(BlockKind.FLOW)
         if discrete.constraints or discrete.cables or discrete.frames:
-            return self.assembly.jacobian
-        # Rods that nothing couples do not meet in any row.
-        tangents = self.system.tangents.values()
-        return ca.diagcat(*[tangent.jacobian for tangent in tangents])
+            jacobian = self.assembly.jacobian
+        else:
+            # Rods that nothing couples do not meet in any row.
+            tangents = [tangent.jacobian for tangent in self.system.tangents.values()]
+            jacobian = ca.diagcat(*tangents, ca.DM(flows, flows))
+        if flows and self.system.arguments.motion is None:
+            jacobian += ca.diagcat(ca.DM(discrete.size - flows, discrete.size - flows), ca.DM.eye(flows))
+        return jacobian

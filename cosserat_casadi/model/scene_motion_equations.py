@@ -41,6 +41,10 @@ class SceneMotionEquations:
             rows: Matrix = ca.DM(block.size, 1)
             if block.kind is BlockKind.STRAIN and block.owner in self.system.viscosities:
                 rows = self.system.viscosities[block.owner].force
+            if block.kind is BlockKind.STRAIN and block.owner in self.system.relaxations:
+                rows = rows + self.system.relaxations[block.owner].force
+            if block.kind is BlockKind.FLOW:
+                rows = self.system.relaxations[block.owner].equations
             added.append(rows)
         for name, frame_motion in self.system.frame_motions.items():
             number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
@@ -75,6 +79,14 @@ class SceneMotionEquations:
             entries = self.system.discrete.unknowns.strain(rod)
             stiffness.add(entries, entries, viscosity.stiffness)
             damping.add(entries, entries, viscosity.damping)
+        for rod, relaxation in self.system.relaxations.items():
+            strains = self.system.discrete.unknowns.strain(rod)
+            flows = self.system.discrete.unknowns.slice_of(BlockKind.FLOW, rod)
+            damping.add(strains, flows, relaxation.matrices.force_by_rate)
+            stiffness.add(flows, strains, relaxation.matrices.by_strain)
+            damping.add(flows, strains, relaxation.matrices.by_strain_rate)
+            damping.add(flows, flows, relaxation.matrices.by_rate)
+            mass.add(flows, flows, relaxation.matrices.by_acceleration)
         return MotionMatrices(
             stiffness=SceneEquations(self.system).jacobian + stiffness.matrix(),
             damping=damping.matrix(),

@@ -24,7 +24,7 @@ from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.materials import LAWS, LawOfRod, coupled_stiffness
 from cosserat_casadi.model.sections import SHAPES, along, linear, sizes_along, sizes_of
-from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, FixedMass, RodProperties
+from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, FixedMass, MaxwellBranch, RodProperties
 from cosserat_casadi.rod.section import SectionShape
 from cosserat_casadi.rod.section import hooke as hooke_tensor
 from cosserat_casadi.scene.material_records import INCOMPRESSIBLE
@@ -58,6 +58,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         linear_density=_linear_density(rod),
         rotary_inertia=_rotary_inertia(rod),
         damping=_damping(rod, hooke),
+        branches=_branches(rod),
         area=_area(rod),
         diameter=_diameter(rod),
         plane_sections=rod.rotary_inertia is None,
@@ -260,7 +261,7 @@ def _diameter(rod: scenes.Rod) -> Field | None:
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
     """Diagonal of the Kelvin–Voigt tensor (k, 6): τ H, or the coefficients of the scene."""
-    if rod.damping is None:
+    if rod.damping is None or not rod.damping.by_viscosity:
         return None
     time = rod.damping.retardation_time
     if time is not None:
@@ -269,3 +270,10 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
             sizes = [getattr(rod.stiffness, name) for name in STRAINS]
         return _shared(lambda X: time * hooke(X), *sizes)
     return _direct(rod.damping, 0.0)
+
+
+def _branches(rod: scenes.Rod) -> tuple[MaxwellBranch, ...]:
+    """Maxwell branches beside the elasticity of a rod."""
+    if rod.damping is None:
+        return ()
+    return tuple(MaxwellBranch(branch.share, branch.time) for branch in rod.damping.prony)

@@ -16,6 +16,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import ConstraintPoses
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
@@ -29,9 +30,11 @@ from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_rods import written_base_pose
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
+from cosserat_casadi.rod.relaxation import Relaxation
 from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
@@ -164,6 +167,32 @@ class System:
             if motion.rod.properties.damping is not None:
                 viscosities[name] = Viscosity(motion.shape, motion.rates)
         return viscosities
+
+    @cached_property
+    def relaxations(self) -> dict[str, Relaxation]:
+        """Branches of the rods in motion whose stress relaxes.
+
+        Raises:
+            SceneError: the model was not built for a motion.
+        """
+        relaxations = {}
+        for name, motion in self.motions.items():
+            branches = len(motion.rod.properties.branches)
+            if branches:
+                size = (motion.rod.size, branches)
+                velocity, acceleration = (ca.reshape(rate, *size) for rate in self._flow_rates(name))
+                relaxations[name] = Relaxation(Viscosity(motion.shape, motion.rates), velocity, acceleration)
+        return relaxations
+
+    def _flow_rates(self, rod: str) -> tuple[Matrix, Matrix]:
+        """First and second rates of the flows of a rod whose stress relaxes."""
+        motion = self.arguments.motion
+        assert motion is not None, "asked for in motion"
+        if not self.discrete.moving:
+            problem = "has stress that relaxes, and this model is of the scene at rest"
+            raise SceneError(Problem(f"{rod}.damping.prony", problem, "build the model with moving=True"))
+        flows = self.discrete.unknowns.slice_of(BlockKind.FLOW, rod)
+        return motion.v[flows], motion.a[flows]
 
     @cached_property
     def frame_motions(self) -> dict[FrameName, FloatingFrameMotion]:

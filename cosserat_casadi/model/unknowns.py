@@ -27,6 +27,8 @@ class BlockKind(Enum):
     """Deviation of a floating frame from its pose in the unloaded scene."""
     TENSION = "tension"
     """Tension of a cable of given length."""
+    FLOW = "flow"
+    """Strain coordinates of the dashpots of a rod whose stress relaxes, since the start of its motion."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class UnknownBlock:
     def differential(self) -> bool:
         """Whether the unknowns are coordinates that move; multipliers and tensions are algebraic."""
         # Multipliers and tensions follow from the coordinates at every instant and have no rate of their own.
-        return self.kind in (BlockKind.STRAIN, BlockKind.POSE)
+        return self.kind in (BlockKind.STRAIN, BlockKind.POSE, BlockKind.FLOW)
 
 
 @dataclass(frozen=True)

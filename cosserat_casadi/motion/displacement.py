@@ -29,7 +29,12 @@ def displacements(model: Model) -> FloatArray:
     sizes = np.ones(model.size)
     unknowns = model.discrete.unknowns
     for name, rod in model.discrete.rods.items():
-        sizes[unknowns.strain(name)] = _of_strains(rod)
+        of_strains = _of_strains(rod)
+        sizes[unknowns.strain(name)] = of_strains
+        # A flow moves no section by itself: an error of it makes one of the strain.
+        for block, entries in unknowns.of_kind(BlockKind.FLOW):
+            if block.rod == name:
+                sizes[entries] = np.tile(of_strains, len(rod.properties.branches))
     for _, entries in unknowns.of_kind(BlockKind.POSE):
         sizes[entries][3:] = QUATERNION
     return sizes

@@ -68,6 +68,19 @@ class FixedMass:
 
 
 @dataclass(frozen=True)
+class MaxwellBranch:
+    """A spring and a dashpot in series beside the elasticity of a rod.
+
+    Attributes:
+        share: stiffness of the spring over the instantaneous one of the rod.
+        time: relaxation time, s.
+    """
+
+    share: Scalar
+    time: Scalar
+
+
+@dataclass(frozen=True)
 class RodProperties:
     """A rod in its unloaded state.
 
@@ -89,6 +102,7 @@ class RodProperties:
             None where the rod has none.
         damping: abscissae (k,) ↦ diagonal of the Kelvin–Voigt tensor Υ (k, 6), N m² s and N s, whose stress is Υ ξ̇;
             None where the rod has none. Rows of strains that are not admitted are not read.
+        branches: what its stress relaxes by.
         area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
@@ -107,6 +121,7 @@ class RodProperties:
     linear_density: Field | None = None
     rotary_inertia: Field | None = None
     damping: Field | None = None
+    branches: tuple[MaxwellBranch, ...] = ()
     area: Field | None = None
     diameter: Field | None = None
     plane_sections: bool = False

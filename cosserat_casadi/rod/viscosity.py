@@ -33,7 +33,7 @@ class Viscosity:
         ratio = self.shape.ratio
         if ratio is None:
             return self.rates.velocity
-        return (self.rates.velocity - self.shape.q * self._shrinking) / ratio
+        return (self.rates.velocity - self.shape.q * self.shrinking) / ratio
 
     @cached_property
     def force(self) -> Matrix:
@@ -52,7 +52,7 @@ class Viscosity:
         """Derivative of the force with q, n×n: none unless the rod's length changes."""
         if self.shape.ratio is None:
             return ca.DM(*self._matrix.shape)
-        return -self.damping * self._shrinking
+        return -self.damping * self.shrinking
 
     @cached_property
     def dissipated_power(self) -> Matrix:
@@ -66,14 +66,14 @@ class Viscosity:
     def shrinking_power(self) -> Matrix:
         """Power of the viscous stress on the change of the length alone, 1×1, W."""
         stress = self.shape.rod.energy_unit * self.force
-        return -ca.dot(stress, self.shape.q) * self._shrinking
+        return -ca.dot(stress, self.shape.q) * self.shrinking
 
     @property
     def _matrix(self) -> Matrix:
         return self.shape.rod.viscosity_matrix
 
     @property
-    def _shrinking(self) -> Matrix:
+    def shrinking(self) -> Matrix:
         """ρ̇/ρ, 1×1, 1/s."""
         assert self.rates.ratio_rate is not None
         assert self.shape.ratio is not None

@@ -160,8 +160,19 @@ Row6 = Annotated[tuple[Number, Number, Number, Number, Number, Number], listed(6
 StiffnessMatrix = Annotated[tuple[Row6, Row6, Row6, Row6, Row6, Row6], listed(6, "6 rows of 6 numbers")]
 
 
+class MaxwellBranch(Record):
+    """A spring and a dashpot in series beside the rod's own elasticity: its stress relaxes."""
+
+    example: ClassVar[str] = """\
+damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, time = 0.5 }] }
+"""
+
+    share: Positive = Field(description="stiffness over the instantaneous one of the rod, without unit; below 1")
+    time: Positive = Field(description="relaxation time τ of its stress at constant strain, s")
+
+
 class Damping(Record):
-    """Kelvin–Voigt damping: stress H (ξ − ξ⁰) + Υ ξ̇, in motion alone."""
+    """Kelvin–Voigt damping, stress H (ξ − ξ⁰) + Υ ξ̇, and branches whose stress relaxes, in motion alone."""
 
     example: ClassVar[str] = """\
 damping = { retardation_time = 0.01 }
@@ -176,16 +187,30 @@ damping = { retardation_time = 0.01 }
     shear_x: SizeOrZero | None = Field(None, description="damping of shear along local x, N s; 0 when left out")
     shear_y: SizeOrZero | None = Field(None, description="damping of shear along local y, N s; 0 when left out")
     extension: SizeOrZero | None = Field(None, description="damping of extension, N s; 0 when left out")
+    prony: tuple[MaxwellBranch, ...] = Field(
+        (), description="branches whose stress relaxes, each a spring and a dashpot in series; of all strains alike"
+    )
+
+    @property
+    def by_viscosity(self) -> bool:
+        """Whether there is Kelvin–Voigt damping."""
+        return any(getattr(self, name) is not None for name in ("retardation_time", *STRAINS))
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The retardation time or coefficients, one of the two."""
+        """The retardation time or coefficients, one of the two, or branches; something is left at rest."""
         coefficients = [name for name in STRAINS if name in given]
         if "retardation_time" in given and coefficients:
             yield Fault((coefficients[0],), "stands beside retardation_time", "give one of the two")
-        if "retardation_time" not in given and not coefficients:
-            remedy = "give retardation_time, s, or coefficients by strain such as bending_x"
+        if "retardation_time" not in given and not coefficients and not given.get("prony"):
+            remedy = "give retardation_time, s, coefficients by strain such as bending_x, or branches, prony"
             yield Fault(("retardation_time",), "missing", remedy)
+        branches = given.get("prony", ())
+        if isinstance(branches, list | tuple):
+            total = sum(sum(numbers_of(branch.get("share"))) for branch in branches if isinstance(branch, Mapping))
+            if total >= 1.0:
+                problem = f"must have shares that add up to less than 1, got {shown(total)}"
+                yield Fault(("prony",), problem, "what is left of the instantaneous stiffness carries loads at rest")
 
 
 # Shape and pose

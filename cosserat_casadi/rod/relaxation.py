@@ -1,0 +1,125 @@
+"""Stress of a rod that relaxes, generalised Maxwell: Λ = H (ξ − ξ⁰) + Σ c_i H e_i beside what is elastic and viscous.
+
+A branch is a spring of stiffness c_i H in series with a dashpot of relaxation time τ_i. Its spring is stretched by
+e_i = τ_i ẇ_i, w_i the strain of the dashpot, so that ė_i = ξ̇ − ẇ_i is τ_i ẅ_i + ẇ_i = ξ̇: an equation of motion like
+those of the rod, in which w_i itself does not appear. With the shares s_i of the instantaneous stiffness H/(1 − Σ s),
+c_i = s_i / (1 − Σ s). N. W. Tschoegl, *The Phenomenological Theory of Linear Viscoelastic Behavior*, Springer 1989,
+section 3.5; docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.viscosity import Viscosity
+
+
+@dataclass(frozen=True)
+class RelaxationMatrices:
+    """Derivatives of a rod's relaxing stress and of the equations of its branches, by strains q and flows w.
+
+    Attributes:
+        force_by_rate: of the force with ẇ, n×nB, s.
+        by_strain: of the equations with q, nB×n, 1/s; zero unless the rod's length changes.
+        by_strain_rate: with q̇, nB×n.
+        by_rate: with ẇ, nB×nB.
+        by_acceleration: with ẅ, nB×nB, s.
+    """
+
+    force_by_rate: Matrix
+    by_strain: Matrix
+    by_strain_rate: Matrix
+    by_rate: Matrix
+    by_acceleration: Matrix
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """The B Maxwell branches of a rod in motion.
+
+    Attributes:
+        rates: shape of the rod with the rates of its strains.
+        velocity: ẇ, strain rates of the dashpots in the coordinates of the strains, a branch a column, n×B, 1/s.
+        acceleration: ẅ, n×B, 1/s².
+    """
+
+    rates: Viscosity
+    velocity: Matrix
+    acceleration: Matrix
+
+    @cached_property
+    def force(self) -> Matrix:
+        """ℓ ∫ Φᵀ Σ c_i H e_i dX / (EI/ℓ), n×1, without unit: a part of the residual."""
+        return self._stiffness @ (self._strain @ self._factors)
+
+    @cached_property
+    def equations(self) -> Matrix:
+        """τ_i ẅ_i + ẇ_i − ξ̇ of all branches one after the other, nB×1, 1/s."""
+        relaxed = self.acceleration @ ca.diag(self._times) + self.velocity
+        return ca.vec(relaxed - ca.repmat(self.rates.strain_rate, 1, self.velocity.shape[1]))
+
+    @cached_property
+    def matrices(self) -> RelaxationMatrices:
+        """Derivatives of force and equations."""
+        size, branches = self.velocity.shape
+        one = ca.DM.eye(size)
+        by_strain_rate = -one
+        by_strain: Matrix = ca.DM(size, size)
+        if self.rates.shape.ratio is not None:
+            by_strain_rate = by_strain_rate / self.rates.shape.ratio
+            by_strain = one * (self.rates.shrinking / self.rates.shape.ratio)
+        return RelaxationMatrices(
+            force_by_rate=ca.kron((self._factors * self._times).T, self._stiffness),
+            by_strain=ca.repmat(by_strain, branches, 1),
+            by_strain_rate=ca.repmat(by_strain_rate, branches, 1),
+            by_rate=ca.DM.eye(size * branches),
+            by_acceleration=ca.kron(ca.diag(self._times), one),
+        )
+
+    @cached_property
+    def energy(self) -> Matrix:
+        """Energy of the springs, ℓ ∫ Σ ½ e_iᵀ c_i H e_i dX, 1×1, J."""
+        return self._lengthened(self._sum_of_squares(self._strain, self._factors / 2))
+
+    @cached_property
+    def dissipated_power(self) -> Matrix:
+        """Power that the dashpots turn into heat, ℓ ∫ Σ ẇ_iᵀ c_i τ_i H ẇ_i dX, 1×1, W; never negative."""
+        return self._lengthened(self._sum_of_squares(self.velocity, self._factors * self._times))
+
+    @cached_property
+    def lengthening_power(self) -> Matrix:
+        """Power on the change of the length alone, 1×1, W: rod that comes along brings its springs as they are."""
+        shrinking = self.rates.shrinking
+        return shrinking * (self.energy - self.rates.shape.rod.energy_unit * ca.dot(self.force, self.rates.shape.q))
+
+    @cached_property
+    def _strain(self) -> Matrix:
+        """e_i = τ_i ẇ_i, n×B."""
+        return self.velocity @ ca.diag(self._times)
+
+    def _sum_of_squares(self, columns: Matrix, factors: Matrix) -> Matrix:
+        """Σ factor_i column_iᵀ K column_i in joules over the unit of the columns, 1×1."""
+        return self.rates.shape.rod.energy_unit * ca.sum1(ca.sum2((columns * (self._stiffness @ columns)) @ factors))
+
+    def _lengthened(self, per_reference_length: Matrix) -> Matrix:
+        ratio = self.rates.shape.ratio
+        return per_reference_length if ratio is None else per_reference_length * ratio
+
+    @property
+    def _stiffness(self) -> Matrix:
+        return self.rates.shape.rod.stiffness_matrix
+
+    @property
+    def _factors(self) -> Matrix:
+        """c_i, B×1."""
+        shares = [branch.share for branch in self.rates.shape.rod.properties.branches]
+        return ca.vertcat(*shares) / (1 - sum(shares))
+
+    @property
+    def _times(self) -> Matrix:
+        """τ_i, B×1, s."""
+        return ca.vertcat(*[branch.time for branch in self.rates.shape.rod.properties.branches])
