@@ -129,9 +129,9 @@ class Vibrations:
         """
         if self._slope is not None:
             return self._slope
-        model = self.model
+        model = self.model.in_motion
         size = model.size
-        x = ca.MX.sym("x", size)
+        x = ca.MX.sym("x", self.model.size)
         inputs = ca.MX.sym("inputs", model.inputs.size)
         given = [x, inputs]
         between = []
@@ -144,7 +144,7 @@ class Vibrations:
         residual = model.inverse_dynamics(*split, inputs, *between, still, still)
         change = ca.MX.sym("change", 3 * size)
         along = ca.Function("along", [state, *given[1:], change], [ca.jtimes(residual, state, change)])
-        at_rest = ca.vertcat(x, ca.DM.zeros(2 * size, 1))
+        at_rest = ca.vertcat(x, ca.DM.zeros(3 * size - self.model.size, 1))
 
         left = [ca.MX.sym(f"left_{part}", size) for part in ("real", "imaginary")]
         moved = [ca.MX.sym(f"moved_{part}", 3 * size) for part in ("real", "imaginary")]
@@ -187,6 +187,10 @@ def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeC
         left[algebraic] = -np.linalg.lstsq(gradients, inside.T @ left[moving], rcond=None)[0]
     slope = 2.0 * value * motions.mass + motions.damping
     normalised = np.linalg.solve(left.T @ slope @ right, left.T)
+    for branch in motions.branches:
+        # Rows of the branches were integrated, and taken out of those of the strains.
+        rows = normalised[:, branch.flows] - normalised[:, branch.strains]
+        normalised[:, branch.flows] = rows @ branch.spring / value
     return ModeCluster(value, int(chosen[0]) + 1, right, normalised)
 
 

@@ -105,6 +105,17 @@ class Model(ModelFunctions, MotionFunctions):
         return Model(with_numbers(nominal.discrete, change(bound.scene)))
 
     @cached_property
+    def in_motion(self) -> Model:
+        """The model with the unknowns that stress which relaxes has in motion, behind its own; mostly itself."""
+        if self.discrete.moving or not any(rod.properties.branches for rod in self.discrete.rods.values()):
+            return self
+        return Model(self.discrete.in_motion)
+
+    def with_flows(self, x: FloatArray) -> FloatArray:
+        """Unknowns of :attr:`in_motion` at rest: those of this model, then flows, shape (in_motion.size,)."""
+        return np.concatenate([x, np.zeros(self.in_motion.size - self.size)])
+
+    @cached_property
     def richer(self) -> Model:
         """The model with modes and intervals added, on which the error of an answer shows (docs/theory.md, 10)."""
         return Model(self.discrete.richer.discrete)

@@ -116,6 +116,12 @@ class DiscreteScene:
         """The scene with the numbers that scale the equations: the values of its file."""
         return self if self.scaling is None else self.scaling
 
+    @property
+    def in_motion(self) -> DiscreteScene:
+        """The same scene for a motion."""
+        scaling = None if self.scaling is None else self.scaling.in_motion
+        return replace(self, scaling=scaling, moving=True)
+
     @cached_property
     def unloaded(self) -> UnloadedScene:
         """Poses of rods and bodies where nothing acts and no parameter differs: deviations are counted from them."""

@@ -25,6 +25,7 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
 from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
+from cosserat_casadi.motion.relaxing_rows import integrated
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
 from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
 
@@ -164,14 +165,15 @@ class _Equations:
     @staticmethod
     def about(solution: Solution) -> _Equations:
         """The equations about an equilibrium at rest."""
-        model = solution.model
-        motions = small_motions(model, solution.x, solution.inputs)
+        motions = small_motions(solution.model, solution.x, solution.inputs)
+        model = solution.model.in_motion
         symbols = [ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration")]
         rest = ca.DM.zeros(model.size, 1)
-        residual = model.inverse_dynamics(solution.x, rest, rest, *symbols)
+        residual = model.inverse_dynamics(solution.model.with_flows(solution.x), rest, rest, *symbols)
         derivatives = ca.Function("by_inputs", symbols, [ca.jacobian(residual, symbol) for symbol in symbols])
         held = np.zeros(model.inputs.size)
-        by_value, by_rate, by_acceleration = (matrix.full() for matrix in derivatives(solution.inputs, held, held))
+        matrices = [matrix.full() for matrix in derivatives(solution.inputs, held, held)]
+        by_value, by_rate, by_acceleration = integrated(motions.branches, matrices)
         return _Equations(model, motions, (by_value, by_rate, by_acceleration))
 
     @cached_property

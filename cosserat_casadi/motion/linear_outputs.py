@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
@@ -25,7 +26,7 @@ class Outputs:
 
     Attributes:
         names: of all outputs.
-        by_x: derivatives with x, shape (outputs, size).
+        by_x: derivatives with the unknowns in motion, shape (outputs, size).
         by_inputs: derivatives with the inputs, shape (outputs, inputs).
     """
 
@@ -67,7 +68,9 @@ def outputs_of(solution: Solution, wanted: Sequence[str | Place] | None) -> Outp
     stacked = ca.vertcat(*values)
     derivatives = ca.Function("outputs", [x, inputs], [ca.jacobian(stacked, x), ca.jacobian(stacked, inputs)])
     by_x, by_inputs = derivatives(solution.x, solution.inputs)
-    return Outputs(tuple(names), by_x.full(), by_inputs.full())
+    # Flows are behind the unknowns that sections see.
+    unseen = np.zeros((len(names), model.in_motion.size - model.size))
+    return Outputs(tuple(names), np.hstack([by_x.full(), unseen]), by_inputs.full())
 
 
 def _default_outputs(model: Model) -> list[str | Place]:

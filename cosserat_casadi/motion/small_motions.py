@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.relaxing_rows import BranchRows
 
 DEPENDENT = 1e-9
 """Share of the largest singular value of G below which a constraint asks nothing, or repeats others.
@@ -39,6 +40,7 @@ class SmallMotions:
         units: energy that each row is divided by, shape (size,), J.
         differential: whether an unknown is a coordinate that moves, shape (size,).
         unseen: directions of the unknowns that move nothing, such as the norms of quaternions, shape (j, size).
+        branches: rows that are integrated once in time (motion/relaxing_rows.py).
     """
 
     stiffness: FloatArray
@@ -47,6 +49,7 @@ class SmallMotions:
     units: FloatArray
     differential: npt.NDArray[np.bool_]
     unseen: FloatArray
+    branches: tuple[BranchRows, ...] = ()
 
     @cached_property
     def moving(self) -> npt.NDArray[np.int64]:

@@ -31,6 +31,7 @@ from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
+from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.motion.stability_sentences import stability_sentences
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -191,6 +192,8 @@ def small_motions(
 ) -> SmallMotions:
     """The linear equations of small motions about unknowns that do not change.
 
+    Where stress relaxes they have the unknowns of ``model.in_motion``.
+
     Args:
         model: the scene.
         x: the unknowns, shape (model.size,).
@@ -199,20 +202,23 @@ def small_motions(
         inputs_acceleration: their acceleration, likewise.
         p: stacked parameters; those of a model that has some.
     """
+    x = model.with_flows(x)
+    model = model.in_motion
     rest = np.zeros(model.size)
     held = np.zeros(model.inputs.size)
     rate = held if inputs_rate is None else inputs_rate
     acceleration = held if inputs_acceleration is None else inputs_acceleration
     parameters = [] if p is None else [p]
-    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, *parameters, rate, acceleration)
+    arguments = [x, rest, rest, inputs, *parameters, rate, acceleration]
+    matrices = [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
     unknowns = model.discrete.unknowns
+    branches = branch_rows(model.discrete, *matrices[1:])
     return SmallMotions(
-        stiffness.full(),
-        damping.full(),
-        mass.full(),
+        *integrated(branches, matrices),
         unknowns.units,
         unknowns.differential,
         _quaternion_growth(model, x),
+        tuple(branches),
     )
 
 
@@ -256,7 +262,7 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
     # Shapes of one eigenvalue are told apart together, also where the last of them is not asked for.
     end = end_of_cluster(pairs.values, count)
     values = pairs.values[:end]
-    vectors = motions.displacement(pairs.vectors[:, :end])
+    vectors = motions.displacement(pairs.vectors[:, :end])[: model.size]
     shapes = normalised(model, solution.x, solution.inputs, values, vectors)
     modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
     # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.
