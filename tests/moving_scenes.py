@@ -20,6 +20,7 @@ Tables = dict[str, Any]
 FEW = {"modes": 2, "nodes": 5}
 ROTARY = [2e-3, 3e-3, 4.5e-3]
 DAMPING = {"bending_x": 0.02, "bending_y": 0.03, "torsion": 0.01, "shear_x": 0.3, "shear_y": 0.2, "extension": 0.5}
+BRANCHES = [{"share": 0.2, "time": 0.03}, {"share": 0.15, "time": 0.4}]
 NAMES = {"planar": ["bending_y"], "kirchhoff": ["bending_x", "bending_y", "torsion"], "reissner": list(STIFFNESS)}
 
 WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0.3, -0.2, -2.0]}
@@ -130,6 +131,16 @@ def _driven(*fields: str, course: Tables | None = None, **more: Any) -> Tables:
     return scene(driven, loads=loads, inputs=inputs, actuators=[cable], **more)
 
 
+def _relaxing() -> Tables:
+    """A rod with branches whose length is an input beside one with other branches, both on a plate."""
+    first = rod(strain="reissner", damping={**rod()["damping"], "prony": BRANCHES})
+    base = {"position": [0.4, 0.1, 0.05]}
+    second = rod("b", base=base, length=0.7, damping={"prony": BRANCHES[:1]})
+    joints = [joint("a", position=[-0.2, 0, 0]), joint("b", "revolute", axis=[0.3, -0.5, 0.8])]
+    loads = [WEIGHT, FOLLOW, PULL]
+    return scene(first, second, loads=loads, bodies=[PLATE], joints=joints, inputs=["a.length"])
+
+
 def _with_disks() -> Tables:
     """A free rod with disks on it."""
     start = {"position": [0.1, 0.2, 0.3], "quaternion": [0.6, 0, 0.8, 0], "free": True}
@@ -168,9 +179,18 @@ FAMILIES: dict[str, Callable[[], Tables]] = {
 }
 
 
+RELAXING: dict[str, Callable[[], Tables]] = {
+    "relaxing": lambda: scene(rod(strain="planar", damping={"prony": BRANCHES}), loads=[IN_PLANE]),
+    "relaxing joints": _relaxing,
+}
+"""Rods whose stress relaxes: what their branches move by has no kinetic energy."""
+
+ALL = {**FAMILIES, **RELAXING}
+
+
 @cache
 def model_of(family: str) -> Model:
-    return build(scene_from_dict(FAMILIES[family]()), moving=True)
+    return build(scene_from_dict(ALL[family]()), moving=True)
 
 
 @dataclass(frozen=True)

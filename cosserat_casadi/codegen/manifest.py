@@ -26,6 +26,7 @@ from cosserat_casadi.model.function_table import ARGUMENT_UNITS
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.parameters import Parameter
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -214,7 +215,7 @@ def _output_entries(model: Model) -> dict[str, Any]:
 
 
 def unknown_entries(model: Model) -> list[dict[str, Any]]:
-    """Unknowns in the order of their vector: strain coordinates, multipliers, moving frames, unknown tensions."""
+    """Unknowns in the order of their vector: strains, multipliers, moving frames, tensions, flows."""
     entries: list[dict[str, Any]] = []
     for rod, discrete_rod in model.discrete.rods.items():
         first = model.discrete.unknowns.strain(rod).start
@@ -237,6 +238,9 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         unit = model.discrete.tension_unit(tendon.rod)
         first = model.discrete.tension(cable).start
         entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
+    for block, place in model.discrete.unknowns.of_kind(BlockKind.FLOW):
+        branches = len(model.discrete.rods[block.owner].properties.branches)
+        entries.append({"rod": block.owner, "branches": branches, "first": place.start, "count": block.size})
     return entries
 
 

@@ -319,7 +319,7 @@ class DiscreteScene:
             name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles))
             for name, rod in self.rods.items()
         }
-        discrete = discrete_scene(nominal.scene, self.layout, discretisation)
+        discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
         return Richer(self, discrete)
@@ -348,12 +348,12 @@ class Richer:
     def known(self) -> npt.NDArray[np.bool_]:
         """Which unknowns the coarse scene has too: all but the strains of higher degree; shape (richer size,)."""
         known = np.ones(self.discrete.size, dtype=bool)
-        for name, rich_rod in self.discrete.rods.items():
-            first = self.discrete.unknowns.strain(name).start
-            counts = zip(rich_rod.columns.items(), self.coarse.rods[name].discretisation.modes, strict=True)
-            for (component, columns), modes in counts:
-                entries = slice(first + columns.start, first + columns.stop)
-                known[entries] = rich_rod.degrees(component) < modes
+        # Flows have the modes of strains, once for each branch.
+        for block, entries in self.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.FLOW):
+            rich_rod = self.discrete.rods[block.owner]
+            modes = self.coarse.rods[block.owner].discretisation.modes
+            of_strains = [rich_rod.degrees(c) < count for c, count in zip(rich_rod.columns, modes, strict=True)]
+            known[entries] = np.tile(np.concatenate(of_strains), block.size // rich_rod.size)
         return known
 
     @cached_property

@@ -26,7 +26,7 @@ EXACT = StepOptions(tolerance=1e-14, iterations=20)
 
 
 FEWEST = {"modes": 1, "nodes": 3}
-COARSER = {"kirchhoff": FEWEST, "fixed joint": FEWEST}
+COARSER = {"kirchhoff": FEWEST, "fixed joint": FEWEST, "relaxing joints": FEWEST}
 """What the compiler would take longest for is exported with fewer unknowns."""
 
 
@@ -38,7 +38,7 @@ class MovingRecipe:
     dynamics: bool = True
 
     def model(self) -> Model:
-        tables = moving_scenes.FAMILIES[self.family]()
+        tables = moving_scenes.ALL[self.family]()
         accuracy = COARSER.get(self.family, tables["accuracy"])
         return build(scene_from_dict({**tables, "accuracy": accuracy}), moving=True)
 

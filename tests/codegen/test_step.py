@@ -30,10 +30,12 @@ CABLE = pytest.param("given length", marks=pytest.mark.slow)
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
+RELAXING = pytest.param("relaxing joints", marks=pytest.mark.slow)
 DISKS = pytest.param("disks drawn out", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN, DISKS]
-"""Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes, disks."""
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN, DISKS, "relaxing", RELAXING]
+"""Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes, disks, and
+stress that relaxes."""
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -27,7 +27,7 @@ ADDED = SHARE / (1.0 - SHARE)
 AXIAL = 40.0
 DENSITY = 0.9
 LENGTH = 0.8
-TWO_BRANCHES = [{"share": 0.2, "time": 0.03}, {"share": 0.15, "time": 0.4}]
+TWO_BRANCHES = moving_scenes.BRANCHES
 
 
 def bar(damping: Any = None, modes: int = 1, **more: Any) -> dict[str, Any]:
@@ -139,24 +139,14 @@ def test_a_rod_that_grows_keeps_its_balance_of_energy() -> None:
     assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize("family", ["plain", "length", "assembly"])
+@pytest.mark.parametrize("family", moving_scenes.RELAXING)
 def test_derivatives_are_those_of_the_equations(family: str) -> None:
-    damping = {"prony": TWO_BRANCHES}
-    scene = bent(damping=damping)
-    if family == "length":
-        scene["motions"] = [{"input": "a.length", "amplitude": 0.1, "frequency": 1.0}]
-    if family == "assembly":
-        scene["rods"].append(moving_scenes.rod("b", base={"position": [0.1, 0.0, 0.0]}, damping=damping))
-        scene["bodies"] = [moving_scenes.PLATE]
-        scene["joints"] = [moving_scenes.joint("a"), moving_scenes.joint("b")]
-    model = moving_model(scene)
+    model = moving_scenes.model_of(family)
     own = model.dynamics_jacobian
     symbols = own.mx_in()
     residual = model.inverse_dynamics(*symbols)
     by_ad = ca.Function("by_ad", symbols, [ca.jacobian(residual, symbol) for symbol in symbols[:3]])
-    rng = np.random.default_rng(1)
-    values = [rng.normal(0.0, 0.2, symbol.shape[0]) for symbol in symbols]
-    values[3] = model.pack()
+    values = moving_scenes.drawn_state(model).all
     for matrix, expected in zip(own(*values), by_ad(*values), strict=False):
         assert_allclose(matrix.full(), expected.full(), rtol=1e-11, atol=1e-12)
 
