@@ -108,14 +108,16 @@ class Motions:
     """The motions of a model.
 
     Attributes:
-        model: with its parameters.
+        model: with its parameters, and flows behind the unknowns where stress relaxes.
+        unknowns: number of the unknowns of an equilibrium.
         start: inputs at the start.
         times: at which each case was measured, by its number, ascending, s.
         size: of the steps, s.
     """
 
     def __init__(self, model: Model, times: Mapping[int, FloatArray]) -> None:
-        self.model = model
+        self.model = model.in_motion
+        self.unknowns = model.size
         self.start = StartInputs(model)
         self.times = times
         simulation = model.scene.simulation
@@ -155,7 +157,7 @@ class Motions:
         if not history.completed:
             return None
         path, inputs_over_time = history.rough_positions(times)
-        return Run(times, path, inputs_over_time, history, p)
+        return Run(times, path[:, : self.unknowns], inputs_over_time, history, p)
 
     def suggest_size(self, case: int, x: FloatArray, inputs: FloatArray, p: FloatArray) -> None:
         """Begin with the mean step of a motion that is integrated to a coarse tolerance."""
@@ -172,8 +174,9 @@ class Motions:
     ) -> History:
         moving = MovingInputs(self.model.inputs, self.model.scene.motions, inputs - self.start.added)
         still = np.zeros(self.model.size)
+        start = np.concatenate([x, still[self.unknowns :]])
         parameters = p if self.model.parameters.size else None
-        return integrated(self.model, moving.pieces(end), x, still, self._method, settings, p=parameters)
+        return integrated(self.model, moving.pieces(end), start, still, self._method, settings, p=parameters)
 
     def sensitivity(self, run: Run, x: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives of unknowns and inputs at the measured times, shapes (T, size, m) and (inputs, m).
@@ -190,9 +193,10 @@ class Motions:
             return x[None], by_inputs
         propagated = self._stage_responses(run, by_inputs, p)
         method = self._method
-        position = np.where(differential[:, None], x, 0.0)
+        at_rest = np.zeros((self.model.size - self.unknowns, x.shape[1]))
+        position = np.where(differential[:, None], np.vstack([x, at_rest]), 0.0)
         velocity = np.zeros_like(position)
-        moved = np.empty((len(run.times), *x.shape))
+        moved = np.empty((len(run.times), *position.shape))
         numbers = np.array([run.history.number_at(float(time)) for time in run.times])
         for number, ((_, step), response) in enumerate(zip(run.history.steps, propagated, strict=True)):
             stages = response.of(position, velocity)
@@ -206,7 +210,7 @@ class Motions:
             bent = np.tensordot(method.position_weights, accelerations, 1)
             position = position + step.size * velocity + step.size**2 * bent
             velocity = velocity + step.size * np.tensordot(method.weights, accelerations, 1)
-        return moved, by_inputs
+        return moved[:, : self.unknowns], by_inputs
 
     def _stage_responses(self, run: Run, inputs: FloatArray, p: FloatArray) -> list[_StageResponse]:
         """How the unknowns of the stages of every step follow from its start and from the numbers themselves."""

@@ -309,7 +309,7 @@ def simulate(
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
-    model = model.at()
+    model = model.at().in_motion
     asked = simulation or model.scene.simulation
     check_simulation(model, asked)
     assert asked is not None, "checked"

@@ -20,7 +20,7 @@ CABLE = pytest.param("given length", marks=pytest.mark.slow)
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, CABLE, DRIVEN]
+FAMILIES = ["planar", "kirchhoff", "relaxing", "fixed joint", FREE, CABLE, DRIVEN]
 
 DT = 4e-3
 

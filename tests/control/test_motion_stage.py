@@ -27,7 +27,7 @@ def name_of(method: Collocation) -> str:
 
 
 @pytest.mark.parametrize("method", METHODS, ids=name_of)
-@pytest.mark.parametrize("family", ["kirchhoff", "moving base"])
+@pytest.mark.parametrize("family", ["kirchhoff", "moving base", "relaxing"])
 def test_equations_vs_those_of_the_simulator(family: str, method: Collocation) -> None:
     compare_with_the_simulator(family, method)
 

@@ -68,11 +68,10 @@ def path_of(model: Model, truth: dict[str, float] = TRUTH, times: FloatArray = T
     asked = model.scene.simulation
     assert asked is not None
     simulation = asked.model_copy(update={"times": tuple(times.tolist()), "tolerance": 1e-6})
-    (rod,) = bound.tip
     motion = simulate(bound, simulation=simulation)
     assert motion.converged, motion.message
-    tips = [bound.tip[rod](x, inputs)[0].full()[:, 0] for x, inputs in zip(motion.x, motion.inputs, strict=True)]
-    x, _, z = np.array(tips).T
+    positions, _ = motion.tip()
+    x, _, z = positions.T
     return {"t": times, "x": x, "z": z}
 
 

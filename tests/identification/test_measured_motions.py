@@ -100,6 +100,23 @@ def test_derivatives_of_a_release_are_those_of_differences(model: Model, path: d
     check_derivatives(misfit_of(model, {"path.csv": path}, 0.02), [1e1, 1e-2, 1e-7])
 
 
+@pytest.mark.parametrize("recover", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_shares_and_times_of_stress_that_relaxes_are_found(recover: bool) -> None:
+    """Derivatives of the path, and numbers from the noisy path of a stiffness and a branch."""
+    names = ("rod.material.youngs_modulus", "rod.damping.prony.0.share", "rod.damping.prony.0.time")
+    rod = {**CANTILEVER["rods"][0], "damping": {"prony": [{"share": 0.1, "time": 0.02}]}}
+    relaxing = built(rods=[rod], unknowns=[{"parameter": name} for name in names])
+    truth = dict(zip(names, (1.1e6, 0.15, 0.04), strict=True))
+    path = path_of(relaxing, truth)
+    if not recover:
+        check_derivatives(misfit_of(relaxing, {"path.csv": path}, 0.02), [1e1, 1e-6, 1e-6])
+        return
+    found = identify(relaxing, with_noise(path, np.random.default_rng(2)))
+    assert found.converged, found.message
+    assert np.abs((found.shared - list(truth.values())) / found.sigma).max() < 3.5
+    assert np.all(found.sigma < 0.1 * np.array(list(truth.values())))
+
+
 def test_derivatives_with_multipliers_are_those_of_differences() -> None:
     """A pinned tip, a base that is shaken, a wave on an input of each case; it starts unloaded."""
     measured = {**CANTILEVER["measurements"][0], "at": 0.5, "case": "run"}
