@@ -1,7 +1,8 @@
 """A scene with everything settled that does not depend on the unknowns.
 
 The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
-tensions of the cables of given length, as in docs/theory.md, section 8; in motion flows of the rods whose stress relaxes.
+tensions of the cables of given length, as in docs/theory.md, section 8; in motion then flows of rods whose stress
+relaxes.
 """
 
 from __future__ import annotations

@@ -76,13 +76,13 @@ class MotionEnergy:
     @cached_property
     def dissipated_power(self) -> Matrix:
         """Power that the viscous stress of the rods and the damping of contact turn into heat, 1×1, W."""
-        stresses = [*self.system.viscosities.values(), *self.system.relaxations.values()]
-        of_rods = [stress.dissipated_power for stress in stresses]
+        of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
+        of_branches = [relaxation.dissipated_power for relaxation in self.system.relaxations.values()]
         # What contact presses with at rest is stored: what it takes beyond that is lost.
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
         ]
-        return _sum([*of_rods, *of_contact])
+        return _sum([*of_rods, *of_branches, *of_contact])
 
     @cached_property
     def load_powers(self) -> Matrix:

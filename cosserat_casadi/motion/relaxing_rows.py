@@ -1,8 +1,9 @@
 """Equations of Maxwell branches in small motions about rest, integrated once in time.
 
-A branch moves by τ ẅ + ẇ − ξ̇ = 0 (rod/relaxation.py), which leaves open how far w is from ξ. Of motions about rest, where
-its spring is free, the integral is τ ẇ + w − ξ = 0: no rigid motions come in by it. In units of its spring's stiffness,
-and taken out of the balance of the strains, it makes stiffness and damping symmetric as those of a spring and a dashpot.
+A branch moves by τ ẅ + ẇ − ξ̇ = 0 (rod/relaxation.py), which leaves open how far w is from ξ. Of motions about rest,
+where its spring is free, the integral is τ ẇ + w − ξ = 0: no rigid motions come in by it. In units of its spring's
+stiffness, and taken out of the balance of the strains, it makes stiffness and damping symmetric, as those of a spring
+and a dashpot are.
 """
 
 from __future__ import annotations
@@ -51,7 +52,9 @@ def branch_rows(discrete: DiscreteScene, damping: FloatArray, mass: FloatArray) 
     return branches
 
 
-def integrated(branches: Sequence[BranchRows], matrices: Sequence[FloatArray]) -> list[FloatArray]:
+def integrated(
+    branches: Sequence[BranchRows], matrices: Sequence[FloatArray]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Derivatives of the residual by some arguments, by their first and by their second rates, of integrated rows.
 
     Args:
@@ -65,4 +68,4 @@ def integrated(branches: Sequence[BranchRows], matrices: Sequence[FloatArray]) -
         by_acceleration[branch.flows] = 0.0
         by_value[branch.strains] -= by_value[branch.flows]
         by_rate[branch.strains] -= by_rate[branch.flows]
-    return [by_value, by_rate, by_acceleration]
+    return by_value, by_rate, by_acceleration

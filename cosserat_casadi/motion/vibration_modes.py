@@ -213,8 +213,11 @@ def small_motions(
     matrices = [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
     unknowns = model.discrete.unknowns
     branches = branch_rows(model.discrete, *matrices[1:])
+    stiffness, damping, mass = integrated(branches, matrices)
     return SmallMotions(
-        *integrated(branches, matrices),
+        stiffness,
+        damping,
+        mass,
         unknowns.units,
         unknowns.differential,
         _quaternion_growth(model, x),

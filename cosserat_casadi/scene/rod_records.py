@@ -167,7 +167,9 @@ class MaxwellBranch(Record):
 damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, time = 0.5 }] }
 """
 
-    share: Annotated[Number, Field(gt=0, lt=1)] = Field(description="stiffness over the instantaneous one of the rod, below 1, without unit")
+    share: Annotated[Number, Field(gt=0, lt=1)] = Field(
+        description="stiffness over the instantaneous one of the rod, below 1, without unit"
+    )
     time: Positive = Field(description="relaxation time τ of its stress at constant strain, s")
 
 

@@ -86,7 +86,7 @@ def test_force_of_a_held_bar_relaxes() -> None:
     motion = simulate(model)
     assert motion.converged, motion.message
     state = motion.at(0.4)
-    (_, multipliers), = model.discrete.unknowns.of_kind(BlockKind.MULTIPLIER)
+    ((_, multipliers),) = model.discrete.unknowns.of_kind(BlockKind.MULTIPLIER)
     unit = model.discrete.rods["a"].energy_unit / LENGTH
     force = np.abs(state.x[multipliers]).max() * unit
 
