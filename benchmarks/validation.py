@@ -91,6 +91,14 @@ STUDIES = (
         ),
     ),
     Study(
+        "silicone_block",
+        (
+            Number("block.material.youngs_modulus", "E at rest, kPa", 1e-3, "263.8"),
+            Number("block.damping.prony.0.share", "share that relaxes"),
+            Number("block.damping.retardation_time", "retardation time, ms", 1e3),
+        ),
+    ),
+    Study(
         "silicone_arm",
         (
             Number("chamber.offset.0", "offset in the plane of bending, mm", 1e3),
@@ -210,9 +218,12 @@ def block_period(mass: float, modulus: float) -> float:
     return 2 * np.pi / modes.modes[0].angular_frequency
 
 
-def millimetres(found: Identification, *, held_out: bool) -> tuple[int, float]:
-    """How many coordinates, and the root mean square of measured minus modelled, mm."""
-    measured = [row for row in found.rows if found.model.scene.measurements[row.measurement].name != DEFINED]
+def millimetres(found: Identification, *, held_out: bool, moving: bool | None = None) -> tuple[int, float]:
+    """How many coordinates, and the root mean square of measured minus modelled, mm; in motion, at rest, or of both."""
+    measurements = found.model.scene.measurements
+    measured = [row for row in found.rows if measurements[row.measurement].name != DEFINED]
+    if moving is not None:
+        measured = [row for row in measured if (measurements[row.measurement].time is not None) is moving]
     differences = [row.modelled - row.measured for row in measured if row.held_out is held_out]
     return len(differences), 1e3 * float(np.sqrt(np.mean(np.square(differences)))) if differences else np.nan
 
@@ -240,6 +251,13 @@ def pages_tables(validation: Validation) -> dict[str, str]:
     arm = [(f"{row[0]:.0f}", f"{row[1]:.1f}", f"{row[2]:.1f}") for row in validation.arm]
     texts["arm_predicted"] = table(("pressure, mbar", "measured, mm", "predicted, mm"), arm)
     periods = [(f"{1e3 * row[0]:.0f}", f"{row[1]:.2f}", f"{row[2]:.3f}") for row in validation.periods]
+    block = validation.found["silicone_block"]
+    of_rest, of_motion = (millimetres(block, held_out=False, moving=moving) for moving in (False, True))
+    parts = [("at rest", of_rest), ("let go", of_motion)]
+    parts.append(("let go, predicted", millimetres(block, held_out=True, moving=True)))
+    texts["block_parts"] = table(
+        ("part", "coordinates", "residual, mm"), [(name, f"{part[0]}", f"{part[1]:.2f}") for name, part in parts]
+    )
     texts["periods"] = table(("mass, g", "measured, s", "modelled, s"), periods)
     return texts
 
