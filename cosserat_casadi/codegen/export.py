@@ -187,6 +187,7 @@ def folder_files(
         ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
     """
     refuse_obstacles(model.scene, "exported C")
+    model = model.in_motion if dynamics else model
     names = model_names(name, model, dynamics=dynamics, estimate_errors=estimate_errors)
     parts = assembled(model, names)
     motion = motion_in_c(model, names) if dynamics else None

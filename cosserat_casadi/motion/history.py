@@ -12,6 +12,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_guards import ContactPhase
@@ -71,7 +72,9 @@ def equations_of(
         stiffness, damping, mass = kernels.jacobians(x, v, a, value, *parameters, rate, acceleration)
         return stiffness, damping, mass
 
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, kinks=piece.kinks)
+    unknowns = model.discrete.unknowns
+    eliminated = np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)
+    return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -66,6 +66,8 @@ class MotionEquations:
         rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
             rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
         kinks: ascending times at which F has a kink in t that steps may reach over, s.
+        eliminated: indices of entries whose rows have no derivative by another one of them, such as flows of
+            branches: they are no unknowns of the linear systems of a step.
     """
 
     differential: npt.NDArray[np.bool_]
@@ -74,6 +76,7 @@ class MotionEquations:
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
     rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
     kinks: tuple[float, ...] = ()
+    eliminated: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
     @property
     def size(self) -> int:

@@ -105,7 +105,11 @@ def _product(matrix: npt.NDArray[Any], vector: npt.NDArray[Any]) -> npt.NDArray[
 
 
 def step_matrices(
-    method: Collocation, step: float, linearisation: Linearisation, differential: npt.NDArray[np.bool_]
+    method: Collocation,
+    step: float,
+    linearisation: Linearisation,
+    differential: npt.NDArray[np.bool_],
+    eliminated: Sequence[int] | npt.NDArray[np.intp] = (),
 ) -> StepMatrices | None:
     """Factorise the linear systems of a step.
 
@@ -114,6 +118,7 @@ def step_matrices(
         step: h, s.
         linearisation: K, C and M.
         differential: which entries have accelerations, shape (n,).
+        eliminated: indices of entries whose rows have no derivative by another one of them.
 
     Returns:
         the matrices; None where one of them is singular to rounding.
@@ -125,12 +130,40 @@ def step_matrices(
         if eigenvalue.imag == 0.0:
             rate = rate.real
         stiffness = linearisation.stiffness + rate * linearisation.damping + rate**2 * linearisation.mass
-        inverse = scaled_inverse(stiffness)
+        inverse = condensed_inverse(stiffness, np.asarray(eliminated, dtype=np.intp))
         if inverse is None:
             return None
         inverses.append(inverse)
         shares[k, differential] = 1.0 / eigenvalue**2
     return StepMatrices(method, step, linearisation, inverses, shares)
+
+
+def condensed_inverse(matrix: npt.NDArray[Any], eliminated: npt.NDArray[np.intp]) -> npt.NDArray[Any] | None:
+    """Inverse of a matrix whose block of eliminated entries is diagonal; None where it is singular to rounding.
+
+    Only the Schur complement of the other entries is inverted.
+
+    Args:
+        matrix: shape (n, n).
+        eliminated: indices of entries.
+    """
+    if not eliminated.size:
+        return scaled_inverse(matrix)
+    kept = np.delete(np.arange(len(matrix)), eliminated)
+    pivots = np.diag(matrix)[eliminated]
+    # What an eliminated entry follows the kept ones by, and what of its row goes into theirs.
+    follows = -matrix[np.ix_(eliminated, kept)] / pivots[:, None]
+    passed = -matrix[np.ix_(kept, eliminated)] / pivots
+    complement = matrix[np.ix_(kept, kept)] + matrix[np.ix_(kept, eliminated)] @ follows
+    of_kept = scaled_inverse(complement)
+    if of_kept is None:
+        return None
+    inverse = np.empty_like(matrix)
+    inverse[np.ix_(kept, kept)] = of_kept
+    inverse[np.ix_(eliminated, kept)] = follows @ of_kept
+    inverse[np.ix_(kept, eliminated)] = of_kept @ passed
+    inverse[np.ix_(eliminated, eliminated)] = follows @ of_kept @ passed + np.diag(1.0 / pivots)
+    return inverse
 
 
 def scaled_inverse(matrix: npt.NDArray[Any]) -> npt.NDArray[Any] | None:

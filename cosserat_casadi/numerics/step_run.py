@@ -155,7 +155,8 @@ class StepRun:
         if not linearisation.finite:
             return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
         if self.matrices is None or self.matrices.step != self.size:
-            self.matrices = step_matrices(self.method, self.size, linearisation, self.equations.differential)
+            of_unknowns = (self.equations.differential, self.equations.eliminated)
+            self.matrices = step_matrices(self.method, self.size, linearisation, *of_unknowns)
             self.factorisations += 1
         if self.matrices is None:
             return StepOutcome.SINGULAR

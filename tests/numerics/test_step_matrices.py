@@ -47,6 +47,15 @@ def test_corrections_solve_the_system_of_all_stages(linearisation: Linearisation
     assert_allclose(change, -residuals, rtol=0, atol=1e-12)
 
 
+def test_eliminated_entries_leave_the_inverses_what_they_are() -> None:
+    whole = step_matrices(radau(3), STEP, damped(), ALL_MOVE)
+    condensed = step_matrices(radau(3), STEP, damped(), ALL_MOVE, [1])
+    assert whole is not None
+    assert condensed is not None
+    for inverse, expected in zip(condensed.inverses, whole.inverses, strict=True):
+        assert_allclose(inverse, expected, rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
 def test_filter_is_that_of_the_system_of_first_order(method: Collocation) -> None:
     linearisation = damped()
