@@ -34,7 +34,7 @@ length = 0.1
 strain = "planar"
 material = { youngs_modulus = 1.2e6, poisson_ratio = 0.48, density = 1070.0 }
 section = { shape = "circle", radius = 5e-3 }
-damping = { retardation_time = 0.02 }
+damping = { retardation_time = 0.02, prony = [{ share = 0.2, time = 0.05 }] }
 [[loads]]
 name = "push"
 kind = "tip_wrench"
