@@ -106,7 +106,7 @@ class Model(ModelFunctions, MotionFunctions):
 
     @cached_property
     def in_motion(self) -> Model:
-        """The model with the unknowns that stress which relaxes has in motion, behind its own; mostly itself."""
+        """The model with flows behind its unknowns where stress relaxes; else itself."""
         if self.discrete.moving or not any(rod.properties.branches for rod in self.discrete.rods.values()):
             return self
         return Model(self.discrete.in_motion)

@@ -93,7 +93,7 @@ class DiscreteScene:
         rods: the constant matrices of each rod.
         parameters: the parameters that its expressions are of.
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
-        moving: whether it is for a motion, in which stress that relaxes has unknowns of its own.
+        moving: whether it is for a motion, in which stress that relaxes has flows.
     """
 
     scene: scenes.Scene

@@ -1,4 +1,4 @@
-"""Stress of a rod that relaxes, generalised Maxwell: Λ = H (ξ − ξ⁰) + Σ c_i H e_i beside what is elastic and viscous.
+"""Stress of a rod that relaxes, generalised Maxwell: Λ = Σ c_i H e_i beside elastic and viscous stress.
 
 A branch is a spring of stiffness c_i H in series with a dashpot of relaxation time τ_i. Its spring is stretched by
 e_i = τ_i ẇ_i, w_i the strain of the dashpot, so that ė_i = ξ̇ − ẇ_i is τ_i ẅ_i + ẇ_i = ξ̇: an equation of motion like

@@ -160,7 +160,7 @@ Row6 = Annotated[tuple[Number, Number, Number, Number, Number, Number], listed(6
 StiffnessMatrix = Annotated[tuple[Row6, Row6, Row6, Row6, Row6, Row6], listed(6, "6 rows of 6 numbers")]
 
 
-class MaxwellBranch(Record):
+class PronyTerm(Record):
     """A spring and a dashpot in series beside the rod's own elasticity: its stress relaxes."""
 
     example: ClassVar[str] = """\
@@ -189,7 +189,7 @@ damping = { retardation_time = 0.01 }
     shear_x: SizeOrZero | None = Field(None, description="damping of shear along local x, N s; 0 when left out")
     shear_y: SizeOrZero | None = Field(None, description="damping of shear along local y, N s; 0 when left out")
     extension: SizeOrZero | None = Field(None, description="damping of extension, N s; 0 when left out")
-    prony: tuple[MaxwellBranch, ...] = Field(
+    prony: tuple[PronyTerm, ...] = Field(
         (), description="branches whose stress relaxes, each a spring and a dashpot in series; of all strains alike"
     )
 
