@@ -69,7 +69,7 @@ def equilibrium_start(model: Model, inputs: FloatArray) -> Start:
         inputs: at the start, shape (model.inputs.size,).
     """
     held = _held(model)
-    sentence = EQUILIBRIUM if held.size == model.size else HELD
+    sentence = HELD if _frees_bases(held, model) else EQUILIBRIUM
     return _started(model, solve(held, held.pack(model.inputs.unpack(inputs)), estimate_error=False), sentence)
 
 
@@ -94,13 +94,18 @@ def _held(model: Model) -> Model:
     return model.changed(scenes.Scene.held)
 
 
+def _frees_bases(held: Model, model: Model) -> bool:
+    """Whether bases that are held at rest are unknowns of the model in motion."""
+    return held.in_motion.size != model.size
+
+
 def _started(model: Model, solution: Solution, sentence: str) -> Start:
     """The start in an equilibrium of the held scene."""
     x = model.unloaded()
     if not solution.converged:
         return Start(x, solution.message, found=False)
     if model.scene.touches_exactly and solution.contacts:
-        if _held(model).size != model.size:
+        if _frees_bases(_held(model), model):
             return Start(x, FREE_TOUCHES, found=False)
         return _touching(model, solution, sentence)
     # Bases that are free begin where the scene puts them, where their unknowns are zero.
@@ -116,7 +121,8 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)
     inputs = model.pack({name: value for name, value in given.items() if name in names})
-    guess = projected(solution, model)[: model.size]
+    held = _held(model)
+    guess = held.with_flows(projected(solution, model)[: held.size])
     found = resting(ExactContacts(model), guess, inputs, solution.contacts)
     if found is None:
         modes = max(max(own.modes) for own in model.discretisation.values())

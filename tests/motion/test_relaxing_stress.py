@@ -14,6 +14,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.motion_start import EQUILIBRIUM
 from cosserat_casadi.numerics.collocation import radau
 from tests import moving_scenes
 from tests.motion.stepping import moving_model, orders, stepped
@@ -126,6 +127,7 @@ def test_energy_is_balanced_and_what_is_taken_is_dissipated() -> None:
         scene["simulation"] = {"duration": 1.0, "tolerance": 1e-6}
         motion = simulate(moving_model(scene))
         assert motion.converged, motion.message
+        assert motion.start == EQUILIBRIUM
         assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-5)
         assert np.all(np.diff(motion.energy.dissipated) > 0.0)
 
