@@ -133,6 +133,22 @@ class SmallMotions:
         unknowns[self.moving] = self.basis @ free / self.roots[:, None]
         return unknowns
 
+    def creeps(self, values: npt.NDArray[np.complex128], free: npt.NDArray[np.inexact]) -> npt.NDArray[np.bool_]:
+        """Whether each motion is a decay that dashpots of branches brake more than all other damping, shape (p,).
+
+        Args:
+            values: eigenvalues λ, shape (p,).
+            free: their vectors on the free coordinates, shape (k, p).
+        """
+        moved = self.displacement(free)
+        weighted = self.units[:, None] * moved.conj()
+        braked = np.abs(np.sum(weighted * (self.damping @ moved), axis=0))
+        by_branches = np.zeros(len(values))
+        for branch in self.branches:
+            own = self.damping[branch.flows, branch.flows] @ moved[branch.flows]
+            by_branches += np.sum(weighted[branch.flows] * own, axis=0).real
+        return np.asarray((values.imag == 0.0) & (values.real < 0.0) & (by_branches > braked / 2))
+
     @cached_property
     def free_stiffness(self) -> FloatArray:
         """K on the free coordinates, shape (k, k), no unit."""

@@ -135,8 +135,8 @@ class Modes(Result):
         solution: the equilibrium, on the model whose modes these are.
         outcome: how the search ended.
         stability: sentences on what becomes of small motions; where there is no equilibrium, why.
-        modes: ordered by |λ|, multiplicities repeated, conjugate pairs once.
-        spectrum: all eigenvalues of the model, in the same order; the larger ones are not those of the rods, 1/s.
+        modes: ordered by |λ|, multiplicities repeated, conjugate pairs once; the creep of branches is not among them.
+        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones are not those of the rods, 1/s.
     """
 
     solution: Solution
@@ -262,10 +262,14 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
         motions.free_mass,
         conservative=model.has_potential(solution.inputs),
     )
+    swinging, free = pairs.values, pairs.vectors
+    if motions.branches:
+        vibrates = ~motions.creeps(swinging, free)
+        swinging, free = swinging[vibrates], free[:, vibrates]
     # Shapes of one eigenvalue are told apart together, also where the last of them is not asked for.
-    end = end_of_cluster(pairs.values, count)
-    values = pairs.values[:end]
-    vectors = motions.displacement(pairs.vectors[:, :end])[: model.size]
+    end = end_of_cluster(swinging, count)
+    values = swinging[:end]
+    vectors = motions.displacement(free[:, :end])[: model.size]
     shapes = normalised(model, solution.x, solution.inputs, values, vectors)
     modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
     # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.

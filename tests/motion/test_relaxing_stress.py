@@ -164,7 +164,10 @@ def test_modes_are_roots_of_the_cubic() -> None:
         roots = np.roots([TIME, 1.0, square * TIME * (1.0 + ADDED), square])
         expected += [root for root in roots if root.imag >= 0.0]
     expected.sort(key=abs)
-    assert_allclose(relaxing.eigenvalues, expected, rtol=1e-10, atol=0)
+    assert_allclose(relaxing.spectrum, expected, rtol=1e-10, atol=0)
+    # The branch creeps as often as the rod vibrates: that is no mode.
+    vibrations = [root for root in expected if root.imag > 0.0]
+    assert_allclose(relaxing.eigenvalues, vibrations, rtol=1e-10, atol=0)
     linear = np.linalg.eigvals(linearise(solution).A)
     nearest = [np.abs(linear - value).min() / abs(value) for value in expected]
     assert_allclose(nearest, 0.0, rtol=0, atol=1e-10)
