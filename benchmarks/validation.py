@@ -220,10 +220,9 @@ def block_period(mass: float, modulus: float) -> float:
 
 def millimetres(found: Identification, *, held_out: bool, moving: bool | None = None) -> tuple[int, float]:
     """How many coordinates, and the root mean square of measured minus modelled, mm; in motion, at rest, or of both."""
-    measurements = found.model.scene.measurements
-    measured = [row for row in found.rows if measurements[row.measurement].name != DEFINED]
+    measured = [row for row in found.rows if found.model.scene.measurements[row.measurement].name != DEFINED]
     if moving is not None:
-        measured = [row for row in measured if (measurements[row.measurement].time is not None) is moving]
+        measured = [row for row in measured if (row.time is not None) is moving]
     differences = [row.modelled - row.measured for row in measured if row.held_out is held_out]
     return len(differences), 1e3 * float(np.sqrt(np.mean(np.square(differences)))) if differences else np.nan
 

@@ -136,7 +136,8 @@ class Modes(Result):
         outcome: how the search ended.
         stability: sentences on what becomes of small motions; where there is no equilibrium, why.
         modes: ordered by |λ|, multiplicities repeated, conjugate pairs once; the creep of branches is not among them.
-        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones are not those of the rods, 1/s.
+        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones are not those of
+            the rods, 1/s.
     """
 
     solution: Solution
