@@ -38,7 +38,7 @@ from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_tu
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
-from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.answer_error import with_notes
 from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
@@ -415,7 +415,7 @@ def _beside_finer(
     shape_error = judged.shape_error_estimate
     # Written so that an estimate which is not a number counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
-        return with_tolerance_note(judged)
+        return with_notes(judged)
     return judged.unresolved()
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
-from cosserat_casadi.equilibrium.answer_error import with_tolerance_note
+from cosserat_casadi.equilibrium.answer_error import with_notes
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.result import Result
 
@@ -74,7 +74,7 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
     result = replace(result, gaps=gaps)
     result = replace(result, met=meets_all(result))
     if not _missed_by_the_model(result):
-        solution = with_tolerance_note(solution)
+        solution = with_notes(solution)
     message = solution.message
     if solution.converged:
         # What was asked for comes first: whether the targets are met.

@@ -123,7 +123,7 @@ def with_error_estimate(solution: Solution) -> Solution:
     """
     if not solution.converged or solution.error_estimate is not None:
         return solution
-    return with_tolerance_note(estimated(solution))
+    return with_notes(estimated(solution))
 
 
 def estimated(solution: Solution) -> Solution:
@@ -137,9 +137,18 @@ def estimated(solution: Solution) -> Solution:
     )
 
 
-def with_tolerance_note(solution: Answer) -> Answer:
-    """A solution whose message tells an estimated error above the tolerance."""
-    return replace(solution, message=solution.message + _tolerance_note(solution))
+def with_notes(solution: Answer) -> Answer:
+    """A solution whose message tells an estimated error above the tolerance, and friction that is left out."""
+    return replace(solution, message=solution.message + _tolerance_note(solution) + _friction_note(solution))
+
+
+def _friction_note(solution: Equilibrium[Any]) -> str:
+    """A sentence for an equilibrium in contact with obstacles that rub; empty for other answers."""
+    if not solution.converged or not isinstance(solution, Solution) or not solution.contacts:
+        return ""
+    if not any(obstacle.rubs for obstacle in solution.model.scene.obstacles):
+        return ""
+    return " Friction acts in motion alone: at rest it would hold many other shapes too, and this one has none."
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

@@ -9,6 +9,11 @@ stiffness are continuous, and so is the derivative of the stiffness but for its 
 
 In motion the force is f (1 − δ ġ): the power δ f ġ² that it dissipates is never negative. K. H. Hunt and F. R. E.
 Crossley, J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
+
+Coulomb's friction acts on the point of the section that touches, ρ from its centre: with its velocity u along the
+surface, μ times the force against u/√(u² + s²), as long as the section is pushed. Far above the slip speed s that is
+Coulomb's law to the share ½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
+Along the tangent of the rod, against it and across it the coefficient may be another. At rest nothing rubs.
 """
 
 from __future__ import annotations
@@ -25,6 +30,9 @@ from cosserat_casadi.maths.numbers import Numbers, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 
+STANDING = 1e-3
+"""Cosine of a rod to the surface below which its tangent along the surface fades."""
+
 
 class ContactLayer(ObstacleLoadRecord):
     """An obstacle with a width in front of one rod, or of a body that is a ball; no scene file names this load."""
@@ -34,9 +42,9 @@ class ContactLayer(ObstacleLoadRecord):
     radius: float = 0.0
 
     @property
-    def is_damped(self) -> bool:
+    def takes_energy(self) -> bool:
         """Whether it takes energy in motion; loads on bodies do not know how they move."""
-        return self.body is None and self.obstacle.damping > 0.0
+        return self.body is None and (self.obstacle.damping > 0.0 or self.obstacle.rubs)
 
 
 @final
@@ -54,18 +62,53 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return energy
 
     def wrench(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force along the normal, N/m, or N on a body; without friction it has no moment about the centre."""
+        """Force, N/m, or N on a body, and the moment of friction about the centre, N."""
         width = load.obstacle.width
         normal = ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
         pressing = load.stiffness / (3 * width**2) * _depth(load, section) ** 3
         # At rest the velocity stores nothing, and nothing is added.
-        if load.is_damped and section.velocity.nnz():
+        if not (load.takes_energy and section.velocity.nnz()):
+            return pressing * normal, ca.DM(3, 1)
+        if load.obstacle.damping > 0.0:
             pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
-        return pressing * normal, ca.DM(3, 1)
+        if not load.obstacle.rubs:
+            return pressing * normal, ca.DM(3, 1)
+        touching = -section.data[0] * normal
+        rubbing = _friction(load, section, normal, ca.fmax(pressing, 0.0), touching)
+        return pressing * normal + rubbing, ca.cross(touching, rubbing)
 
     def data(self, load: ContactLayer, site: Site) -> Numbers:
         """Radius of the sections, m."""
         return stacked_rows([section_radii(site.rod, site.X)])
+
+
+def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix, touching: Matrix) -> Matrix:
+    """Force of friction, N/m.
+
+    Args:
+        load: the push.
+        section: of the rod.
+        normal: of the obstacle, 3×1.
+        pressing: force along it, not negative, N/m.
+        touching: from the centre of the section to the point that touches, 3×1, m.
+    """
+    slip = load.obstacle.slip_speed
+    along, back, across = load.obstacle.coefficients
+    velocity = section.velocity + ca.cross(section.angular_velocity, touching)
+    sliding = velocity - ca.dot(normal, velocity) * normal
+    speed = ca.sqrt(ca.sumsqr(sliding) + slip**2)
+    of_all = across * sliding
+    if along is not across or back is not across:
+        tangent = section.rotation[:, 2]
+        direction = tangent - ca.dot(normal, tangent) * normal
+        # A rod that stands on the surface slides in no direction of its own.
+        direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
+        forward = ca.dot(direction, sliding)
+        share = forward / ca.sqrt(forward**2 + slip**2)
+        own = (along * (1 + share) + back * (1 - share)) / 2
+        of_all = of_all + (own - across) * forward * direction
+    friction: Matrix = -pressing / speed * of_all
+    return friction
 
 
 def _depth(load: ContactLayer, section: Section) -> Matrix:

@@ -75,7 +75,7 @@ class MotionEnergy:
 
     @cached_property
     def dissipated_power(self) -> Matrix:
-        """Power that the viscous stress of the rods and the damping of contact turn into heat, 1×1, W."""
+        """Power that the viscous stress of the rods, and damping and friction of contact, turn into heat, 1×1, W."""
         of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
         of_branches = [relaxation.dissipated_power for relaxation in self.system.relaxations.values()]
         # What contact presses with at rest is stored: what it takes beyond that is lost.
@@ -288,7 +288,7 @@ def _is_contact(load: scenes.LoadRecord) -> bool:
 
 def _is_damped(load: scenes.LoadRecord) -> bool:
     """Whether it is one that takes energy."""
-    return isinstance(load, ContactLayer) and load.is_damped
+    return isinstance(load, ContactLayer) and load.takes_energy
 
 
 def _sum(terms: list[Matrix]) -> Matrix:

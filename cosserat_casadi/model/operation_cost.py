@@ -82,18 +82,18 @@ def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None
 
 
 def is_damped(scene: scenes.Scene) -> bool:
-    """Whether a rod of the scene or the contact with an obstacle is damped."""
+    """Whether a rod of the scene is damped, or the contact with an obstacle takes energy."""
     rods = any(rod.damping is not None for rod in scene.rods)
-    return rods or any(obstacle.damping > 0.0 for obstacle in scene.obstacles)
+    return rods or any(obstacle.damping > 0.0 or obstacle.rubs for obstacle in scene.obstacles)
 
 
 def without_damping(scene: scenes.Scene) -> scenes.Scene:
-    """The scene without the damping of its rods and of contact, and without the parameters that were of it."""
+    """The scene without damping and friction, and without the parameters that were of them."""
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
-    obstacles = tuple(obstacle.model_copy(update={"damping": 0.0}) for obstacle in scene.obstacles)
+    obstacles = tuple(obstacle.model_copy(update={"damping": 0.0, "friction": 0.0}) for obstacle in scene.obstacles)
     # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
     named = zip(scene.parameters, scene.parameter_names(), strict=True)
-    parameters = tuple(entry for entry, name in named if name.split(".")[1] != "damping")
+    parameters = tuple(entry for entry, name in named if name.split(".")[1] not in ("damping", "friction"))
     return scene.model_copy(update={"rods": rods, "obstacles": obstacles, "parameters": parameters})
 
 

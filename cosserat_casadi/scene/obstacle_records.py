@@ -1,4 +1,4 @@
-"""Obstacles: what rods may not enter, and lumens, which they may not leave; without friction.
+"""Obstacles: what rods may not enter, and lumens, which they may not leave.
 
 A kind is a record here and a class in `obstacles/` that says how far a point is from its surface.
 """
@@ -9,13 +9,13 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping
 from math import inf
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
-from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.rod_records import admitted_strains, is_round
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
@@ -34,7 +34,7 @@ from cosserat_casadi.scene.values import (
 SHEARS = {3, 4}
 """Indices of the shears among the strains."""
 
-SMOOTH_KEYS = ("width", "stiffness", "damping")
+SMOOTH_KEYS = ("width", "stiffness", "damping", "friction", "slip_speed")
 """Keys of an obstacle whose contact is smooth."""
 
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
@@ -42,6 +42,34 @@ SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in
 
 FEWEST_POINTS = 2
 """Points of a lumen that make a line."""
+
+
+class Friction(Record):
+    """Coulomb's coefficients in the directions of a rod that slides."""
+
+    example: ClassVar[str] = """\
+friction = { along = 0.1, back = 0.4, across = 0.2 }
+"""
+
+    along: NotNegative = Field(description="coefficient where a section slides along its tangent, without unit")
+    back: NotNegative | None = Field(None, description="coefficient against its tangent; along when left out")
+    across: NotNegative | None = Field(None, description="coefficient across the rod; along when left out")
+
+
+TABLE = Tag("⟨table⟩")
+
+
+def _number_or_table(value: Any) -> str:
+    if isinstance(value, Mapping | Friction):
+        return TABLE.tag
+    return SINGLE.tag
+
+
+Coefficients = Annotated[
+    Annotated[NotNegative, SINGLE] | Annotated[Friction, TABLE],
+    Discriminator(_number_or_table),
+]
+"""A coefficient in all directions, or those of the rod's own directions."""
 
 
 class ObstacleRecord(Entry):
@@ -81,6 +109,14 @@ class ObstacleRecord(Entry):
     damping: NotNegative = Field(
         0.0, description="with width: share by which it pushes more in motion, per speed of approach, s/m"
     )
+    friction: Coefficients = Field(
+        0.0,
+        description="with width: coefficient μ of Coulomb's friction in motion, without unit, or a table of those "
+        "along a rod, back and across it",
+    )
+    slip_speed: Positive = Field(
+        1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"
+    )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
@@ -94,6 +130,21 @@ class ObstacleRecord(Entry):
         """Whether it pushes smoothly, from a width on."""
         return self.width is not None
 
+    @property
+    def coefficients(self) -> tuple[float, float, float]:
+        """Coefficients of friction along a rod, back, and across it."""
+        friction = self.friction
+        if not isinstance(friction, Friction):
+            return friction, friction, friction
+        back = friction.along if friction.back is None else friction.back
+        across = friction.along if friction.across is None else friction.across
+        return friction.along, back, across
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction."""
+        return max(self.coefficients) > 0.0
+
     def concerns(self, rod: str) -> bool:
         """Whether the rod of this name may not enter it."""
         if self.rods is None:
@@ -106,7 +157,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Faults of a smooth contact's stiffness or damping without width, and of obstacles on bodies."""
+        """Faults of what smooth contact alone has, without width, and of obstacles on bodies."""
         yield from _misplaced_on_body(given)
         if "width" in given:
             return
@@ -148,13 +199,19 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
     if "damping" in given:
         problem = "contact with an obstacle on a body is not damped"
         yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
+    if "friction" in given:
+        problem = "contact with an obstacle on a body is without friction"
+        yield Fault(("friction",), problem, "leave it out, or fix the obstacle to the world")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
-    """Bodies that have no radius to keep."""
+    """Bodies that have no radius to keep, and those that would have to rub."""
     bodies = given.get("bodies")
     if not isinstance(bodies, list | tuple):
         return
+    if "friction" in given:
+        problem = "contact of bodies is without friction"
+        yield Fault(("friction",), problem, "give the obstacle twice: with friction for rods, and without for bodies")
     known = scene.named("bodies")
     for i, name in enumerate(bodies):
         # A name that nothing has is refused with the other references.

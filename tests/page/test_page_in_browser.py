@@ -140,7 +140,7 @@ def test_the_estimated_error_is_that_of_solve_beside_the_tolerance(page: Any, so
     assert home["text"] == "Estimated error 1e-6 of the length, asked 1e-5."
     assert away["within"] is False
     assert_allclose(away["error"], bent, rtol=1e-4, atol=0)
-    assert away["text"] == "Estimated error 8e-5 of the length, asked 1e-5; choose them anew."
+    assert away["text"] == "Estimated error 9e-5 of the length, asked 1e-5; choose them anew."
     # Of modes that the scene fixes without a tolerance nothing is asked.
     assert unasked == {"within": None, "text": "", "refines": False}
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_tolerance_note
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_notes
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
@@ -40,8 +40,8 @@ def with_error_in_contact(
         scene, richer(Grids(solution.model.discretisation), scene), values, start=solution, newton=newton
     )
     if finer.converged and same_contacts(solution, finer):
-        return with_tolerance_note(with_contact_error(solution, finer))
-    return with_tolerance_note(replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN))
+        return with_notes(with_contact_error(solution, finer))
+    return with_notes(replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN))
 
 
 def richer(grids: Grids, scene: Scene) -> Grids:
