@@ -79,6 +79,7 @@ MOTIONS = (
     "snapping_arch",
     "seaweed",
     "swimmer",
+    "snake",
     "dropped_rod",
     "bouncing_rod",
     "rod_hits_floor",

@@ -40,6 +40,7 @@ LONG = (
     "cosserat identify examples/wire_from_shapes.toml",
     "cosserat path examples/concentric_tubes.toml",
     "cosserat simulate examples/seaweed.toml",
+    "cosserat simulate examples/snake.toml",
     "cosserat simulate examples/swimmer.toml",
     "cosserat solve examples/rod_on_table.toml",
     "cosserat sweep examples/concentric_tubes.toml",

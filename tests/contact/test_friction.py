@@ -174,6 +174,19 @@ def test_dynamics_in_c_are_those_of_python(tmp_path: Path) -> None:
     assert_allclose(damping.full(), np.array(columns).T, rtol=1e-5, atol=1e-6 * np.abs(damping.full()).max())
 
 
+@pytest.mark.slow
+def test_a_snake_crawls_as_fast_as_that_of_pyelastica() -> None:
+    """Its steady speed over a period of 2 s is 0.0278 m/s there: version 1.0.0, 50 elements, steps of 1e-4 s."""
+    motion = simulate(read_scene(ROOT / "examples" / "snake.toml"))
+    assert motion.converged, motion.message
+    positions = motion.section("snake", np.linspace(0, 1, 101)).position.mean(axis=1)
+    periods = positions[[0, 100, 200, 300]]
+    speeds = np.linalg.norm(np.diff(periods, axis=0), axis=1) / 2.0
+    assert_allclose(speeds[2], 0.0278, rtol=0.05, atol=0)
+    # From the tail to the head, against the wave.
+    assert periods[3, 0] - periods[2, 0] > 0.05
+
+
 REFUSED = {
     "friction without width": (
         {"width": None, "stiffness": None, "slip_speed": None},
