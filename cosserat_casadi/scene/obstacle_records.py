@@ -205,7 +205,7 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
-    """Bodies that have no radius to keep, and those that would have to rub."""
+    """Bodies that have no radius to keep, and friction on them."""
     bodies = given.get("bodies")
     if not isinstance(bodies, list | tuple):
         return
