@@ -279,8 +279,8 @@ class ModelFunctions:
             ca.repmat(base.position, 1, count) + rotation @ rod.shape.position,
             quaternion_product(quaternions, ca.densify(rod.shape.quaternion)),
             rod.statics.internal_wrench(),
-            rotation @ rod.statics.base_force,
-            rotation @ rod.statics.base_moment,
+            rotation @ rod.statics.held_force,
+            rotation @ rod.statics.held_moment,
         ]
 
     @owned_functions(

@@ -263,6 +263,8 @@ class System:
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
+        if placed.at_base:
+            return self._still_base(placed.rod)
         if placed.frame is None:
             return IDENTITY.pose
         return self.frame(placed.frame)

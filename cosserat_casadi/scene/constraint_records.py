@@ -13,24 +13,24 @@ from pydantic import AfterValidator, Discriminator, Field
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.joint_ends import end_faults
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
-from cosserat_casadi.scene.records import Entry, refusal, sound
+from cosserat_casadi.scene.records import Entry, Record, refusal, sound
 from cosserat_casadi.scene.values import (
-    ABOVE_BASE,
     SEVERAL,
     SINGLE,
     Direction,
     Name,
     NotNegative,
-    Number,
     Positive,
     Quadruple,
     Quaternion,
+    Share,
     Triple,
     Vector,
-    above_base,
     listed,
+    numbers_of,
 )
 
 # Supports
@@ -186,25 +186,98 @@ mass = 0.1
         return _matrix(self.inertia)
 
 
+class JointEnd(Record):
+    """One end of a joint: a section of a rod, a place of a body, or a place in the world."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+kind = "spherical"
+between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 0.1] }]     # or world = true
+"""
+
+    rod: str | None = Field(None, description="name of a rod, whose section at X = at is jointed")
+    at: Share = Field(1.0, description="abscissa X of the section, without unit; 1 is the tip, 0 the base; with rod")
+    body: str | None = Field(None, description="name of a body, instead of a rod")
+    world: Literal[True] | None = Field(None, description="true for a place in the world, instead of a rod")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the body or in the world, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the other end in the body or in the world, of norm 1"
+    )
+
+
 class JointRecord(Entry):
-    """A joint, which joins a section of a rod to a body."""
+    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names."""
 
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
-    body: str = Field(description="name of the body")
-    rod: str = Field(description="name of the rod that is jointed to it")
-    at: Annotated[
-        Number,
-        above_base("at its base a rod does not move: give an abscissa above it"),
-        ABOVE_BASE,
-    ] = Field(1.0, description="abscissa X of the jointed section, without unit, above 0 and at most 1; the tip")
-    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the axes of the body, m")
+    between: tuple[JointEnd, JointEnd] | None = Field(
+        None,
+        description='the two ends that are jointed, such as [{ rod = "upper" }, { rod = "lower", at = 0 }], in place '
+        "of rod, at and body; a quaternion beside it is the orientation of the second in the first",
+    )
+    body: str | None = Field(
+        None,
+        description="name of the body; left out, the joint is in the world, or at X = 0 where the base of the rod is, "
+        "in the world or on another rod",
+    )
+    rod: str = Field(description="name of the jointed rod")
+    at: Share = Field(1.0, description="abscissa X of the jointed section, without unit; 1 is the tip, 0 the base")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the body or in the world, m")
     quaternion: Quaternion = Field(
-        (1.0, 0.0, 0.0, 0.0), description="orientation of the section in the axes of the body, of norm 1"
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the section in the body or in the world, of norm 1"
     )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The place of a base is said by its rod, that of a joint in the world by the joint."""
+        if "between" in given:
+            for fault in end_faults(given["between"]):
+                yield fault.below(("between",))
+            return
+        if "body" in given:
+            return
+        if given.get("at") == 0:
+            for key in ("position", "quaternion"):
+                if key in given:
+                    problem = "stands in a joint at X = 0 without body"
+                    yield Fault((key,), problem, "give it to the base of the rod, which says where the joint is")
+        elif "position" not in given:
+            yield Fault(("position",), "missing", "name a body, or say where in the world the joint is, m")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """A base that a joint holds is not free, and starts at the section that carries it."""
+        _, rod = scene.named("rods").get(given.get("rod"), (0, {})) if isinstance(given.get("rod"), str) else (0, {})
+        base = rod.get("base")
+        if given.get("at") != 0 or not isinstance(base, Mapping):
+            return
+        if base.get("free") is True:
+            yield Fault(("at",), "holds a base that is free", "leave base.free out: the joint says what is free")
+        if "rod" in base and "body" in given:
+            yield Fault(("body",), f"the base of {shown(given['rod'])} is on another rod", "leave one of them out")
+        elif "rod" in base and any(numbers_of(base.get("position"))):
+            problem = f"the base of {shown(given['rod'])} is beside the section that carries it"
+            yield Fault(("at",), problem, "leave base.position out, or hold a body there by a fixed joint")
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """The base of a rod is jointed or not, whatever the parameters."""
+        if key == "at" and self.holds_base:
+            return "is the base of its rod", "only the place of a joint inside a rod can be a parameter"
+        return super().parameter_refusal(key)
+
+    @property
+    def holds_base(self) -> bool:
+        """Whether the jointed section is the base of its rod, which then floats."""
+        # An abscissa that is an expression of parameters is that of a section inside.
+        return isinstance(self.at, float) and self.at == 0.0
+
+    @property
+    def at_base(self) -> bool:
+        """Whether it holds the base of its rod to what the base names, the world or another rod."""
+        return self.body is None and self.holds_base
 
     @property
     def orientation(self) -> Quadruple:
@@ -261,8 +334,8 @@ axis = [0, 1, 0]
 
     kind: Literal["revolute"] = Field(description="the section stays at a point of the body and turns about one axis")
     axis: Direction = Field(
-        description="axis that the section may turn about, through the joint's position, in the axes of the body, "
-        "without unit; any length but zero"
+        description="axis that the section may turn about, through the joint's position, in the axes of the body, the "
+        "world or the carrying section, without unit; any length but zero"
     )
 
 
@@ -283,8 +356,8 @@ axis = [1, 0, 0]
         description="the section slides along one axis of the body and does not turn in it"
     )
     axis: Direction = Field(
-        description="axis that the section may slide along, through the joint's position, in the axes of the body, "
-        "without unit; any length but zero"
+        description="axis that the section may slide along, through the joint's position, in the axes of the body, the "
+        "world or the carrying section, without unit; any length but zero"
     )
 
 

@@ -362,7 +362,8 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         elif isinstance(base, Mapping) and base.get("free") is True:
             yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
-        held = any(table.get("rod") == name for _, table in holding)
+        # A joint at the base moves with it.
+        held = any(table.get("rod") == name and table.get("at") != 0 for _, table in holding)
         admitted = set(admitted_strains(given.get("strain")))
         # Constraints of a rod in a plane are those in its plane: out of it they would be too few.
         if held and admitted <= IN_PLANE:

@@ -189,6 +189,16 @@ inputs = ["push.force", "cable.tension"]
         return {holder.rod for holder in (*self.supports, *joints)}
 
     @property
+    def base_joints(self) -> dict[str, int]:
+        """Place in the list of the joint that holds the base of a rod, for each rod with one without a body."""
+        return {joint.rod: index for index, joint in enumerate(self.joints) if joint.at_base}
+
+    @property
+    def jointed_bases(self) -> set[str]:
+        """Names of the rods whose bases joints hold, be it to bodies: they float."""
+        return {joint.rod for joint in self.joints if joint.holds_base}
+
+    @property
     def touches_exactly(self) -> bool:
         """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)

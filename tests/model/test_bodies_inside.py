@@ -96,7 +96,7 @@ def test_the_place_of_a_joint_as_a_parameter() -> None:
 @pytest.mark.parametrize(
     ("places", "where", "problem"),
     [
-        ([0.0, 1.0], "joints[0].at", "must be > 0 and <= 1, got 0.0"),
+        ([-0.1, 1.0], "joints[0].at", "must be >= 0, got -0.1"),
         ([0.5, 0.5], "joints[1].rod", "joints[0] holds X = 0.5 of 'a' already"),
     ],
 )
