@@ -404,6 +404,8 @@ def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
         return f"tension of the tendon {entry['tendon']}, in units of {entry['unit_N']:.6g} N"
     if "tie" in entry:
         return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
+    if "joint" in entry:
+        return f"angle (rad) of {entry['joint']}, or its displacement over the length of the rod"
     return f"how far the {entry['frame']} has moved and its quaternion changed"
 
 

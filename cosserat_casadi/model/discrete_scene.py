@@ -1,7 +1,7 @@
 """A scene with everything settled that does not depend on the unknowns.
 
 The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
-tensions of the cables of given length, as in docs/theory.md, section 8.
+coordinates of joints, tensions of the cables of given length, as in docs/theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.constraint_records import AxisJoint
 
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
@@ -207,11 +208,12 @@ class DiscreteScene:
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """The unknowns x in their order: strains, multipliers, poses, tensions."""
+        """The unknowns x in their order: strains, multipliers, poses, coordinates, tensions."""
         blocks = [
             *self._strain_blocks(),
             *self._multiplier_blocks(),
             *self._pose_blocks(),
+            *self._coordinate_blocks(),
             *self._tension_blocks(),
         ]
         return Unknowns(tuple(blocks))
@@ -250,6 +252,33 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
+    def _coordinate_blocks(self) -> Iterator[UnknownBlock]:
+        for placed in self.free_coordinates:
+            yield UnknownBlock(
+                kind=BlockKind.COORDINATE,
+                owner=placed.where,
+                rod=None,
+                size=1,
+                unit=placed.constraint.unit,
+                step_weight=1.0,
+            )
+
+    @cached_property
+    def free_coordinates(self) -> list[PlacedConstraint]:
+        """Joints whose coordinate is an unknown: something acts along it, and no drive prescribes it."""
+        return [
+            placed
+            for placed in self.constraints
+            if placed.constraint.coordinate is not None and not self.joint_record(placed).prescribed
+        ]
+
+    def joint_record(self, placed: PlacedConstraint) -> AxisJoint:
+        """The record of a joint with a coordinate."""
+        assert placed.joint is not None, "asked for of a joint"
+        record = self.scene.joints[placed.joint]
+        assert isinstance(record, AxisJoint), "joints with a coordinate have an axis"
+        return record
+
     def _tension_blocks(self) -> Iterator[UnknownBlock]:
         for cable in self.cables:
             tendon = cable.tendon
@@ -274,6 +303,10 @@ class DiscreteScene:
     def deviation(self, frame: FrameName) -> slice:
         """Slice of the deviation of a floating frame in x."""
         return self.unknowns.slice_of(BlockKind.POSE, str(frame))
+
+    def coordinate(self, placed: PlacedConstraint) -> slice:
+        """Slice of the coordinate of a joint in x."""
+        return self.unknowns.slice_of(BlockKind.COORDINATE, placed.where)
 
     def tension(self, cable: CableOfLength) -> slice:
         """Slice of the tension of a cable of given length in x."""

@@ -17,7 +17,6 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import FLAT, confines_to_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
-from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import cross_matrix, matrix_to_quaternion, quaternion_product
@@ -162,22 +161,24 @@ class UnloadedScene:
             return None
         return own
 
-    def base_joint(self, rod: str) -> tuple[int, HeldDirections] | None:
-        """Place in the scene's list and held directions of the joint at a rod's base, without body; None without one.
+    def base_joint(self, rod: str) -> tuple[int, FloatArray] | None:
+        """Place in the scene's list of the joint at a rod's base, without body, and its rotation; None without one.
 
-        Directions are in the axes of the carrying section, or of the base where that is in the world.
+        The rotation turns the axes of the held section, the carrying one or a base in the world, into those that the
+        axis of the joint is in, shape (3, 3).
         """
         index = self.scene.base_joints.get(rod)
         if index is None:
             return None
-        joint = self.scene.joints[index]
-        rotation = np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
-        return index, JOINT_KINDS[joint.kind].held(joint, rotation)
+        return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
 
     def _base_keeps_plane(self, rod: str) -> bool:
         """Whether the joint at a base in the world keeps its rod in the x–z plane of the base."""
-        joint = self.base_joint(rod)
-        return joint is not None and self.records[rod].base.rod is None and confines_to_plane(joint[1])
+        found = self.base_joint(rod)
+        if found is None or self.records[rod].base.rod is not None:
+            return False
+        joint = self.scene.joints[found[0]]
+        return confines_to_plane(JOINT_KINDS[joint.kind].held(joint, found[1]))
 
     @cached_property
     def all_in_parallel_planes(self) -> bool:

@@ -22,13 +22,15 @@ from cosserat_casadi.constraints.held_directions import (
     stays_in_plane,
     upright,
 )
+from cosserat_casadi.constraints.joint_coordinate import held_along, moves_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
 from cosserat_casadi.constraints.tip_holder import TipHolder, place_of
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_symbolic
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.scene_rods import base_pose, unit_quaternion, written_base_pose
@@ -61,6 +63,7 @@ class PlacedConstraint:
         rod: name of the rod whose section it holds.
         node: node of that section.
         frame: the floating frame on the other side; None for the world.
+        joint: place of the joint in the scene's list; None of supports and clamped bases.
         at_base: whether it holds a base to the pose that the scene, or an input, gives it in the world.
         where: path of the scene's table.
         what: the two sides in words.
@@ -76,12 +79,28 @@ class PlacedConstraint:
     what: str
     compliance: Compliance = ASSEMBLED
     step_weight: float = FORCE_WEIGHT
+    joint: int | None = None
     at_base: bool = False
 
     @property
     def size(self) -> int:
         """Number of multipliers."""
         return self.constraint.size
+
+    @property
+    def coordinate_scale(self) -> float:
+        """Unit of the coordinate as an unknown: a radian, or the length of the rod, m."""
+        coordinate = self.constraint.coordinate
+        assert coordinate is not None, "asked for of a joint with a coordinate"
+        return 1.0 if coordinate.turns else self.constraint.rod.length
+
+    @property
+    def along_coordinate(self) -> int:
+        """Place, among the multipliers, of that along the coordinate."""
+        coordinate = self.constraint.coordinate
+        assert coordinate is not None, "asked for of a joint with a coordinate"
+        # The last of the displacements, or of the rotations, which come last.
+        return self.size - 1 if coordinate.turns else self.constraint.held.positions.shape[1] - 1
 
     @property
     def closes_assembly(self) -> bool:
@@ -137,12 +156,12 @@ def _axes(scene: scenes.Scene) -> dict[str, Matrix]:
         axis = holder.axis(record)
         if axis is None:
             continue
-        quaternion = record.orientation or IDENTITY.quaternion
+        quaternion = unit_quaternion(record.orientation or (1.0, 0.0, 0.0, 0.0))
         if isinstance(record, JointRecord) and record.at_base:
             base = rods[record.rod]
             # On another rod it is that of the carrying section already.
             quaternion = IDENTITY.quaternion if base.base.rod is not None else written_base_pose(base)[1]
-        place = written_pose(np.zeros(3), unit_quaternion(quaternion))
+        place = written_pose(np.zeros(3), quaternion)
         axes[where] = as_matrix(place.rotation).T @ as_matrix(as_vector(axis))
     return axes
 
@@ -263,7 +282,7 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     rod = support.rod
     words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
     tip = _Section(unloaded, rod)
-    return _held_in_world(tip, support, SUPPORT_KINDS[support.kind].directions(support), words)
+    return _held_in_world(tip, support, SUPPORT_KINDS[support.kind].directions(support), words)[0]
 
 
 def _is_in_world(joint: scenes.Joint) -> bool:
@@ -276,27 +295,33 @@ def _joint_in_world(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     joint = unloaded.scene.joints[index]
     words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at its joint in the world")
     section = _Section(unloaded, joint.rod, joint.at)
-    return _held_in_world(section, joint, JOINT_KINDS[joint.kind].directions(joint), words)
+    placed, normal = _held_in_world(section, joint, JOINT_KINDS[joint.kind].directions(joint), words)
+    return _with_coordinate(placed, unloaded, index, place_of(joint).rotation, normal)
 
 
 def _held_in_world(
     section: _Section, record: scenes.Support | scenes.Joint, directions: HeldDirections, words: tuple[str, str]
-) -> PlacedConstraint:
-    """A section of a rod at the place of its record in the world; ``words``: its path and its two sides."""
+) -> tuple[PlacedConstraint, FloatArray | None]:
+    """A section of a rod at the place of its record in the world; ``words``: its path and its two sides.
+
+    Returns:
+        the constraint, and the normal of the plane that the rod stays in, in the axes of the place; None in space.
+    """
     unloaded = section.unloaded
     rod = section.rod
     target = place_of(record)
     floats = unloaded.floating_base(rod) is not None
     stays = _held_in_plane(unloaded, record, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
+    normal = None
     if stays:
+        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1]
         # Directions that turn with the pose are given in its axes, others in those of the base.
-        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_pose else NORMAL
-        directions = in_plane(directions, normal)
+        directions = in_plane(directions, normal if directions.turn_with_pose else NORMAL)
     if floats:
-        return section.held_to(section.nearer_sign(target, None), directions, None, words)
+        return section.held_to(section.nearer_sign(target, None), directions, None, words), normal
     # The scene's own sign of the quaternion says by which way round the tip is to be turned.
     placed = section.held_to(target, directions, None, words)
-    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
+    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT), normal
 
 
 def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Joint, target: NumericPose) -> bool:
@@ -323,12 +348,47 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
     index = list(unloaded.records).index(rod.name)
     words = (_base_path(unloaded.scene, index), f"the base of {rod.name!r} on {carrier!r}")
     joint = unloaded.base_joint(rod.name)
-    directions = CLAMPED if joint is None else joint[1]
     section = _Section(unloaded, carrier, rod.base.at)
     # The scene gives the base in the section; the constraint wants the section in the frame of the base.
     section_in_base = NumericPose(*base_pose(rod)).inverse
     target = section.nearer_sign(section_in_base, frame)
-    return section.held_to(target, directions, frame, words)
+    if joint is None:
+        return section.held_to(target, CLAMPED, frame, words)
+    number, rotation = joint
+    record = unloaded.scene.joints[number]
+    placed = section.held_to(target, JOINT_KINDS[record.kind].held(record, rotation), frame, words)
+    # The base moves along the axis in the section, and so the section against it in the base.
+    return _with_coordinate(placed, unloaded, number, -rotation)
+
+
+def _with_coordinate(
+    placed: PlacedConstraint,
+    unloaded: UnloadedScene,
+    index: int,
+    rotation: FloatArray,
+    normal: FloatArray | None = None,
+) -> PlacedConstraint:
+    """A joint with its coordinate, where something acts along it.
+
+    Args:
+        placed: the constraint without it.
+        unloaded: the scene.
+        index: place of the joint in the scene's list.
+        rotation: turns the axes of the section into those of the joint's axis, shape (3, 3).
+        normal: unit normal of the plane, in the axes of the section, that its rod stays in; None of a rod in space.
+
+    Raises:
+        SceneError: a rod in a plane would have to leave it.
+    """
+    joint = unloaded.scene.joints[index]
+    coordinate = JOINT_KINDS[joint.kind].coordinate(joint, rotation)
+    if coordinate is None:
+        return replace(placed, joint=index)
+    if normal is not None and not moves_in_plane(coordinate, normal):
+        problem = f"would take {joint.rod!r} out of the plane that it bends in"
+        raise SceneError(Problem(f"joints[{index}].axis", problem, "admit its other bending and torsion"))
+    held = held_along(coordinate, normal)
+    return replace(placed, joint=index, constraint=replace(placed.constraint, held=held, coordinate=coordinate))
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
@@ -340,21 +400,23 @@ def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
         # Counted from where the scene, or an input, puts the base.
         base = unloaded.base_joint(joint.rod)
         assert base is not None
-        return replace(section.held_to(IDENTITY, base[1], None, words), at_base=True)
+        placed = section.held_to(IDENTITY, JOINT_KINDS[joint.kind].held(joint, base[1]), None, words)
+        return replace(_with_coordinate(placed, unloaded, index, base[1]), at_base=True)
     assert joint.body is not None, "joints in the world are placed with the supports"
     frame = FrameName("body", joint.body)
     target = section.nearer_sign(place_of(joint), frame)
-    directions = _joint_directions(unloaded, joint)
-    return section.held_to(target, directions, frame, words)
+    coplanar = list(_coplanar(unloaded, joint))
+    placed = section.held_to(target, _joint_directions(joint, coplanar), frame, words)
+    in_a_plane = len(coplanar) > 1 and coplanar[0] != joint
+    return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
 
 
-def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
+def _joint_directions(joint: scenes.Joint, coplanar: list[scenes.Joint]) -> HeldDirections:
     """Directions that a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
     directions: HeldDirections = JOINT_KINDS[joint.kind].directions(joint)
-    coplanar = list(_coplanar(unloaded, joint))
     if len(coplanar) < 2:
         return directions
     if coplanar[0] != joint:

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Discriminator, Field
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.joint_ends import end_faults
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
 from cosserat_casadi.scene.records import Entry, Record, refusal, sound
@@ -23,6 +24,7 @@ from cosserat_casadi.scene.values import (
     Direction,
     Name,
     NotNegative,
+    Number,
     Positive,
     Quadruple,
     Quaternion,
@@ -250,7 +252,8 @@ class JointRecord(Entry):
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """A base that a joint holds is not free, and starts at the section that carries it."""
-        _, rod = scene.named("rods").get(given.get("rod"), (0, {})) if isinstance(given.get("rod"), str) else (0, {})
+        name = given.get("rod")
+        _, rod = scene.named("rods").get(name if isinstance(name, str) else "", (0, {}))
         base = rod.get("base")
         if given.get("at") != 0 or not isinstance(base, Mapping):
             return
@@ -283,6 +286,11 @@ class JointRecord(Entry):
     def orientation(self) -> Quadruple:
         """Orientation of the section in the axes of the body, w, x, y, z."""
         return self.quaternion
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether something acts along a coordinate that the joint leaves free."""
+        return False
 
 
 JOINTS: Family[JointRecord] = Family("joints")
@@ -319,46 +327,123 @@ position = [0.02, 0, 0]
     kind: Literal["spherical"] = Field(description="the section stays at a point of the body and turns freely")
 
 
+class AxisJoint(JointRecord):
+    """A joint that leaves one coordinate free, along which a spring, a damper, a motor or a drive may act.
+
+    Attributes:
+        coordinate_key: key that prescribes the coordinate.
+        effort_key: key of the motor that works on it.
+    """
+
+    coordinate_key: ClassVar[str]
+    effort_key: ClassVar[str]
+
+    axis: Direction = Field(
+        description="axis through the joint's position in the axes of the body, the world or the carrying section, "
+        "without unit; any length but zero"
+    )
+    if TYPE_CHECKING:
+        stiffness: float  # in the units of the kind, as the two that follow
+        rest: float
+        damping: float
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A drive says where the coordinate is: nothing else acts on it. Inputs have a name."""
+        yield from super().conflicts(given)
+        for key in (cls.effort_key, "stiffness", "rest", "damping"):
+            if cls.coordinate_key in given and key in given:
+                yield Fault((key,), f"stands beside {cls.coordinate_key}", "which is prescribed: leave one of them out")
+        if "rest" in given and "stiffness" not in given:
+            yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
+        if "name" not in given and (cls.coordinate_key in given or cls.effort_key in given):
+            yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
+
+    @classmethod
+    def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """A joint has the drive that its table gives it."""
+        if field not in given:
+            name = shown(given["name"])
+            yield Fault((), f"{name} has no {field}", f"give it one, such as {field} = 0.0")
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether a drive prescribes the coordinate."""
+        return getattr(self, self.coordinate_key) is not None
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether something acts along the coordinate."""
+        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping")
+        return any(getattr(self, key) is not None and key in self.model_fields_set for key in acting)
+
+
 @JOINTS.register
-class RevoluteJoint(JointRecord):
-    """A section of a rod stays at a point of a body and turns about one axis of the body."""
+class RevoluteJoint(AxisJoint):
+    """A section of a rod stays at a point of a body, the world or another rod and turns about one axis.
+
+    Its angle is counted from the orientation that the joint gives the section.
+    """
 
     example: ClassVar[str] = """\
 [[joints]]
+name = "hinge"
 rod = "finger"
 body = "platform"
 kind = "revolute"
 position = [0.02, 0, 0]
 axis = [0, 1, 0]
+stiffness = 0.3            # or angle = 0.0: a drive, as an input
+damping = 0.001
+moment = 0.0               # of a motor, an input
 """
 
-    kind: Literal["revolute"] = Field(description="the section stays at a point of the body and turns about one axis")
-    axis: Direction = Field(
-        description="axis that the section may turn about, through the joint's position, in the axes of the body, the "
-        "world or the carrying section, without unit; any length but zero"
-    )
+    coordinate_key: ClassVar[str] = "angle"
+    effort_key: ClassVar[str] = "moment"
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "angle": InputField("rad", 1, continuous=True, nonlinear=True),
+        "moment": InputField("N m", 1),
+    }
+
+    kind: Literal["revolute"] = Field(description="the section stays at a point and turns about one axis")
+    stiffness: NotNegative = Field(0.0, description="moment of a spring by its angle, N m/rad")
+    rest: Number = Field(0.0, description="angle at which the spring is unloaded, rad")
+    damping: NotNegative = Field(0.0, description="moment by the rate of the angle, in motion, N m s/rad")
+    angle: Number | None = Field(None, description="angle of a drive, which prescribes it, rad; any number of turns")
+    moment: Number | None = Field(None, description="moment of a motor on the section about the axis, N m")
 
 
 @JOINTS.register
-class PrismaticJoint(JointRecord):
-    """A section of a rod slides along one axis of a body and does not turn in it."""
+class PrismaticJoint(AxisJoint):
+    """A section of a rod slides along one axis of a body, the world or another rod and does not turn.
+
+    Its displacement is counted from the position that the joint gives the section.
+    """
 
     example: ClassVar[str] = """\
 [[joints]]
+name = "slide"
 rod = "finger"
 body = "platform"
 kind = "prismatic"
 position = [0.02, 0, 0]
 axis = [1, 0, 0]
+displacement = 0.0         # of a drive, an input; or stiffness, rest, damping and force
 """
 
-    kind: Literal["prismatic"] = Field(
-        description="the section slides along one axis of the body and does not turn in it"
-    )
-    axis: Direction = Field(
-        description="axis that the section may slide along, through the joint's position, in the axes of the body, the "
-        "world or the carrying section, without unit; any length but zero"
-    )
+    coordinate_key: ClassVar[str] = "displacement"
+    effort_key: ClassVar[str] = "force"
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "displacement": InputField("m", 1, continuous=True, nonlinear=True),
+        "force": InputField("N", 1),
+    }
+
+    kind: Literal["prismatic"] = Field(description="the section slides along one axis and does not turn")
+    stiffness: NotNegative = Field(0.0, description="force of a spring by its displacement, N/m")
+    rest: Number = Field(0.0, description="displacement at which the spring is unloaded, m")
+    damping: NotNegative = Field(0.0, description="force by the speed of the slide, in motion, N s/m")
+    displacement: Number | None = Field(None, description="displacement of a drive, which prescribes it, m")
+    force: Number | None = Field(None, description="force of a motor on the section along the axis, N")
 
 
 # The type checker knows the kinds that ship; a scene may hold any that is registered.

@@ -20,7 +20,8 @@ def place_joints_by_their_ends(tables: Tables) -> None:
     bases stands a body without mass, fixed to the first. What cannot be read so is left for the records to refuse.
     """
     given = SceneTables(tables)
-    for index, joint in list(given.tables("joints")):
+    joints: list[tuple[int, Any]] = list(given.tables("joints"))
+    for index, joint in joints:
         ends = joint.get("between")
         if not isinstance(ends, list) or list(end_faults(ends)):
             continue
@@ -83,7 +84,7 @@ def _put_base(tables: Tables, name: Any, place: Tables) -> bool:
     """Put the base of a rod at a place; whether there is such a rod."""
     if not isinstance(name, str) or name not in SceneTables(tables).named("rods"):
         return False
-    _, rod = SceneTables(tables).named("rods")[name]
+    rod: Any = SceneTables(tables).named("rods")[name][1]
     base = rod.setdefault("base", {})
     if not isinstance(base, dict):
         return False
