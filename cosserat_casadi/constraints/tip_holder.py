@@ -65,12 +65,12 @@ class Joint(TipHolder[RecordType]):
 
         Args:
             record: the record of the scene.
-            rotation: turns the axes of the section into those that the axis of the record is in, shape (3, 3).
+            rotation: turns the axes of the section into the axes that the axis of the record is in, shape (3, 3).
         """
         return None
 
     def effort(self, record: RecordType, motor: Matrix) -> JointEffort:
-        """What acts along the coordinate, with the effort of its motor, 1×1."""
+        """Spring, damper and motor along the coordinate, with the effort of the motor, 1×1."""
         raise NotImplementedError(f"{type(self).__name__} has no coordinate")
 
 

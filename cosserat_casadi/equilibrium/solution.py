@@ -308,7 +308,7 @@ class Solution(Equilibrium[Model]):
         return {function.name_out(0): effort, function.name_out(1): conjugate}
 
     def joint(self, name: str) -> dict[str, float]:
-        """What acts along a joint on its section, moment (N m) or force (N), and its angle (rad) or displacement (m).
+        """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m).
 
         Raises:
             KeyError: no joint of that name has a spring, a damper, a motor or a drive.

@@ -164,8 +164,8 @@ class UnloadedScene:
     def base_joint(self, rod: str) -> tuple[int, FloatArray] | None:
         """Place in the scene's list of the joint at a rod's base, without body, and its rotation; None without one.
 
-        The rotation turns the axes of the held section, the carrying one or a base in the world, into those that the
-        axis of the joint is in, shape (3, 3).
+        The rotation turns the axes of the held section, the carrying one or a base in the world, into the axes
+        that the axis of the joint is in, shape (3, 3).
         """
         index = self.scene.base_joints.get(rod)
         if index is None:

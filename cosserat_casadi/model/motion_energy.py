@@ -148,7 +148,7 @@ class MotionEnergy:
 
     @cached_property
     def _free_joints(self) -> list[tuple[JointEffort, Matrix, Matrix]]:
-        """What acts along the coordinates of joints that are unknowns, their values and their rates."""
+        """Springs, dampers and motors along coordinates that are unknowns, with the values and rates of these."""
         joints = []
         for placed in self.system.discrete.free_coordinates:
             value, _ = self.system.joint_state(placed)

@@ -291,7 +291,7 @@ class System:
         return self.arguments.load_factor**DRIVE_GROWTH * value
 
     def joint_effort(self, placed: PlacedConstraint) -> JointEffort:
-        """What acts along the coordinate of a joint: spring, damper and motor."""
+        """Spring, damper and motor along the coordinate of a joint."""
         record = self.discrete.joint_record(placed)
         motor = input_value(self.discrete.layout, record, record.effort_key, self.arguments.inputs)
         effort: JointEffort = JOINT_KINDS[record.kind].effort(record, ca.DM(1, 1) if motor is None else motor)

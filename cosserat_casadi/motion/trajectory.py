@@ -241,7 +241,7 @@ class Motion(Result):
         return states_of(self.model.actuator[name], self.x, self.inputs)
 
     def joint(self, name: str) -> ActuatorStates:
-        """What acts along a joint on its section, N m or N, and its angle (rad) or displacement (m), each (T,).
+        """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m), each (T,).
 
         Raises:
             KeyError: no joint of that name has a spring, a damper, a motor or a drive.

@@ -292,6 +292,11 @@ class JointRecord(Entry):
         """Whether something acts along a coordinate that the joint leaves free."""
         return False
 
+    @property
+    def keeps_place(self) -> bool:
+        """Whether the joint, with what acts along it, leaves no motion free: a spring or a drive holds it."""
+        return False
+
 
 JOINTS: Family[JointRecord] = Family("joints")
 """Kinds of joints."""
@@ -310,6 +315,11 @@ position = [0.02, 0, 0]
 """
 
     kind: Literal["fixed"] = Field(description="the section is clamped in the body")
+
+    @property
+    def keeps_place(self) -> bool:
+        """It does."""
+        return True
 
 
 @JOINTS.register
@@ -370,6 +380,12 @@ class AxisJoint(JointRecord):
     def prescribed(self) -> bool:
         """Whether a drive prescribes the coordinate."""
         return getattr(self, self.coordinate_key) is not None
+
+    @property
+    def keeps_place(self) -> bool:
+        """Whether a spring or a drive holds the coordinate."""
+        # A stiffness that is an expression of parameters is one.
+        return self.prescribed or not (isinstance(self.stiffness, float) and self.stiffness == 0.0)
 
     @property
     def has_coordinate(self) -> bool:

@@ -24,7 +24,7 @@ from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, Nam
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
 from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import scene_faults
-from cosserat_casadi.scene.simulation import Simulation
+from cosserat_casadi.scene.simulation import TOLERANCE, Simulation
 from cosserat_casadi.scene.target_records import Bound, Target
 from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
@@ -222,9 +222,26 @@ inputs = ["push.force", "cable.tension"]
     @property
     def motion_tolerance(self) -> float:
         """Wanted error of the paths of tips relative to the rod length: the simulation's, or else the scene's."""
-        if self.simulation is None or self.simulation.tolerance is None:
-            return self.accuracy.tolerance
-        return self.simulation.tolerance
+        if self.simulation is not None and self.simulation.tolerance is not None:
+            return self.simulation.tolerance
+        return self.accuracy.tolerance if "tolerance" in self.accuracy.model_fields_set else TOLERANCE
+
+    @property
+    def starts_unloaded(self) -> bool:
+        """Whether its motion begins in the unloaded shape: by its word, or, without one, as something in it swings."""
+        if self.simulation is None or self.simulation.start is None:
+            return any(rod.base.free for rod in self.rods) or any(self._swings(joint) for joint in self.joints)
+        return self.simulation.start == "unloaded"
+
+    def _swings(self, joint: Joint) -> bool:
+        """Whether a joint at a base lets its rod, and all rods on it, move without straining any."""
+        if not joint.holds_base or joint.keeps_place:
+            return False
+        moved = {joint.rod}
+        while more := {rod.name for rod in self.rods if rod.base.rod in moved} - moved:
+            moved |= more
+        holders = (*self.supports, *(other for other in self.joints if not other.holds_base))
+        return not any(holder.rod in moved for holder in holders)
 
     def with_motion_inputs(self) -> Scene:
         """The scene in which the inputs that its motions move are free as well, behind its free inputs."""

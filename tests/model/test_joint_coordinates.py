@@ -89,6 +89,7 @@ def test_frequency_of_a_pendulum_on_a_spring() -> None:
     assert_allclose(2 * np.pi * first.frequency, wanted, rtol=1e-4, atol=0)
 
 
+@pytest.mark.slow  # The links are stiff, and so are their equations.
 def test_two_links_with_a_spring_a_damper_and_a_motor_vs_scipy() -> None:
     """A double pendulum of rods that hardly bend: Lagrange's equations of its two angles."""
     rods = [link("a", modulus=RIGID, base=ALONG), link("b", modulus=RIGID, base={"rod": "a"})]
