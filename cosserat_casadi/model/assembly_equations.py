@@ -105,6 +105,12 @@ class Assembly:
         """The constraints."""
         return self.discrete.constraints
 
+    def _closing(self, compliance: Compliance) -> LoadFactor:
+        """λ by which rows of a compliance close; None where they are closed all along."""
+        if compliance is ASSEMBLED and self.discrete.closed_unloaded:
+            return None
+        return self.load_factor
+
     # Residual
 
     @cached_property
@@ -114,7 +120,7 @@ class Assembly:
         for placed in self.constraints:
             gap = placed.constraint.residual(self.system.poses(placed))
             multipliers = self.system.multipliers(placed)
-            rows.append(row_at(gap, multipliers, placed.compliance, self.load_factor))
+            rows.append(row_at(gap, multipliers, placed.compliance, self._closing(placed.compliance)))
         return rows
 
     @cached_property
@@ -128,7 +134,7 @@ class Assembly:
             turn_row = TURN_ROWS(self.frame_poses[name].quaternion, moment)[0]
             balance = ca.vertcat(force_row, turn_row)
             deviation = self.system.deviation(name)
-            rows.append(row_at(balance, deviation, ASSEMBLED, self.load_factor))
+            rows.append(row_at(balance, deviation, ASSEMBLED, self._closing(ASSEMBLED)))
         return rows
 
     @cached_property
@@ -219,13 +225,14 @@ class Assembly:
         strains = self.unknowns.strain(placed.rod)
         variations = placed.constraint.residual_variation(self.system.poses(placed))
         by_strain = variations.section @ self._section_motion(placed)
-        blocks.add(rows, strains, column_at(by_strain, self.load_factor))
+        closing = self._closing(placed.compliance)
+        blocks.add(rows, strains, column_at(by_strain, closing))
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
             by_deviation = derivative @ self.frame_poses[name].motion
-            blocks.add(rows, deviation, column_at(by_deviation, self.load_factor))
+            blocks.add(rows, deviation, column_at(by_deviation, closing))
         for column, derivative in self._of_coordinate(placed, variations):
-            blocks.add(rows, column, column_at(derivative, self.load_factor))
+            blocks.add(rows, column, column_at(derivative, closing))
 
     # Columns of the rods
 
@@ -322,13 +329,14 @@ class Assembly:
         by_force = ca.horzcat(ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3))
         by_moment = ca.horzcat(-turn.T / frame.unit, ca.DM(4, 3))
         to_rows = ca.vertcat(by_force, by_moment)
+        closing = self._closing(ASSEMBLED)
         for columns, variation in self._wrench_variations(name):
-            blocks.add(rows, columns, column_at(to_rows @ variation, self.load_factor))
+            blocks.add(rows, columns, column_at(to_rows @ variation, closing))
         # T and the norm of Q change with Q itself, at fixed moment.
         moment = self._wrenches[name][:3] / frame.unit
         by_quaternion = TURN_ROWS(quaternion, moment)[1]
         at_fixed_wrench = ca.diagcat(ca.DM(3, 3), by_quaternion)
-        blocks.add(rows, rows, column_at(at_fixed_wrench, self.load_factor))
+        blocks.add(rows, rows, column_at(at_fixed_wrench, closing))
 
     def _wrench_variations(self, name: FrameName) -> list[tuple[slice, Matrix]]:
         """Variation of the wrench on a frame with each block of unknowns that changes it, 6×k, world axes."""
@@ -460,7 +468,7 @@ class Assembly:
         """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
         for entries, compliance in self._compliances():
             size = entries.stop - entries.start
-            block = spring(size, compliance, self.load_factor)
+            block = spring(size, compliance, self._closing(compliance))
             if block is not None:
                 blocks.add(entries, entries, block)
 

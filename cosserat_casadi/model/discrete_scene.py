@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -201,6 +202,18 @@ class DiscreteScene:
     def is_assembly(self) -> bool:
         """Whether constraints close rods to each other, or a carried rod to the world."""
         return any(placed.closes_assembly for placed in self.constraints)
+
+    @cached_property
+    def closed_unloaded(self) -> bool:
+        """Whether its assembly is closed where nothing acts, and stays so while loads alone grow.
+
+        So it is where each floating frame is fixed to one section and nothing closes a loop, at every value of what is
+        free: no spring has to draw anything together then.
+        """
+        ties = [placed for placed in self.constraints if placed.closes_assembly]
+        held = [placed.frame for placed in ties if placed.constraint.held is CLAMPED]
+        is_tree = None not in held and len(held) == len(ties) == len(set(held)) == len(self.frames)
+        return is_tree and not self.parameters.size and not self.layout.geometry
 
     def constraints_on(self, rod: str) -> list[PlacedConstraint]:
         """Constraints that hold sections of a rod."""
