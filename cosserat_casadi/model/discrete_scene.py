@@ -207,8 +207,8 @@ class DiscreteScene:
     def closed_unloaded(self) -> bool:
         """Whether its assembly is closed where nothing acts, and stays so while loads alone grow.
 
-        So it is where each floating frame is fixed to one section and nothing closes a loop, at every value of what is
-        free: no spring has to draw anything together then.
+        So it is where each floating frame is fixed to one section, nothing closes a loop, and neither parameters nor
+        inputs move rods: no spring has to draw anything together then.
         """
         ties = [placed for placed in self.constraints if placed.closes_assembly]
         held = [placed.frame for placed in ties if placed.constraint.held is CLAMPED]

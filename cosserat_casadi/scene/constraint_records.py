@@ -16,8 +16,9 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.joint_ends import end_faults
+from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented, orientation_faults
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
-from cosserat_casadi.scene.records import Entry, Record, refusal, sound
+from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
     SEVERAL,
     SINGLE,
@@ -73,7 +74,7 @@ SUPPORTS: Family[SupportRecord] = Family("supports")
 
 
 @SUPPORTS.register
-class ClampedSupport(SupportRecord):
+class ClampedSupport(Oriented, SupportRecord):
     """Position and orientation of a tip are prescribed."""
 
     example: ClassVar[str] = """\
@@ -86,6 +87,12 @@ quaternion = [1, 0, 0, 0]
 
     kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
     quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from super().conflicts(given)
+        yield from orientation_faults(given)
 
     @property
     def orientation(self) -> Quadruple:
@@ -188,7 +195,7 @@ mass = 0.1
         return _matrix(self.inertia)
 
 
-class JointEnd(Record):
+class JointEnd(Oriented):
     """One end of a joint: a section of a rod, a place of a body, or a place in the world."""
 
     example: ClassVar[str] = """\
@@ -206,8 +213,13 @@ between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 
         (1.0, 0.0, 0.0, 0.0), description="orientation of the other end in the body or in the world, of norm 1"
     )
 
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from orientation_faults(given)
 
-class JointRecord(Entry):
+
+class JointRecord(Oriented, Entry):
     """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names."""
 
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
@@ -234,7 +246,8 @@ class JointRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The place of a base is said by its rod, that of a joint in the world by the joint."""
+        """The place of a base is said by its rod, that of a joint in the world by the joint; an orientation once."""
+        yield from orientation_faults(given)
         if "between" in given:
             for fault in end_faults(given["between"]):
                 yield fault.below(("between",))
@@ -242,7 +255,7 @@ class JointRecord(Entry):
         if "body" in given:
             return
         if given.get("at") == 0:
-            for key in ("position", "quaternion"):
+            for key in ("position", *ORIENTATION_KEYS):
                 if key in given:
                     problem = "stands in a joint at X = 0 without body"
                     yield Fault((key,), problem, "give it to the base of the rod, which says where the joint is")

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.orientations import ORIENTATION_KEYS
 
-PLACE = ("position", "quaternion")
+PLACE = ("position", *ORIENTATION_KEYS)
 """Keys of an end in a body or in the world that say where the joint is."""
 
 Tables = dict[str, Any]
