@@ -76,6 +76,7 @@ MOTIONS = (
     "tendon_robot_move",
     "shaken_platform",
     "thrown_rod",
+    "pendulum_chain",
     "snapping_arch",
     "seaweed",
     "swimmer",

@@ -55,7 +55,7 @@ def straight_routing(actuator: Any, grid: Grid, friction: Matrix | None = None) 
     """Holes of a tendon that is straight between them; ``friction``: μ p of one that rubs."""
     through = holes(actuator)
     assert through is not None, "asked for of a tendon with holes"
-    nodes = np.array([0 if not is_symbolic(at) and at == 0.0 else grid.node_at(at) for at in through])
+    nodes = np.array([grid.node_at(at) for at in through])
     offset, _ = offset_at(actuator, as_vector(through))
     return HoleRouting(nodes, offset, friction)
 

@@ -60,7 +60,8 @@ class Compiled(LoadedLibrary, CompiledMotion):
     def is_sound(described: Any) -> bool:
         """Whether what is read of a manifest of rods is there."""
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
-        owners = [*(entry["name"] for entry in described.get("actuators", [])), *described.get("bodies", [])]
+        named = [*described.get("bodies", []), *described.get("joints", [])]
+        owners = [*(entry["name"] for entry in described.get("actuators", [])), *named]
         functions = all(isinstance(entry, dict) for entry in described["functions"])
         listed_parameters(described.get("parameters", []))
         return rods and functions and all(isinstance(name, str) for name in owners)
@@ -78,7 +79,8 @@ class Compiled(LoadedLibrary, CompiledMotion):
         described = self.manifest
         rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
         actuators = tuple(entry["name"] for entry in described.get("actuators", []))
-        return Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
+        bodies, joints = (tuple(described.get(key, [])) for key in ("bodies", "joints"))
+        return Names(described["name"], tuple(rods), actuators, bodies, joints)
 
     @cached_property
     def differentiable(self) -> bool:

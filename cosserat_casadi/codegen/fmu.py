@@ -176,10 +176,7 @@ def _parameter_words(model: Model, names: Names) -> dict[str, str | int]:
 
 def _starts_unloaded(model: Model) -> bool:
     """Whether the motion begins in the unloaded shape: bases that are free have no equilibrium."""
-    simulation = model.scene.simulation
-    if any(rod.base.free for rod in model.scene.rods):
-        return True
-    return simulation is not None and simulation.start == "unloaded"
+    return any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded
 
 
 def _token(sources: Mapping[str, str]) -> str:

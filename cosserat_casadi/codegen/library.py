@@ -406,6 +406,8 @@ def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
         return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
     if "branches" in entry:
         return f"strains of the dashpots of rod {entry['rod']} since rest, as its strains, one branch after the other"
+    if "joint" in entry:
+        return f"angle (rad) of {entry['joint']}, or its displacement over the length of the rod"
     return f"how far the {entry['frame']} has moved and its quaternion changed"
 
 

@@ -207,6 +207,8 @@ def _output_entries(model: Model) -> dict[str, Any]:
     described: dict[str, Any] = {}
     if model.scene.actuators:
         described["actuators"] = actuator_entries(model)
+    if model.scene.joints_with_coordinate:
+        described["joints"] = [joint.name for joint in model.scene.joints_with_coordinate]
     if model.scene.bodies:
         described["bodies"] = [body.name for body in model.scene.bodies]
         rods = [{"rod": rod} for rod in model.discrete.rods]
@@ -225,7 +227,8 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
             entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
     supports = {support.rod: support.kind for support in model.scene.supports}
     for placed in model.discrete.constraints:
-        what = {"tie": placed.where} if placed.closes_assembly else {"support": supports[placed.rod]}
+        is_tie = placed.closes_assembly or placed.joint is not None
+        what = {"tie": placed.where} if is_tie else {"support": supports[placed.rod]}
         first = model.discrete.multipliers(placed).start
         entries.append({"rod": placed.rod, **what, "first": first, "count": placed.size})
     for name in model.discrete.frames:
@@ -233,6 +236,9 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         place = model.discrete.deviation(name)
         rod = (holders or [name.name])[0]
         entries.append({"rod": rod, "frame": str(name), "first": place.start, "count": place.stop - place.start})
+    for placed in model.discrete.free_coordinates:
+        first = model.discrete.coordinate(placed).start
+        entries.append({"rod": placed.rod, "joint": placed.where, "first": first, "count": 1})
     for cable in model.discrete.cables:
         tendon = cable.tendon
         unit = model.discrete.tension_unit(tendon.rod)

@@ -51,7 +51,7 @@ class MotionOutputs:
 
 
 def motion_outputs(model: Model) -> MotionOutputs:
-    """Poses and velocities of tips and bodies, then efforts of actuators and what they do work on.
+    """Poses and velocities of tips and bodies, then efforts of actuators and joints and what they do work on.
 
     Args:
         model: a model that was built with its motion.
@@ -68,9 +68,11 @@ def motion_outputs(model: Model) -> MotionOutputs:
         entries += [MotionOutput(f"{name}.quaternion.{part}", "1", f"Orientation of {name}.") for part in QUATERNION]
         entries += [MotionOutput(f"{name}.velocity.{axis}", "m/s", f"Velocity of {name}.") for axis in POSITION]
         values += [position, quaternion, velocity]
-    for name, actuator in model.actuator.items():
-        outputs = type(model).actuator.spec.outputs_of(model.discrete, name)[:2]
-        for output, value in zip(outputs, actuator(x, inputs, *p)[:2], strict=True):
+    owned = [(type(model).actuator.spec, *item) for item in model.actuator.items()]
+    owned += [(type(model).joint.spec, *item) for item in model.joint.items()]
+    for spec, name, function in owned:
+        outputs = spec.outputs_of(model.discrete, name)[:2]
+        for output, value in zip(outputs, function(x, inputs, *p)[:2], strict=True):
             full_name = f"{name}.{output.name}"
             # What is given is no result: the tension of a tendon that is pulled by one.
             if full_name not in model.inputs.names:

@@ -45,7 +45,7 @@ QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_o
 sparsity_out work work_bytes"""
 """Endings that CasADi appends to the name of a function."""
 
-TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies"}
+TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies", Owner.JOINT: "joints"}
 """Tables of a scene whose names become part of symbols."""
 
 
@@ -58,6 +58,7 @@ class Names:
         rods: names of the rods, in the order of the scene.
         actuators: names of the actuators.
         bodies: names of the rigid bodies.
+        joints: names of the joints with a coordinate.
         functions: the named functions of the model.
     """
 
@@ -65,6 +66,7 @@ class Names:
     rods: tuple[str, ...]
     actuators: tuple[str, ...] = ()
     bodies: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
     functions: tuple[FunctionSpec, ...] = FUNCTIONS
 
     @property
@@ -120,9 +122,8 @@ def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = F
     Raises:
         ExportError: as :func:`library_names`.
     """
-    rods, actuators, bodies = (
-        tuple(entry.name for entry in table) for table in (scene.rods, scene.actuators, scene.bodies)
-    )
+    tables = (scene.rods, scene.actuators, scene.bodies, scene.joints_with_coordinate)
+    rods, actuators, bodies, joints = (tuple(entry.name or "" for entry in table) for table in tables)
     return library_names(
         name,
         rods,
@@ -130,6 +131,7 @@ def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = F
         parameters=scene.parameter_names(),
         actuators=actuators,
         bodies=bodies,
+        joints=joints,
         functions=functions,
     )
 
@@ -142,6 +144,7 @@ def library_names(
     parameters: tuple[str, ...] = (),
     actuators: tuple[str, ...] = (),
     bodies: tuple[str, ...] = (),
+    joints: tuple[str, ...] = (),
     functions: tuple[FunctionSpec, ...] = FUNCTIONS,
 ) -> Names:
     """Names of an exported library.
@@ -150,7 +153,7 @@ def library_names(
         ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
             would have one name.
     """
-    names = Names(name, rods, actuators, bodies, functions)
+    names = Names(name, rods, actuators, bodies, joints, functions)
     problems = [
         *_name_problems(name),
         *_symbol_problems(names),
@@ -179,7 +182,12 @@ def _name_problems(name: str) -> Iterator[Problem]:
 def _symbol_problems(names: Names) -> Iterator[Problem]:
     # Without a suffix, the functions of a rod that is alone clash with none.
     rods = names.rods if len(names.rods) > 1 else ()
-    owners_by_kind = {Owner.ROD: rods, Owner.ACTUATOR: names.actuators, Owner.BODY: names.bodies}
+    owners_by_kind = {
+        Owner.ROD: rods,
+        Owner.ACTUATOR: names.actuators,
+        Owner.BODY: names.bodies,
+        Owner.JOINT: names.joints,
+    }
     for kind, owners in owners_by_kind.items():
         words = names.words(kind)
         yield from _clashes(kind, owners, [[f"{word}_{owner}" for word in words] for owner in owners])

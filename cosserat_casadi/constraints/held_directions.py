@@ -86,6 +86,12 @@ def keeps_plane(held: HeldDirections) -> bool:
     return bool(np.all(tilts <= FLAT) or (len(tilts) == 2 and np.all(tilts >= 1 - FLAT)))
 
 
+def confines_to_plane(held: HeldDirections) -> bool:
+    """Whether what holds the base of a planar rod keeps it in its x–z plane, along the normal and against tilts."""
+    tilts = np.linalg.svd(IN_PLANE.T @ held.rotations, compute_uv=False)
+    return keeps_plane(held) and len(tilts) == 2 and bool(np.all(tilts >= 1 - FLAT))
+
+
 def _basis(vectors: FloatArray) -> FloatArray:
     """Orthonormal basis of what vectors span, shape (3, k); the largest component of each vector is positive."""
     left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)

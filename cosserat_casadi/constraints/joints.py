@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import ClassVar, TypeVar, final
+
+import numpy as np
 
 from cosserat_casadi.constraints.held_directions import ALL, CLAMPED, PINNED, across
-from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.constraints.joint_coordinate import JointEffort, unit_vector
+from cosserat_casadi.constraints.section_constraint import Coordinate, HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.constraint_records import FixedJoint, PrismaticJoint, RevoluteJoint, SphericalJoint
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.scene.constraint_records import (
+    AxisJoint,
+    FixedJoint,
+    PrismaticJoint,
+    RevoluteJoint,
+    SphericalJoint,
+)
 from cosserat_casadi.scene.families import register
+
+AxisRecord = TypeVar("AxisRecord", bound=AxisJoint)
 
 JOINT_KINDS = Joint.kinds
 """Joints by the word of the scene format."""
@@ -39,12 +50,29 @@ class Spherical(Joint[SphericalJoint]):
         return PINNED
 
 
+class _OnAxis(Joint[AxisRecord]):
+    """A joint with one coordinate."""
+
+    turns: ClassVar[bool]
+
+    def coordinate(self, record: AxisRecord, rotation: FloatArray) -> Coordinate | None:
+        """The turn about the axis, or the slide along it."""
+        if not record.has_coordinate:
+            return None
+        return Coordinate(unit_vector(rotation.T @ np.asarray(record.axis, dtype=float)), self.turns)
+
+    def effort(self, record: AxisRecord, motor: Matrix) -> JointEffort:
+        """Spring and damper of the record."""
+        return JointEffort(record.stiffness, record.rest, record.damping, motor)
+
+
 @final
 @register
-class Revolute(Joint[RevoluteJoint]):
-    """The tip stays at a point and turns about an axis of the body."""
+class Revolute(_OnAxis[RevoluteJoint]):
+    """The section stays at a point and turns about an axis."""
 
     record = RevoluteJoint
+    turns = True
 
     def held(self, record: RevoluteJoint, rotation: FloatArray) -> HeldDirections:
         """All but the rotation about the axis."""
@@ -53,10 +81,11 @@ class Revolute(Joint[RevoluteJoint]):
 
 @final
 @register
-class Prismatic(Joint[PrismaticJoint]):
-    """The tip slides along an axis of the body and does not turn."""
+class Prismatic(_OnAxis[PrismaticJoint]):
+    """The section slides along an axis and does not turn."""
 
     record = PrismaticJoint
+    turns = False
 
     def held(self, record: PrismaticJoint, rotation: FloatArray) -> HeldDirections:
         """All but the displacement along the axis."""

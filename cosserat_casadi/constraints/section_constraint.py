@@ -21,7 +21,7 @@ import numpy as np
 
 from cosserat_casadi.maths.numbers import Scalar, is_symbolic
 from cosserat_casadi.maths.pose import NumericPose, Pose
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -55,15 +55,39 @@ class HeldDirections:
         return self.turn_with_pose and self.positions.shape[1] < 3
 
 
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate along which the pose that a section is held to moves.
+
+    Attributes:
+        axis: unit vector in the axes of the section, shape (3,).
+        turns: whether the section turns about the axis, rad; else it slides along it, m.
+    """
+
+    axis: FloatArray
+    turns: bool
+
+    def moved(self, pose: Pose, value: Matrix, turn: Matrix | None) -> Pose:
+        """A pose moved along the axis; ``turn`` takes the axis to the axis of the pose."""
+        axis: Matrix = ca.DM(self.axis)
+        if turn is not None:
+            axis = rotate(turn, axis)
+        if self.turns:
+            return pose.then(Pose(ca.DM(3, 1), ca.vertcat(ca.cos(value / 2), ca.sin(value / 2) * axis)))
+        return pose.then(Pose(value * axis, ca.DM([1, 0, 0, 0])))
+
+
 class PoseVariations(NamedTuple):
     """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
 
-    The section moves in the axes of the rod's base, the other two in world axes.
+    The section moves in the axes of the rod's base, the other two in world axes. The derivative with a coordinate has
+    one column.
     """
 
     section: Matrix
     base: Matrix
     frame: Matrix
+    coordinate: Matrix | None = None
 
 
 class ConstraintPoses(NamedTuple):
@@ -73,19 +97,21 @@ class ConstraintPoses(NamedTuple):
         section: the held section in the rod's base.
         base: the rod's base in the world.
         frame: the other frame in the world.
+        coordinate: value of the constraint's coordinate, 1×1; None without one.
     """
 
     section: Pose
     base: Pose
     frame: Pose
+    coordinate: Matrix | None = None
 
     @property
     def stacked(self) -> list[Matrix]:
-        """Positions and quaternions, as the kernels take them."""
+        """Positions and quaternions, and the coordinate, as the kernels take them."""
         parts: list[Matrix] = []
-        for pose in self:
+        for pose in (self.section, self.base, self.frame):
             parts += [pose.position, pose.quaternion]
-        return parts
+        return parts if self.coordinate is None else [*parts, self.coordinate]
 
 
 @dataclass(frozen=True)
@@ -96,19 +122,27 @@ class HeldPose:
         pose: pose of the section in the other frame.
         turn: quaternion that takes the directions of :class:`HeldDirections` to the held directions; None where these
             are the same.
+        coordinate: along which the pose moves; None for a pose that does not.
     """
 
     pose: Pose
     turn: Matrix | None
+    coordinate: Coordinate | None = None
 
     @property
     def axes(self) -> Matrix | None:
         """The same as a matrix, 3×3."""
         return None if self.turn is None else quaternion_to_matrix(self.turn)
 
+    def in_frame(self, poses: ConstraintPoses) -> Pose:
+        """The pose that the section is held to, in the other frame."""
+        if self.coordinate is None or poses.coordinate is None:
+            return self.pose
+        return self.coordinate.moved(self.pose, poses.coordinate, self.turn)
+
     def seen_from(self, poses: ConstraintPoses) -> Pose:
         """The pose that the section is held to, in the rod's base."""
-        return poses.base.seen(poses.frame.then(self.pose))
+        return poses.base.seen(poses.frame.then(self.in_frame(poses)))
 
 
 @dataclass(frozen=True)
@@ -123,6 +157,7 @@ class SectionConstraint:
         pose: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
         turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of ``pose``, to the held directions;
             numbers or expressions; None for the directions ``held`` as they are.
+        coordinate: along which the pose moves; None where it does not.
     """
 
     rod: RodProperties
@@ -131,6 +166,7 @@ class SectionConstraint:
     held: HeldDirections
     pose: NumericPose | Pose
     turn: Matrix | None = None
+    coordinate: Coordinate | None = None
 
     @property
     def size(self) -> int:
@@ -195,13 +231,16 @@ class SectionConstraint:
             # An expression is an argument of the kernels.
             turn = "free" if is_symbolic(self.turn) else _exact(self.turn)
         held = (_exact(self.held.positions), _exact(self.held.rotations), self.held.turn_with_pose)
-        return _shared(_Kernels((self.rod.length, self.unit, held, pose, turn), self))
+        coordinate = None
+        if self.coordinate is not None:
+            coordinate = (_exact(self.coordinate.axis), self.coordinate.turns)
+        return _shared(_Kernels((self.rod.length, self.unit, held, pose, turn, coordinate), self))
 
     @property
     def _given_target(self) -> HeldPose:
         """The pose and the directions in which the section is held, as expressions."""
         pose = self.pose if isinstance(self.pose, Pose) else self.pose.pose
-        return HeldPose(pose, self.turn)
+        return HeldPose(pose, self.turn, self.coordinate)
 
     @property
     def _free_target(self) -> list[Matrix]:
@@ -255,7 +294,7 @@ class SectionConstraint:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:
-            arm = poses.frame.rotation @ target.pose.position
+            arm = poses.frame.rotation @ target.in_frame(poses).position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 
@@ -272,10 +311,14 @@ class _Kernels:
     law: tuple[Hashable, ...]
     constraint: SectionConstraint = field(compare=False)
 
+    @property
+    def _symbols(self) -> tuple[ConstraintPoses, list[ca.SX]]:
+        return _symbols(has_coordinate=self.constraint.coordinate is not None)
+
     @cached_property
     def residual(self) -> ca.Function:
         """Poses ↦ residual and its variations."""
-        poses, motions = _symbols()
+        poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         moved = self.constraint.residual_of(_moved(poses, motions), target)
         results = [self.constraint.residual_of(poses, target), *_at_rest(moved, motions, motions)]
@@ -284,7 +327,7 @@ class _Kernels:
     @cached_property
     def wrench(self) -> ca.Function:
         """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
-        poses, motions = _symbols()
+        poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)
         moved = self.constraint.wrench_of(_moved(poses, motions), target, multipliers)
@@ -294,7 +337,7 @@ class _Kernels:
     @cached_property
     def reaction(self) -> ca.Function:
         """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
-        poses, motions = _symbols()
+        poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)
         moved = self.constraint.reaction_of(_moved(poses, motions), target, multipliers)
@@ -319,22 +362,25 @@ def _exact(matrix: Matrix | FloatArray) -> Hashable:
     return (numbers.shape, numbers.tobytes())
 
 
-def _symbols() -> tuple[ConstraintPoses, list[ca.SX]]:
-    """Symbols of the three poses and of their motions."""
-    poses = []
-    motions = []
-    for name in ConstraintPoses._fields:
-        position = ca.SX.sym(f"{name}_position", 3)
-        quaternion = ca.SX.sym(f"{name}_quaternion", 4)
-        poses.append(Pose(position, quaternion))
-        motions.append(ca.SX.sym(f"{name}_motion", 6))
-    return ConstraintPoses(*poses), motions
+def _symbols(*, has_coordinate: bool) -> tuple[ConstraintPoses, list[ca.SX]]:
+    """Symbols of the three poses, and of a coordinate, and of their motions."""
+    names = ("section", "base", "frame")
+    section, base, frame = (
+        Pose(ca.SX.sym(f"{name}_position", 3), ca.SX.sym(f"{name}_quaternion", 4)) for name in names
+    )
+    motions = [ca.SX.sym(f"{name}_motion", 6) for name in names]
+    if not has_coordinate:
+        return ConstraintPoses(section, base, frame), motions
+    coordinate = ca.SX.sym("coordinate")
+    return ConstraintPoses(section, base, frame, coordinate), [*motions, ca.SX.sym("coordinate_motion")]
 
 
 def _moved(poses: ConstraintPoses, motions: list[ca.SX]) -> ConstraintPoses:
     """The poses after small motions."""
-    moved = [pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)]
-    return ConstraintPoses(*moved)
+    section, base, frame = motions[:3]
+    coordinate = None if poses.coordinate is None else poses.coordinate + motions[3]
+    moved = (poses.section.varied(section), poses.base.varied(base), poses.frame.varied(frame))
+    return ConstraintPoses(*moved, coordinate)
 
 
 def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:

@@ -11,10 +11,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, Generic, TypeVar
 
-from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.constraints.joint_coordinate import JointEffort
+from cosserat_casadi.constraints.section_constraint import Coordinate, HeldDirections
 from cosserat_casadi.maths.numbers import Scalar, as_vector, known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, JointRecord, SupportRecord
 from cosserat_casadi.scene.families import Kind, Kinds
 
@@ -58,6 +59,19 @@ class Joint(TipHolder[RecordType]):
 
     family = JOINTS
     kinds = Kinds(JOINTS)
+
+    def coordinate(self, record: RecordType, rotation: FloatArray) -> Coordinate | None:
+        """Coordinate that the joint leaves free and that something acts along; None where nothing does.
+
+        Args:
+            record: the record of the scene.
+            rotation: turns the axes of the section into the axes that the axis of the record is in, shape (3, 3).
+        """
+        return None
+
+    def effort(self, record: RecordType, motor: Matrix) -> JointEffort:
+        """Spring, damper and motor along the coordinate, with the effort of the motor, 1×1."""
+        raise NotImplementedError(f"{type(self).__name__} has no coordinate")
 
 
 def place_of(record: JointRecord | SupportRecord) -> NumericPose:

@@ -107,7 +107,7 @@ def input_path(model: SystemFunctions, start: FloatArray, before: FloatArray, af
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: where rods need not fit, the compliance (1 − t)³ is no straight line."""
-    if model.discrete.frames:
+    if model.discrete.frames and not model.discrete.closed_unloaded:
         return FIRST_STEP
     return 1.0
 

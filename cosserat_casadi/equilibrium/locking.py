@@ -37,7 +37,7 @@ def degrees_of_freedom(model: Model) -> int | None:
         return None
     # The quaternion of a frame has a number more than its rotation has degrees of freedom.
     frames = sum(min(block.size, 6) for block, _ in unknowns.of_kind(BlockKind.POSE))
-    return unknowns.count(BlockKind.STRAIN) + frames - constraints
+    return unknowns.count(BlockKind.STRAIN, BlockKind.COORDINATE) + frames - constraints
 
 
 def has_freedom(model: Model) -> bool:

@@ -307,6 +307,16 @@ class Solution(Equilibrium[Model]):
         conjugate = float(values[1])
         return {function.name_out(0): effort, function.name_out(1): conjugate}
 
+    def joint(self, name: str) -> dict[str, float]:
+        """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m).
+
+        Raises:
+            KeyError: no joint of that name has a spring, a damper, a motor or a drive.
+        """
+        function = self.model.joint[name]
+        effort, coordinate = function(self.x, self.inputs)
+        return {function.name_out(0): float(effort), function.name_out(1): float(coordinate)}
+
     def _nodal_fields(self, rod: str) -> _NodalFields:
         """Fields of a rod at its nodes."""
         function = self.model.fields[rod]

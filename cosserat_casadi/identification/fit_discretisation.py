@@ -65,7 +65,7 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
     chosen: list[Discretisation] = []
     moves = moving(cases)
     inputs = StartInputs(draft).of(inputs_of(cases), moves)
-    unloaded = scene.simulation is not None and scene.simulation.start == "unloaded"
+    unloaded = scene.simulation is not None and scene.starts_unloaded
     at_rest = inputs[~moves] if unloaded else inputs
     chosen += _for_equilibria(baked, draft, at_rest, report)
     numbers = [int(datum.at) for case in cases for datum in _vibrations(scene, case)]

@@ -205,8 +205,7 @@ class Task:
     @property
     def _starts_unloaded(self) -> bool:
         """Whether motions begin in the unloaded shape, and not in an equilibrium."""
-        simulation = self.model.scene.simulation
-        return simulation is not None and simulation.start == "unloaded"
+        return self.model.scene.simulation is not None and self.model.scene.starts_unloaded
 
     def _with_others(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState]]:
         """The search again, with cases that had no equilibrium at the start and have one at the fitted numbers."""

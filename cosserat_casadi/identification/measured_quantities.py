@@ -231,7 +231,7 @@ class ClampWrench(StateQuantity[MeasuredBaseWrench]):
         """A force, N, and a moment, N m, world axes, 6×k."""
         rotation = quaternion_to_matrix(site.system.base(site.record.rod).quaternion)
         statics = site.system.rods[site.record.rod].statics
-        wrench = ca.vertcat(rotation @ statics.base_force, rotation @ statics.base_moment)
+        wrench = ca.vertcat(rotation @ statics.held_force, rotation @ statics.held_moment)
         return ca.repmat(wrench, 1, site.sections) - site.measured
 
 

@@ -175,9 +175,9 @@ class Grid:
         return self._mirrored(self.size)
 
     def node_at(self, abscissa: Scalar) -> int:
-        """Index of the node that ends the element whose tip is at ``abscissa``: an element end on the rod, not 0."""
+        """Index of the node that ends the element whose tip is at ``abscissa``, an element end; 0 of the base."""
         elements_before = self._end_number(abscissa)
-        return elements_before * self._nodes_per_element - 1
+        return max(elements_before * self._nodes_per_element - 1, 0)
 
     def nodes_in(self, start: Scalar, end: Scalar) -> Indices:
         """Indices of the nodes between two element ends; nodes at an inner end appear once for each side."""

@@ -18,8 +18,11 @@ their unknowns. With u = (strains q, multipliers m, deviations d of frames, tens
                rods it carries
     cable      by ∂L/∂q             0                  0                        by τ
 
-where δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame
-with d. Docs/theory.md, section 8.
+A joint whose coordinate is an unknown adds its row (constraints/joint_coordinate.py) and a column wherever its wrench
+turns with it.
+
+Here δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame with
+d. Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -33,6 +36,7 @@ import casadi as ca
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import PoseVariations
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
@@ -101,6 +105,12 @@ class Assembly:
         """The constraints."""
         return self.discrete.constraints
 
+    def _closing(self, compliance: Compliance) -> LoadFactor:
+        """λ by which rows of a compliance close; None where they are closed all along."""
+        if compliance is ASSEMBLED and self.discrete.closed_unloaded:
+            return None
+        return self.load_factor
+
     # Residual
 
     @cached_property
@@ -110,7 +120,7 @@ class Assembly:
         for placed in self.constraints:
             gap = placed.constraint.residual(self.system.poses(placed))
             multipliers = self.system.multipliers(placed)
-            rows.append(row_at(gap, multipliers, placed.compliance, self.load_factor))
+            rows.append(row_at(gap, multipliers, placed.compliance, self._closing(placed.compliance)))
         return rows
 
     @cached_property
@@ -124,7 +134,21 @@ class Assembly:
             turn_row = TURN_ROWS(self.frame_poses[name].quaternion, moment)[0]
             balance = ca.vertcat(force_row, turn_row)
             deviation = self.system.deviation(name)
-            rows.append(row_at(balance, deviation, ASSEMBLED, self.load_factor))
+            rows.append(row_at(balance, deviation, ASSEMBLED, self._closing(ASSEMBLED)))
+        return rows
+
+    @cached_property
+    def coordinate_rows(self) -> list[Matrix]:
+        """λ + V'(q) of every joint whose coordinate q is an unknown, at the load factor."""
+        rows = []
+        for placed in self.discrete.free_coordinates:
+            value = self.system.coordinate(placed)
+            assert value is not None, "a coordinate that is free is there"
+            slope = self.system.joint_effort(placed).slope(value)
+            effort = self.system.multipliers(placed)[placed.along_coordinate]
+            balance = effort + placed.coordinate_scale / placed.constraint.unit * slope
+            unknown = self.system.arguments.x[self.discrete.coordinate(placed)]
+            rows.append(row_at(balance, unknown, ASSEMBLED, self.load_factor))
         return rows
 
     @cached_property
@@ -155,6 +179,8 @@ class Assembly:
             self._add_borne_load(blocks, borne)
         for name in self.frames:
             self._add_balance(blocks, name)
+        for placed in self.discrete.free_coordinates:
+            self._add_coordinate(blocks, placed)
         for cable in self.discrete.cables:
             self._add_cable(blocks, cable)
         self._add_springs(blocks)
@@ -175,6 +201,22 @@ class Assembly:
             derivatives.append((placed.frame, variations.frame))
         return derivatives
 
+    def _of_coordinate(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[slice, Matrix]]:
+        """Derivative with the coordinate of a joint, where that is an unknown."""
+        if variations.coordinate is None or placed not in self.discrete.free_coordinates:
+            return []
+        return [(self.discrete.coordinate(placed), placed.coordinate_scale * variations.coordinate)]
+
+    def _add_coordinate(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
+        """Row of the coordinate of a joint: by its multiplier, and by the stiffness of its spring."""
+        rows = self.discrete.coordinate(placed)
+        along = ca.DM(ca.Sparsity.triplet(1, placed.size, [0], [placed.along_coordinate]), 1.0)
+        blocks.add(rows, self.discrete.multipliers(placed), column_at(along, self.load_factor))
+        stiffness = self.discrete.joint_record(placed).stiffness
+        if not is_zero(stiffness):
+            scaled = placed.coordinate_scale**2 / placed.constraint.unit * as_matrix(as_vector([stiffness]))
+            blocks.add(rows, rows, column_at(scaled, self.load_factor))
+
     # Rows of constraints
 
     def _add_constraint(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
@@ -183,11 +225,14 @@ class Assembly:
         strains = self.unknowns.strain(placed.rod)
         variations = placed.constraint.residual_variation(self.system.poses(placed))
         by_strain = variations.section @ self._section_motion(placed)
-        blocks.add(rows, strains, column_at(by_strain, self.load_factor))
+        closing = self._closing(placed.compliance)
+        blocks.add(rows, strains, column_at(by_strain, closing))
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
             by_deviation = derivative @ self.frame_poses[name].motion
-            blocks.add(rows, deviation, column_at(by_deviation, self.load_factor))
+            blocks.add(rows, deviation, column_at(by_deviation, closing))
+        for column, derivative in self._of_coordinate(placed, variations):
+            blocks.add(rows, column, column_at(derivative, closing))
 
     # Columns of the rods
 
@@ -206,6 +251,8 @@ class Assembly:
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
             blocks.add(strains, deviation, work @ derivative @ self.frame_poses[name].motion)
+        for column, derivative in self._of_coordinate(placed, variations):
+            blocks.add(strains, column, work @ derivative)
 
     def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
         """Blocks of a moving base in the residual of its rod: dead loads turn back, pose-dependent ones change."""
@@ -282,13 +329,14 @@ class Assembly:
         by_force = ca.horzcat(ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3))
         by_moment = ca.horzcat(-turn.T / frame.unit, ca.DM(4, 3))
         to_rows = ca.vertcat(by_force, by_moment)
+        closing = self._closing(ASSEMBLED)
         for columns, variation in self._wrench_variations(name):
-            blocks.add(rows, columns, column_at(to_rows @ variation, self.load_factor))
+            blocks.add(rows, columns, column_at(to_rows @ variation, closing))
         # T and the norm of Q change with Q itself, at fixed moment.
         moment = self._wrenches[name][:3] / frame.unit
         by_quaternion = TURN_ROWS(quaternion, moment)[1]
         at_fixed_wrench = ca.diagcat(ca.DM(3, 3), by_quaternion)
-        blocks.add(rows, rows, column_at(at_fixed_wrench, self.load_factor))
+        blocks.add(rows, rows, column_at(at_fixed_wrench, closing))
 
     def _wrench_variations(self, name: FrameName) -> list[tuple[slice, Matrix]]:
         """Variation of the wrench on a frame with each block of unknowns that changes it, 6×k, world axes."""
@@ -319,7 +367,7 @@ class Assembly:
         constraint = placed.constraint
         poses = self.system.poses(placed)
         by_multipliers, by_poses = constraint.reaction_variation(poses, self.system.multipliers(placed))
-        variations = [(self.discrete.multipliers(placed), by_multipliers)]
+        variations = [(self.discrete.multipliers(placed), by_multipliers), *self._of_coordinate(placed, by_poses)]
         for moved, derivative in self._of_floating(placed, by_poses):
             by_motion[moved] = by_motion[moved] + derivative
         # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
@@ -343,8 +391,9 @@ class Assembly:
         in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
         by_motion[name] = by_motion[name] - to_world @ in_base_axes
         constraints = self.discrete.constraints_on(rod)
-        passed_on = [self._passed_on(placed, to_world, by_motion) for placed in constraints]
-        return [*variations, *passed_on]
+        for placed in constraints:
+            variations += self._passed_on(placed, to_world, by_motion)
+        return variations
 
     def _base_motion(self, rod: str) -> tuple[Matrix, Matrix]:
         """Derivative of the base wrench [moment; force] with a turn and with a shift of the base, base axes, 6×3."""
@@ -360,7 +409,7 @@ class Assembly:
 
     def _passed_on(
         self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
-    ) -> tuple[slice, Matrix]:
+    ) -> list[tuple[slice, Matrix]]:
         """Wrench that the multipliers of a constraint on a carried rod pass on to the rod's base, 6×k, world axes."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
@@ -368,11 +417,14 @@ class Assembly:
         moment_rows = ca.horzcat(ca.DM.eye(3), hat(poses.section.position))
         force_rows = ca.horzcat(ca.DM(3, 3), ca.DM.eye(3))
         to_base = to_world @ ca.vertcat(moment_rows, force_rows)
+        passed_on = [(self.discrete.multipliers(placed), to_base @ constraint.wrench_basis(poses))]
         if constraint.held.turn_with_pose:
             variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
             for moved, derivative in self._of_floating(placed, variations):
                 by_motion[moved] = by_motion[moved] + to_base @ derivative
-        return self.discrete.multipliers(placed), to_base @ constraint.wrench_basis(poses)
+            of_coordinate = self._of_coordinate(placed, variations)
+            passed_on += [(column, to_base @ derivative) for column, derivative in of_coordinate]
+        return passed_on
 
     # Loads on bodies
 
@@ -416,7 +468,7 @@ class Assembly:
         """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
         for entries, compliance in self._compliances():
             size = entries.stop - entries.start
-            block = spring(size, compliance, self.load_factor)
+            block = spring(size, compliance, self._closing(compliance))
             if block is not None:
                 blocks.add(entries, entries, block)
 
@@ -426,5 +478,7 @@ class Assembly:
             yield self.discrete.multipliers(placed), placed.compliance
         for name in self.frames:
             yield self.discrete.deviation(name), ASSEMBLED
+        for placed in self.discrete.free_coordinates:
+            yield self.discrete.coordinate(placed), ASSEMBLED
         for cable in self.discrete.cables:
             yield self.discrete.tension(cable), cable.compliance

@@ -1,8 +1,8 @@
 """A scene with everything settled that does not depend on the unknowns.
 
 The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
-tensions of the cables of given length, as in docs/theory.md, section 8; in motion then flows of rods whose stress
-relaxes.
+coordinates of joints, tensions of the cables of given length, as in docs/theory.md, section 8; in motion then flows of
+rods whose stress relaxes.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -42,6 +43,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.constraint_records import AxisJoint
 
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
@@ -210,17 +212,30 @@ class DiscreteScene:
         """Whether constraints close rods to each other, or a carried rod to the world."""
         return any(placed.closes_assembly for placed in self.constraints)
 
+    @cached_property
+    def closed_unloaded(self) -> bool:
+        """Whether its assembly is closed where nothing acts, and stays so while loads alone grow.
+
+        So it is where each floating frame is fixed to one section, nothing closes a loop, and neither parameters nor
+        inputs move rods: no spring has to draw anything together then.
+        """
+        ties = [placed for placed in self.constraints if placed.closes_assembly]
+        held = [placed.frame for placed in ties if placed.constraint.held is CLAMPED]
+        is_tree = None not in held and len(held) == len(ties) == len(set(held)) == len(self.frames)
+        return is_tree and not self.parameters.size and not self.layout.geometry
+
     def constraints_on(self, rod: str) -> list[PlacedConstraint]:
         """Constraints that hold sections of a rod."""
         return [placed for placed in self.constraints if placed.rod == rod]
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """The unknowns x in their order: strains, multipliers, poses, tensions, flows."""
+        """The unknowns x in their order: strains, multipliers, poses, coordinates, tensions, flows."""
         blocks = [
             *self._strain_blocks(),
             *self._multiplier_blocks(),
             *self._pose_blocks(),
+            *self._coordinate_blocks(),
             *self._tension_blocks(),
             *self._flow_blocks(),
         ]
@@ -260,6 +275,33 @@ class DiscreteScene:
                 step_weight=1.0,
             )
 
+    def _coordinate_blocks(self) -> Iterator[UnknownBlock]:
+        for placed in self.free_coordinates:
+            yield UnknownBlock(
+                kind=BlockKind.COORDINATE,
+                owner=placed.where,
+                rod=None,
+                size=1,
+                unit=placed.constraint.unit,
+                step_weight=1.0,
+            )
+
+    @cached_property
+    def free_coordinates(self) -> list[PlacedConstraint]:
+        """Joints whose coordinate is an unknown: something acts along it, and no drive prescribes it."""
+        return [
+            placed
+            for placed in self.constraints
+            if placed.constraint.coordinate is not None and not self.joint_record(placed).prescribed
+        ]
+
+    def joint_record(self, placed: PlacedConstraint) -> AxisJoint:
+        """The record of a joint with a coordinate."""
+        assert placed.joint is not None, "asked for of a joint"
+        record = self.scene.joints[placed.joint]
+        assert isinstance(record, AxisJoint), "joints with a coordinate have an axis"
+        return record
+
     def _tension_blocks(self) -> Iterator[UnknownBlock]:
         for cable in self.cables:
             tendon = cable.tendon
@@ -297,6 +339,10 @@ class DiscreteScene:
     def deviation(self, frame: FrameName) -> slice:
         """Slice of the deviation of a floating frame in x."""
         return self.unknowns.slice_of(BlockKind.POSE, str(frame))
+
+    def coordinate(self, placed: PlacedConstraint) -> slice:
+        """Slice of the coordinate of a joint in x."""
+        return self.unknowns.slice_of(BlockKind.COORDINATE, placed.where)
 
     def tension(self, cable: CableOfLength) -> slice:
         """Slice of the tension of a cable of given length in x."""

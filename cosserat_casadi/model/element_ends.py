@@ -41,7 +41,7 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
     # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
     places.extend(carried.base.at for carried in scene.rods if carried.base.rod == rod)
     # So is that of a body.
-    places.extend(joint.at for joint in scene.joints if joint.rod == rod)
+    places.extend(joint.at for joint in scene.joints if joint.rod == rod and not joint.holds_base)
     places.extend(at for row in scene.disks if row.rod == rod for at in row.places)
     return places
 

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.held_directions import FLAT, stays_in_plane
+from cosserat_casadi.constraints.held_directions import FLAT, confines_to_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
@@ -70,6 +70,7 @@ class UnloadedScene:
     rods: Mapping[str, DiscreteRod]
     _shapes: dict[str, Shape] = field(default_factory=dict, repr=False)
     _sections: dict[tuple[str, float], NumericPose] = field(default_factory=dict, repr=False)
+    _bodies: dict[str, FloatingFrame] = field(default_factory=dict, repr=False)
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:
@@ -84,7 +85,7 @@ class UnloadedScene:
     def floating_base(self, rod: str) -> FrameName | None:
         """The floating frame that a rod's base is; None where it rests in the world."""
         base = self.records[rod].base
-        if base.rod is None and not base.free:
+        if base.rod is None and not base.free and rod not in self.scene.jointed_bases:
             return None
         return FrameName("rod", rod)
 
@@ -103,12 +104,16 @@ class UnloadedScene:
             start = self.base(rod.name)
             frames[name] = FloatingFrame(None, unit, rod.length, start)
         for body in self.scene.bodies:
-            frames[FrameName("body", body.name)] = self._body_frame(body)
+            frames[FrameName("body", body.name)] = self._body_frame(body.name)
         return frames
 
     def base(self, rod: str) -> NumericPose:
         """World pose of a rod's base."""
         record = self.records[rod]
+        for joint in self.scene.joints:
+            # The base is where the body is, but where the body is said by such bases alone.
+            if joint.rod == rod and joint.holds_base and joint.body is not None and self._placing_joints(joint.body):
+                return self._body_frame(joint.body).start.then(place_of(joint))
         own = NumericPose(*base_pose(record))
         carrier = record.base.rod
         if carrier is None:
@@ -144,6 +149,8 @@ class UnloadedScene:
         if record.base.free or not stays_in_plane(self.rods[rod].properties):
             return None
         own = self.base(rod)
+        if rod in self.scene.jointed_bases and not self._base_keeps_plane(rod):
+            return None
         carrier = record.base.rod
         if carrier is None:
             return own
@@ -153,6 +160,25 @@ class UnloadedScene:
         if not same_plane(plane_of_carrier, own, self.records[rod].length):
             return None
         return own
+
+    def base_joint(self, rod: str) -> tuple[int, FloatArray] | None:
+        """Place in the scene's list of the joint at a rod's base, without body, and its rotation; None without one.
+
+        The rotation turns the axes of the held section, the carrying one or a base in the world, into the axes
+        that the axis of the joint is in, shape (3, 3).
+        """
+        index = self.scene.base_joints.get(rod)
+        if index is None:
+            return None
+        return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
+
+    def _base_keeps_plane(self, rod: str) -> bool:
+        """Whether the joint at a base in the world keeps its rod in the x–z plane of the base."""
+        found = self.base_joint(rod)
+        if found is None or self.records[rod].base.rod is not None:
+            return False
+        joint = self.scene.joints[found[0]]
+        return confines_to_plane(JOINT_KINDS[joint.kind].held(joint, found[1]))
 
     @cached_property
     def all_in_parallel_planes(self) -> bool:
@@ -167,14 +193,32 @@ class UnloadedScene:
         sines = [np.linalg.norm(np.cross(normals[0], normal)) for normal in normals]
         return all(sine <= FLAT for sine in sines)
 
-    def _body_frame(self, body: scenes.Body) -> FloatingFrame:
+    def _body_frame(self, name: str) -> FloatingFrame:
         """A body's frame in its mean pose over the unloaded rods, in units of the stiffest and the longest of them."""
-        joints = [joint for joint in self.scene.joints if joint.body == body.name]
-        rods = [self.rods[joint.rod] for joint in joints]
+        if name not in self._bodies:
+            (body,) = [body for body in self.scene.bodies if body.name == name]
+            self._bodies[name] = self._new_body_frame(body)
+        return self._bodies[name]
+
+    def _new_body_frame(self, body: scenes.Body) -> FloatingFrame:
+        all_joints = [joint for joint in self.scene.joints if joint.body == body.name]
+        rods = [self.rods[joint.rod] for joint in all_joints]
         unit = max(rod.energy_unit for rod in rods)
         length = max(rod.properties.length for rod in rods)
+        joints = self._placing_joints(body.name) or all_joints
         start = self._closed(joints, length, self._mean_pose(joints, length))
         return FloatingFrame(body, unit, length, start)
+
+    def _placing_joints(self, body: str) -> list[scenes.Joint]:
+        """Joints of a body at sections of rods that do not start on bodies: their poses say where it is."""
+        return [joint for joint in self.scene.joints if joint.body == body and not self._starts_on_body(joint.rod)]
+
+    def _starts_on_body(self, rod: str) -> bool:
+        """Whether the base of a rod, or of one that carries it, is held to a body."""
+        carrier = self.records[rod].base.rod
+        if carrier is not None:
+            return self._starts_on_body(carrier)
+        return any(joint.rod == rod and joint.holds_base and joint.body is not None for joint in self.scene.joints)
 
     def _closed(self, joints: list[scenes.Joint], length: float, mean: NumericPose) -> NumericPose:
         """Pose of a body next to a mean one in which all its joints are closed; the mean where there is none.

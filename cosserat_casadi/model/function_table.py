@@ -49,6 +49,7 @@ class Owner(Enum):
     ROD = "rod"
     ACTUATOR = "actuator"
     BODY = "body"
+    JOINT = "joint"
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class Expressions:
 
     Attributes:
         discrete: the scene.
-        owner: name of the rod, the actuator or the body; empty for a function of the scene.
+        owner: name of the rod, the actuator, the body or the joint; empty for a function of the scene.
         symbols: the arguments by name.
     """
 
@@ -203,7 +204,7 @@ class FunctionSpec:
 
         Args:
             model: whose function it is; it has the member ``discrete``.
-            owner: name of the rod, the actuator or the body.
+            owner: name of the rod, the actuator, the body or the joint.
         """
         discrete: DiscreteScene = model.discrete
         arguments = self.arguments_of(discrete)
@@ -255,12 +256,13 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
 
 
 def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
-    """Names of all rods, actuators or bodies; one empty name for the scene."""
+    """Names of all rods, actuators, bodies or joints; one empty name for the scene."""
     scene = discrete.scene
     named: dict[Owner, Sequence[Any]] = {
         Owner.ROD: scene.rods,
         Owner.ACTUATOR: scene.actuators,
         Owner.BODY: scene.bodies,
+        Owner.JOINT: scene.joints_with_coordinate,
     }
     return [record.name for record in named[owner]] if owner in named else [""]
 
@@ -269,7 +271,7 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
 class NamedFunction:
     """A member of a model that is built when it is first asked for, and kept.
 
-    Of the scene it is one function, of rods, actuators or bodies a function for each, by name.
+    Of the scene it is one function, of rods, actuators, bodies or joints a function for each, by name.
     """
 
     spec: FunctionSpec = field(init=False)
@@ -333,7 +335,7 @@ def owned_functions(
     header: str = "",
     differentiable: bool = False,
 ) -> Callable[[Write], NamedFunction]:
-    """Make a method one named function for each rod, actuator or body.
+    """Make a method one named function for each rod, actuator, body or joint.
 
     Args:
         owner: family of its owners; each member has one function.

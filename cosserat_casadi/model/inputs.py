@@ -192,8 +192,8 @@ def _axes(free: scenes.FreeInput) -> str:
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:
     """Values of every load and actuator for given inputs, by name and field: the scene's where they are fixed."""
     values: dict[str, dict[str, FloatArray]] = {}
-    for record in scene.causes:
-        values[record.name] = {field: known(scene_value(record, field)) for field in record.inputs}
+    for record in scene.input_owners:
+        values[record.name or ""] = {field: known(scene_value(record, field)) for field in record.inputs}
     for entry, span in layout:
         if not entry.of_rod:
             values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")
@@ -215,10 +215,10 @@ def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuato
 
 
 def input_value(
-    layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, field: str, inputs: Matrix
+    layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator | scenes.JointRecord, field: str, inputs: Matrix
 ) -> Matrix | None:
-    """One input of a load or an actuator; None where it is zero for good."""
-    entries = layout.of_load(record.name, field)
+    """One input of a load, an actuator or a joint; None where it is zero for good."""
+    entries = layout.of_load(record.name or "", field)
     default = scene_value(record, field)
     if entries is None:
         return constant(default)

@@ -35,6 +35,7 @@ from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import largest_turn
+from cosserat_casadi.scene.constraint_records import AxisJoint
 
 RESOLVED_TURN = 2.0
 """Turn of an interval between nodes, rad, beyond which no polynomial through the nodes follows the rod.
@@ -68,6 +69,14 @@ def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     effort = Output(member.effort, member.effort_unit)
     conjugate = Output(member.conjugate, member.conjugate_unit)
     return effort, conjugate, Output(f"d_{conjugate.name}_d_x", derivative_by="x")
+
+
+def _joint_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
+    """Effort along a joint and its coordinate, by their names in the scene."""
+    (joint,) = [joint for joint in discrete.scene.joints_with_coordinate if joint.name == name]
+    assert isinstance(joint, AxisJoint), "joints with a coordinate have an axis"
+    keys = (joint.effort_key, joint.coordinate_key)
+    return tuple(Output(key, joint.inputs[key].unit) for key in keys)
 
 
 class ModelFunctions:
@@ -279,8 +288,8 @@ class ModelFunctions:
             ca.repmat(base.position, 1, count) + rotation @ rod.shape.position,
             quaternion_product(quaternions, ca.densify(rod.shape.quaternion)),
             rod.statics.internal_wrench(),
-            rotation @ rod.statics.base_force,
-            rotation @ rod.statics.base_moment,
+            rotation @ rod.statics.held_force,
+            rotation @ rod.statics.held_moment,
         ]
 
     @owned_functions(
@@ -298,6 +307,20 @@ class ModelFunctions:
         The derivative is what a unit of effort does.
         """
         return [ca.densify(ca.MX(value)) for value in written.system.actuators.state(written.owner)]
+
+    @owned_functions(
+        Owner.JOINT,
+        _joint_outputs,
+        kernel="joint",
+        header="Joint {owner}: what acts along it on its section, and its angle or displacement.",
+        differentiable=True,
+    )
+    def joint(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each."""
+        (index,) = [i for i, joint in enumerate(written.discrete.scene.joints) if joint.name == written.owner]
+        (placed,) = [placed for placed in written.discrete.constraints if placed.joint == index]
+        value, effort = written.system.joint_state(placed)
+        return [ca.densify(ca.MX(effort)), ca.densify(ca.MX(value))]
 
     @owned_functions(
         Owner.BODY,

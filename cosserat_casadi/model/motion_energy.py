@@ -15,8 +15,9 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.joint_coordinate import JointEffort
 from cosserat_casadi.loads.contact_layer import ContactLayer
-from cosserat_casadi.maths.numbers import as_matrix
+from cosserat_casadi.maths.numbers import as_matrix, is_zero
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -51,8 +52,12 @@ class MotionEnergy:
 
     @cached_property
     def elastic(self) -> Matrix:
-        """Elastic energy of the rods and of their branches, 1×1, J."""
-        return _sum([self.system.energy(), *(branches.energy for branches in self.system.relaxations.values())])
+        """Elastic energy of the rods, of their branches and of the springs of joints, 1×1, J."""
+        branches = [relaxation.energy for relaxation in self.system.relaxations.values()]
+        springs = [
+            effort.spring_energy(value) for effort, value, _ in self._free_joints if not is_zero(effort.stiffness)
+        ]
+        return _sum([self.system.energy(), *branches, *springs])
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
@@ -75,14 +80,15 @@ class MotionEnergy:
 
     @cached_property
     def dissipated_power(self) -> Matrix:
-        """Power that the viscous stress of the rods, and damping and friction of contact, turn into heat, 1×1, W."""
+        """Power that viscous stress, dampers of joints, and damping and friction of contact turn into heat, 1×1, W."""
         of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
         of_branches = [relaxation.dissipated_power for relaxation in self.system.relaxations.values()]
         # What contact presses with at rest is stored: what it takes beyond that is lost.
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
         ]
-        return _sum([*of_rods, *of_branches, *of_contact])
+        of_joints = [effort.damping * rate**2 for effort, _, rate in self._free_joints if not is_zero(effort.damping)]
+        return _sum([*of_rods, *of_branches, *of_joints, *of_contact])
 
     @cached_property
     def load_powers(self) -> Matrix:
@@ -107,8 +113,8 @@ class MotionEnergy:
 
     @cached_property
     def base_power(self) -> Matrix:
-        """Power of the clamps of moving bases, and of what changes the lengths of rods, 1×1, W."""
-        powers = []
+        """Power of clamps of moving bases, of drives and motors of joints, and of changing lengths, 1×1, W."""
+        powers = [*self._drive_powers, *(effort.motor * rate for effort, _, rate in self._free_joints)]
         for rod, igm in self.system.rods.items():
             if self.system.discrete.unloaded.floating_base(rod) is None:
                 base = self.system.base_motion(rod)
@@ -141,6 +147,28 @@ class MotionEnergy:
     @property
     def _loads(self) -> tuple[scenes.LoadRecord, ...]:
         return self.system.discrete.loads
+
+    @cached_property
+    def _free_joints(self) -> list[tuple[JointEffort, Matrix, Matrix]]:
+        """Springs, dampers and motors along coordinates that are unknowns, with the values and rates of these."""
+        joints = []
+        for placed in self.system.discrete.free_coordinates:
+            value, _ = self.system.joint_state(placed)
+            rate = placed.coordinate_scale * self._motion.v[self.system.discrete.coordinate(placed)]
+            joints.append((self.system.joint_effort(placed), value, rate))
+        return joints
+
+    @property
+    def _drive_powers(self) -> Iterator[Matrix]:
+        """Power of each drive that an input moves, 1×1, W: it pushes the section with the effort along its axis."""
+        discrete = self.system.discrete
+        for placed in discrete.constraints:
+            if placed.constraint.coordinate is None or placed in discrete.free_coordinates:
+                continue
+            record = discrete.joint_record(placed)
+            entries = discrete.layout.of_load(record.name or "", record.coordinate_key)
+            if entries is not None:
+                yield self.system.joint_state(placed)[1] * self._motion.inputs_rate[entries]
 
     @property
     def _motion(self) -> MotionArguments:

@@ -65,7 +65,7 @@ class MotionFunctions:
         """(x, v, a, inputs, …) ↦ force and moment about the base of the clamp on the rod in motion, world axes."""
         statics = written.system.rods[written.owner].statics
         rotation = written.system.base(written.owner).rotation
-        return [rotation @ statics.base_force, rotation @ statics.base_moment]
+        return [rotation @ statics.held_force, rotation @ statics.held_moment]
 
     @scene_function(
         Output("kinetic", "J"),

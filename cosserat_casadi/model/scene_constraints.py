@@ -22,16 +22,19 @@ from cosserat_casadi.constraints.held_directions import (
     stays_in_plane,
     upright,
 )
+from cosserat_casadi.constraints.joint_coordinate import held_along, moves_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
 from cosserat_casadi.constraints.tip_holder import TipHolder, place_of
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, as_vector, is_symbolic, known
-from cosserat_casadi.maths.pose import NumericPose, Pose, written_pose
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_symbolic
+from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.scene_rods import base_pose, unit_quaternion, written_base_pose
+from cosserat_casadi.scene.constraint_records import JointRecord
 
 SUPPORT_WEIGHT = 2.0
 """Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
@@ -60,6 +63,8 @@ class PlacedConstraint:
         rod: name of the rod whose section it holds.
         node: node of that section.
         frame: the floating frame on the other side; None for the world.
+        joint: place of the joint in the scene's list; None of supports and clamped bases.
+        at_base: whether it holds a base to the pose that the scene, or an input, gives it in the world.
         where: path of the scene's table.
         what: the two sides in words.
         compliance: how it yields on the way to the scene.
@@ -74,11 +79,28 @@ class PlacedConstraint:
     what: str
     compliance: Compliance = ASSEMBLED
     step_weight: float = FORCE_WEIGHT
+    joint: int | None = None
+    at_base: bool = False
 
     @property
     def size(self) -> int:
         """Number of multipliers."""
         return self.constraint.size
+
+    @property
+    def coordinate_scale(self) -> float:
+        """Unit of the coordinate as an unknown: a radian, or the length of the rod, m."""
+        coordinate = self.constraint.coordinate
+        assert coordinate is not None, "asked for of a joint with a coordinate"
+        return 1.0 if coordinate.turns else self.constraint.rod.length
+
+    @property
+    def along_coordinate(self) -> int:
+        """Place, among the multipliers, of that along the coordinate."""
+        coordinate = self.constraint.coordinate
+        assert coordinate is not None, "asked for of a joint with a coordinate"
+        # The last of the displacements, or of the rotations, which come last.
+        return self.size - 1 if coordinate.turns else self.constraint.held.positions.shape[1] - 1
 
     @property
     def closes_assembly(self) -> bool:
@@ -101,8 +123,8 @@ def written_constraints(
     before = _given_places(nominal)
     after = _given_places(scene)
     # Sections of carriers and of joints move along their rods; supports hold tips.
-    sections = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
-    sections |= {f"joints[{i}]": joint.at for i, joint in enumerate(scene.joints)}
+    sections: dict[str, Any] = {f"joints[{i}]": joint.at for i, joint in enumerate(scene.joints)}
+    sections |= {_base_path(scene, i): rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
     axes_before = _axes(nominal)
     axes = _axes(scene)
     constraints = []
@@ -121,18 +143,26 @@ def written_constraints(
         at = sections.get(entry.where, entry.constraint.at)
         turn = None
         if entry.where in axes_before:
-            turn = _turn_of_axis(start, axes_before[entry.where], pose, axes[entry.where])
+            turn = _turn_of_axis(axes_before[entry.where], axes[entry.where])
         constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, pose=pose, turn=turn)))
     return constraints
 
 
-def _axes(scene: scenes.Scene) -> dict[str, Numbers]:
-    """Axes of supports and joints in the world and in their bodies, by the paths of their tables."""
+def _axes(scene: scenes.Scene) -> dict[str, Matrix]:
+    """Axes of supports and joints in the axes of the held sections, by the paths of their tables."""
     axes = {}
+    rods = {rod.name: rod for rod in scene.rods}
     for where, holder, record in _holders(scene):
         axis = holder.axis(record)
-        if axis is not None:
-            axes[where] = as_vector(axis)
+        if axis is None:
+            continue
+        quaternion = unit_quaternion(record.orientation or (1.0, 0.0, 0.0, 0.0))
+        if isinstance(record, JointRecord) and record.at_base:
+            base = rods[record.rod]
+            # On another rod it is that of the carrying section already.
+            quaternion = IDENTITY.quaternion if base.base.rod is not None else written_base_pose(base)[1]
+        place = written_pose(np.zeros(3), quaternion)
+        axes[where] = as_matrix(place.rotation).T @ as_matrix(as_vector(axis))
     return axes
 
 
@@ -144,14 +174,14 @@ def _holders(scene: scenes.Scene) -> Iterator[tuple[str, TipHolder[Any], Any]]:
         yield f"joints[{i}]", JOINT_KINDS[joint.kind], joint
 
 
-def _turn_of_axis(start: NumericPose, before: Numbers, pose: NumericPose | Pose, after: Numbers) -> Matrix | None:
-    """Shortest rotation from the line of an axis to another, both seen from their places, as a quaternion.
+def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
+    """Shortest rotation from the line of an axis to another, both in the axes of the section, as a quaternion.
 
     None where it is none. Neither the length of an axis nor its sign matters.
     """
-    old = ca.DM(start.rotation.T @ known(before))
+    old = ca.DM(before)
     unit_old = old / ca.norm_2(old)
-    new: Matrix = as_matrix(pose.rotation).T @ as_matrix(after)
+    new = after
     if is_symbolic(new) and not ca.symvar(new):
         new = ca.evalf(new)
     unit_new = new / ca.norm_2(new)
@@ -179,8 +209,14 @@ def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
     for i, rod in enumerate(scene.rods):
         if rod.base.rod is not None:
             # The scene gives the base in the section; the constraint wants the section in the frame of the base.
-            places[f"rods[{i}].base"] = written_pose(*written_base_pose(rod)).inverse
+            places[_base_path(scene, i)] = written_pose(*written_base_pose(rod)).inverse
     return places
+
+
+def _base_path(scene: scenes.Scene, index: int) -> str:
+    """Path of the table that says how the base of a rod is held: that of a joint, or that of the rod."""
+    joint = scene.base_joints.get(scene.rods[index].name)
+    return f"rods[{index}].base" if joint is None else f"joints[{joint}]"
 
 
 def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
@@ -188,12 +224,16 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
 
     Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods.
     """
-    supports = [_support(unloaded, i) for i in range(len(unloaded.scene.supports))]
+    scene = unloaded.scene
+    supports = [_support(unloaded, i) for i in range(len(scene.supports))]
+    supports += [_joint_in_world(unloaded, i) for i, joint in enumerate(scene.joints) if _is_in_world(joint)]
     # A support of a rod that starts in the world couples no rods: it stands next to the strains in x.
     still = [placed for placed in supports if not placed.closes_assembly]
     carried = [placed for placed in supports if placed.closes_assembly]
     bases = [_base(unloaded, rod) for rod in unloaded.carried]
-    joints = [_joint(unloaded, i) for i in range(len(unloaded.scene.joints))]
+    carried_by_rods = {scene.base_joints.get(rod.name) for rod in unloaded.carried}
+    between = [i for i, joint in enumerate(scene.joints) if not _is_in_world(joint) and i not in carried_by_rods]
+    joints = [_joint(unloaded, i) for i in between]
     return [*still, *bases, *joints, *carried]
 
 
@@ -242,28 +282,62 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     rod = support.rod
     words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
     tip = _Section(unloaded, rod)
-    target = place_of(support)
-    directions = SUPPORT_KINDS[support.kind].held(support, target.rotation)
+    return _held_in_world(tip, support, SUPPORT_KINDS[support.kind].directions(support), words)[0]
+
+
+def _is_in_world(joint: scenes.Joint) -> bool:
+    """Whether a joint holds a section in the world that is no base."""
+    return joint.body is None and not joint.holds_base
+
+
+def _joint_in_world(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """A section of a rod at a joint in the world."""
+    joint = unloaded.scene.joints[index]
+    words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at its joint in the world")
+    section = _Section(unloaded, joint.rod, joint.at)
+    placed, normal = _held_in_world(section, joint, JOINT_KINDS[joint.kind].directions(joint), words)
+    return _with_coordinate(placed, unloaded, index, place_of(joint).rotation, normal)
+
+
+def _held_in_world(
+    section: _Section, record: scenes.Support | scenes.Joint, directions: HeldDirections, words: tuple[str, str]
+) -> tuple[PlacedConstraint, FloatArray | None]:
+    """A section of a rod at the place of its record in the world; ``words``: its path and its two sides.
+
+    Returns:
+        the constraint, and the normal of the plane that the rod stays in, in the axes of the place; None in space.
+    """
+    unloaded = section.unloaded
+    rod = section.rod
+    target = place_of(record)
     floats = unloaded.floating_base(rod) is not None
-    stays = _supported_in_plane(unloaded, support, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
+    stays = _held_in_plane(unloaded, record, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
+    normal = None
     if stays:
+        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1]
         # Directions that turn with the pose are given in its axes, others in those of the base.
-        normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1] if directions.turn_with_pose else NORMAL
-        directions = in_plane(directions, normal)
+        directions = in_plane(directions, normal if directions.turn_with_pose else NORMAL)
     if floats:
-        return tip.held_to(tip.nearer_sign(target, None), directions, None, words)
+        return section.held_to(section.nearer_sign(target, None), directions, None, words), normal
     # The scene's own sign of the quaternion says by which way round the tip is to be turned.
-    placed = tip.held_to(target, directions, None, words)
-    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
+    placed = section.held_to(target, directions, None, words)
+    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT), normal
 
 
-def _supported_in_plane(unloaded: UnloadedScene, support: scenes.Support, target: NumericPose) -> bool:
-    """Whether a carried rod stays in one plane that its support lies in."""
-    plane = unloaded.plane(support.rod)
+def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Joint, target: NumericPose) -> bool:
+    """Whether a rod whose base floats stays in one plane that its place in the world lies in."""
+    plane = unloaded.plane(record.rod)
     if plane is None:
         return False
-    length = unloaded.records[support.rod].length
-    return same_plane(plane, target, length, tilted=support.orientation is None)
+    length = unloaded.records[record.rod].length
+    return same_plane(plane, target, length, tilted=record.orientation is None)
+
+
+def _section_in_words(joint: scenes.Joint) -> str:
+    """The jointed section."""
+    if joint.holds_base:
+        return "the base"
+    return "the tip" if joint.at == 1.0 else f"X = {joint.at:g}"
 
 
 def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
@@ -272,33 +346,77 @@ def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
     assert carrier is not None
     frame = FrameName("rod", rod.name)
     index = list(unloaded.records).index(rod.name)
-    words = (f"rods[{index}].base", f"the base of {rod.name!r} on {carrier!r}")
+    words = (_base_path(unloaded.scene, index), f"the base of {rod.name!r} on {carrier!r}")
+    joint = unloaded.base_joint(rod.name)
     section = _Section(unloaded, carrier, rod.base.at)
     # The scene gives the base in the section; the constraint wants the section in the frame of the base.
     section_in_base = NumericPose(*base_pose(rod)).inverse
     target = section.nearer_sign(section_in_base, frame)
-    return section.held_to(target, CLAMPED, frame, words)
+    if joint is None:
+        return section.held_to(target, CLAMPED, frame, words)
+    number, rotation = joint
+    record = unloaded.scene.joints[number]
+    placed = section.held_to(target, JOINT_KINDS[record.kind].held(record, rotation), frame, words)
+    # The base moves along the axis in the section, and so the section against it in the base.
+    return _with_coordinate(placed, unloaded, number, -rotation)
+
+
+def _with_coordinate(
+    placed: PlacedConstraint,
+    unloaded: UnloadedScene,
+    index: int,
+    rotation: FloatArray,
+    normal: FloatArray | None = None,
+) -> PlacedConstraint:
+    """A joint with its coordinate, where something acts along it.
+
+    Args:
+        placed: the constraint without it.
+        unloaded: the scene.
+        index: place of the joint in the scene's list.
+        rotation: turns the axes of the section into those of the joint's axis, shape (3, 3).
+        normal: unit normal of the plane, in the axes of the section, that its rod stays in; None of a rod in space.
+
+    Raises:
+        SceneError: a rod in a plane would have to leave it.
+    """
+    joint = unloaded.scene.joints[index]
+    coordinate = JOINT_KINDS[joint.kind].coordinate(joint, rotation)
+    if coordinate is None:
+        return replace(placed, joint=index)
+    if normal is not None and not moves_in_plane(coordinate, normal):
+        problem = f"would take {joint.rod!r} out of the plane that it bends in"
+        raise SceneError(Problem(f"joints[{index}].axis", problem, "admit its other bending and torsion"))
+    held = held_along(coordinate, normal)
+    return replace(placed, joint=index, constraint=replace(placed.constraint, held=held, coordinate=coordinate))
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """A section of a rod at a body."""
+    """A section of a rod at a body, or a base in the world."""
     joint = unloaded.scene.joints[index]
-    frame = FrameName("body", joint.body)
-    held = "the tip" if joint.at == 1.0 else f"X = {joint.at:g}"
-    words = (f"joints[{index}]", f"{held} of {joint.rod!r} at {joint.body!r}")
+    words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at {joint.body or 'its place'!r}")
     section = _Section(unloaded, joint.rod, joint.at)
+    if joint.at_base:
+        # Counted from where the scene, or an input, puts the base.
+        base = unloaded.base_joint(joint.rod)
+        assert base is not None
+        placed = section.held_to(IDENTITY, JOINT_KINDS[joint.kind].held(joint, base[1]), None, words)
+        return replace(_with_coordinate(placed, unloaded, index, base[1]), at_base=True)
+    assert joint.body is not None, "joints in the world are placed with the supports"
+    frame = FrameName("body", joint.body)
     target = section.nearer_sign(place_of(joint), frame)
-    directions = _joint_directions(unloaded, joint)
-    return section.held_to(target, directions, frame, words)
+    coplanar = list(_coplanar(unloaded, joint))
+    placed = section.held_to(target, _joint_directions(joint, coplanar), frame, words)
+    in_a_plane = len(coplanar) > 1 and coplanar[0] != joint
+    return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
 
 
-def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirections:
+def _joint_directions(joint: scenes.Joint, coplanar: list[scenes.Joint]) -> HeldDirections:
     """Directions that a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
     directions: HeldDirections = JOINT_KINDS[joint.kind].directions(joint)
-    coplanar = list(_coplanar(unloaded, joint))
     if len(coplanar) < 2:
         return directions
     if coplanar[0] != joint:
@@ -309,7 +427,7 @@ def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint) -> HeldDirec
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
     """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
     plane = unloaded.plane(joint.rod)
-    if plane is None or not _moves_in_plane(joint):
+    if joint.body is None or plane is None or not _moves_in_plane(joint):
         return
     for candidate in unloaded.scene.joints:
         if candidate.body != joint.body or not _moves_in_plane(candidate):

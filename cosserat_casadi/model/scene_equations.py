@@ -5,6 +5,7 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
     rods          K q + Q_ad = 0, the report's (2.20), under loads and multipliers
     constraints   their residual = 0
     frames        balance of every floating frame = 0
+    joints        balance along every coordinate that is an unknown = 0
     cables        length, or slack = 0
     flows         at rest none, w = 0
 """
@@ -38,7 +39,8 @@ class SceneEquations:
         """Residuals of rods, constraints, floating frames and cables of given length, without unit, size×1."""
         rod_rows = [igm.residual for igm in self.system.rods.values()]
         assembly = self.assembly
-        assembly_rows = [*assembly.constraint_rows, *assembly.balance_rows, *assembly.cable_rows]
+        of_frames = [*assembly.balance_rows, *assembly.coordinate_rows]
+        assembly_rows = [*assembly.constraint_rows, *of_frames, *assembly.cable_rows]
         return ca.vertcat(*rod_rows, *assembly_rows, *self._flow_rows)
 
     @property

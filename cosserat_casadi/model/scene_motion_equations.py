@@ -11,9 +11,11 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import BlockKind
@@ -49,6 +51,9 @@ class SceneMotionEquations:
         for name, frame_motion in self.system.frame_motions.items():
             number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
             added[number] = frame_motion.norm_rows
+        for placed, entries, damping in self._damped_coordinates:
+            number = list(unknowns.slices).index((BlockKind.COORDINATE, placed.where))
+            added[number] = damping * self._velocity[entries]
         return SceneEquations(self.system).residual + ca.vertcat(*added)
 
     @cached_property
@@ -87,11 +92,31 @@ class SceneMotionEquations:
             damping.add(flows, strains, relaxation.matrices.by_strain_rate)
             damping.add(flows, flows, relaxation.matrices.by_rate)
             mass.add(flows, flows, relaxation.matrices.by_acceleration)
+        for _, entries, coefficient in self._damped_coordinates:
+            damping.add(entries, entries, coefficient)
         return MotionMatrices(
             stiffness=SceneEquations(self.system).jacobian + stiffness.matrix(),
             damping=damping.matrix(),
             mass=mass.matrix(),
         )
+
+    @property
+    def _velocity(self) -> Matrix:
+        motion = self.system.arguments.motion
+        assert motion is not None, "asked for in motion"
+        return motion.v
+
+    @property
+    def _damped_coordinates(self) -> list[tuple[PlacedConstraint, slice, Matrix]]:
+        """Joints with a damper, the slices of their coordinates, and the damping, without unit but for s, 1×1."""
+        discrete = self.system.discrete
+        damped = []
+        for placed in discrete.free_coordinates:
+            damping = discrete.joint_record(placed).damping
+            if not is_zero(damping):
+                scale = placed.coordinate_scale**2 / placed.constraint.unit
+                damped.append((placed, discrete.coordinate(placed), scale * as_matrix(as_vector([damping]))))
+        return damped
 
     @property
     def _rods_with_rates(self) -> list[str]:

@@ -15,6 +15,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.joint_coordinate import JointEffort
+from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
@@ -26,6 +28,7 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled
+from cosserat_casadi.model.inputs import input_value
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
@@ -41,6 +44,9 @@ from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
+
+DRIVE_GROWTH = 6
+"""Power of the load factor by which drives of joints move: by turns of them at which their constraints are rigid."""
 
 ROUNDING = 1e-16
 """Entry of a rotation matrix below which it is rounding."""
@@ -288,13 +294,44 @@ class System:
         """The poses that a constraint reads."""
         section = self.section(placed.rod, placed.node)
         base = self.base(placed.rod)
-        return ConstraintPoses(section, base, self._frame_of(placed))
+        return ConstraintPoses(section, base, self._frame_of(placed), self.coordinate(placed))
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
+        if placed.at_base:
+            return self._still_base(placed.rod)
         if placed.frame is None:
             return IDENTITY.pose
         return self.frame(placed.frame)
+
+    def coordinate(self, placed: PlacedConstraint) -> Matrix | None:
+        """Coordinate of a joint, 1×1, rad or m: an unknown, or what its drive prescribes; None without one."""
+        if placed.constraint.coordinate is None:
+            return None
+        record = self.discrete.joint_record(placed)
+        if not record.prescribed:
+            return placed.coordinate_scale * self.arguments.x[self.discrete.coordinate(placed)]
+        value = input_value(self.discrete.layout, record, record.coordinate_key, self.arguments.inputs)
+        if value is None:
+            value = ca.DM.zeros(1, 1)
+        if self.arguments.load_factor is None:
+            return value
+        # The drive moves from where the unloaded scene is, late enough for springs that grow stiff to keep up with it.
+        return self.arguments.load_factor**DRIVE_GROWTH * value
+
+    def joint_effort(self, placed: PlacedConstraint) -> JointEffort:
+        """Spring, damper and motor along the coordinate of a joint."""
+        record = self.discrete.joint_record(placed)
+        motor = input_value(self.discrete.layout, record, record.effort_key, self.arguments.inputs)
+        effort: JointEffort = JOINT_KINDS[record.kind].effort(record, ca.DM(1, 1) if motor is None else motor)
+        return effort
+
+    def joint_state(self, placed: PlacedConstraint) -> tuple[Matrix, Matrix]:
+        """Coordinate of a joint, rad or m, and the effort along it on the section, N m or N, 1×1 each."""
+        value = self.coordinate(placed)
+        assert value is not None, "asked for of a joint with a coordinate"
+        unit = placed.constraint.unit / placed.coordinate_scale
+        return value, unit * self.multipliers(placed)[placed.along_coordinate]
 
     def multipliers(self, placed: PlacedConstraint) -> Matrix:
         """Multipliers of a constraint."""
@@ -437,7 +474,7 @@ class System:
 
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
-        return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed))
+        return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed), self.coordinate(placed))
 
     def _base_R_world(self, rod: str) -> Matrix:
         """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""

@@ -25,6 +25,8 @@ class BlockKind(Enum):
     """Forces and moments of a support, a joint or the base of a carried rod."""
     POSE = "pose"
     """Deviation of a floating frame from its pose in the unloaded scene."""
+    COORDINATE = "coordinate"
+    """Angle or displacement of a joint that something acts along."""
     TENSION = "tension"
     """Tension of a cable of given length."""
     FLOW = "flow"
@@ -37,7 +39,7 @@ class UnknownBlock:
 
     Attributes:
         kind: what the unknowns are.
-        owner: name of the rod, the floating frame or the tendon; path of the scene's table of a constraint.
+        owner: name of the rod, the floating frame or the tendon; path of the scene's table of a constraint or a joint.
         rod: name of the rod that the block's equations are solved with; None for what several rods share.
         size: number of unknowns.
         unit: energy that the equations are divided by, J.
@@ -55,7 +57,7 @@ class UnknownBlock:
     def differential(self) -> bool:
         """Whether the unknowns are coordinates that move; multipliers and tensions are algebraic."""
         # Multipliers and tensions follow from the coordinates at every instant and have no rate of their own.
-        return self.kind in (BlockKind.STRAIN, BlockKind.POSE, BlockKind.FLOW)
+        return self.kind in (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE, BlockKind.FLOW)
 
 
 @dataclass(frozen=True)

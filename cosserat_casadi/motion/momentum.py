@@ -39,7 +39,8 @@ def flies_free(model: Model) -> bool:
     """Whether a scene is one piece, of rods and bodies that are joined to each other, which nothing holds."""
     scene = model.scene
     held = [rod for rod in scene.rods if rod.base.rod is None and not rod.base.free]
-    return not held and not scene.supports and _pieces(scene) == 1
+    in_world = [joint for joint in scene.joints if joint.body is None and not joint.at_base]
+    return not held and not in_world and not scene.supports and _pieces(scene) == 1
 
 
 def flies_alone(model: Model) -> bool:
@@ -51,7 +52,7 @@ def _pieces(scene: Scene) -> int:
     """Number of parts of a scene that neither joints nor bases on other rods connect."""
     links = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
     # A body is no rod, even where it bears the name of one.
-    links += [(joint.rod, f"body {joint.body}") for joint in scene.joints]
+    links += [(joint.rod, f"body {joint.body}") for joint in scene.joints if joint.body is not None]
     names = [rod.name for rod in scene.rods] + [f"body {body.name}" for body in scene.bodies]
     piece_of = {name: number for number, name in enumerate(names)}
     for one, other in links:

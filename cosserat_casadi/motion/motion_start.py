@@ -18,6 +18,10 @@ from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
+SWINGS = (
+    "At rest in the unloaded shape, as a base is free or may swing. To begin in an equilibrium, give "
+    'start = "equilibrium" in [simulation].'
+)
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 GIVEN = "At rest in the equilibrium that was given."
@@ -58,7 +62,8 @@ class Start:
 
 def unloaded_start(model: Model) -> Start:
     """At rest in the unloaded shape."""
-    return Start(model.unloaded(), UNLOADED)
+    asked = model.scene.simulation is not None and model.scene.simulation.start is not None
+    return Start(model.unloaded(), UNLOADED if asked else SWINGS)
 
 
 def equilibrium_start(model: Model, inputs: FloatArray) -> Start:

@@ -37,11 +37,11 @@ class Frames(NamedTuple):
 
 
 class ActuatorStates(NamedTuple):
-    """Effort and conjugate of an actuator over T times.
+    """Effort and conjugate of an actuator or a joint over T times.
 
     Attributes:
-        effort: tension (N) or pressure (Pa), shape (T,).
-        conjugate: what the effort does work on: length (m) or volume (m³), shape (T,).
+        effort: tension (N), pressure (Pa), or moment (N m) or force (N) of a joint, shape (T,).
+        conjugate: what the effort does work on: length (m), volume (m³), angle (rad) or displacement (m), shape (T,).
     """
 
     effort: FloatArray
@@ -106,10 +106,10 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
     return Poses(position, quaternion)
 
 
-def actuator_states(model: Model, actuator: str, x: FloatArray, inputs: FloatArray) -> ActuatorStates:
-    """Effort and conjugate of an actuator; arguments as in :func:`tip_poses`."""
-    # The third output, the rate of the conjugate with the unknowns, is for control.
-    effort, conjugate, _ = _evaluated(model.actuator[actuator], x, inputs)
+def states_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> ActuatorStates:
+    """Effort and conjugate of an actuator or a joint from its function; arguments as in :func:`tip_poses`."""
+    # The third output of an actuator, the rate of the conjugate with the unknowns, is for control.
+    effort, conjugate, *_ = _evaluated(function, x, inputs)
     return ActuatorStates(effort[:, 0, 0], conjugate[:, 0, 0])
 
 

@@ -343,7 +343,7 @@ def started(model: Model, simulation: Simulation, solution: Solution | None) -> 
     """How the motion of a model begins."""
     if solution is not None:
         return given_start(model, solution)
-    if simulation.start == "unloaded":
+    if model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
         return unloaded_start(model)
     return equilibrium_start(model, moving_inputs(model).at(0.0).value)
 

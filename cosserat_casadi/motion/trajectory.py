@@ -15,9 +15,9 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import (
     ActuatorStates,
     Poses,
-    actuator_states,
     body_poses,
     section_poses,
+    states_of,
     tip_poses,
 )
 from cosserat_casadi.result import Result
@@ -238,7 +238,17 @@ class Motion(Result):
         """
         if name not in self.model.actuator:
             raise KeyError(_unknown(name, "an actuator", "actuators", list(self.model.actuator)))
-        return actuator_states(self.model, name, self.x, self.inputs)
+        return states_of(self.model.actuator[name], self.x, self.inputs)
+
+    def joint(self, name: str) -> ActuatorStates:
+        """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m), each (T,).
+
+        Raises:
+            KeyError: no joint of that name has a spring, a damper, a motor or a drive.
+        """
+        if name not in self.model.joint:
+            raise KeyError(_unknown(name, "a joint with a coordinate", "joints", list(self.model.joint)))
+        return states_of(self.model.joint[name], self.x, self.inputs)
 
     def at(self, time: float) -> MotionState:
         """The state at any time of the motion, by the dense output of the steps.

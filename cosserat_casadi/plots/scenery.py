@@ -16,6 +16,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.floating_frames import UnloadedScene
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
@@ -40,7 +41,7 @@ FIXED: dict[str, Any] = {"marker": "s", "markersize": 7, "color": "0.35"}
 HINGE: dict[str, Any] = {"marker": "o", "markersize": 7, "color": "0.35"}
 BALL: dict[str, Any] = {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"}
 SLIDE: dict[str, Any] = {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"}
-"""Marks of joints, by the directions that they hold; rods that start on rods are fixed there."""
+"""Marks of joints, by the directions that they hold; rods that start on rods without a joint are fixed there."""
 
 TARGET_STYLE: dict[str, Any] = {
     "marker": "+",
@@ -65,11 +66,16 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
         if several:
             label = name
         canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
-        base_style = FIXED
-        if unloaded.floating_base(name) is None:
-            base_style = CLAMP
-        canvas.markers(deformed[:1], **base_style)
+        canvas.markers(deformed[:1], **_base_style(unloaded, name))
         _draw_section_axes(canvas, solution, name)
+
+
+def _base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
+    """Mark of a rod's base: of a joint there, of another rod, or of the clamp."""
+    for joint in unloaded.scene.joints:
+        if joint.rod == rod and joint.holds_base:
+            return _joint_style(JOINT_KINDS[joint.kind].directions(joint))
+    return CLAMP if unloaded.floating_base(rod) is None else FIXED
 
 
 def _draw_section_axes(canvas: Canvas, solution: Solution, name: str) -> None:

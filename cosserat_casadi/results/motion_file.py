@@ -106,6 +106,8 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
         data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
+    if model.joint:
+        data["joints"] = {name: _joint_entry(motion, name) for name in model.joint}
     if scene.obstacles:
         data["contact"] = _contact_entry(motion)
     data["energy"] = asdict(motion.energy)
@@ -185,6 +187,13 @@ def _actuator_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
     return {function.name_out(0): states.effort, function.name_out(1): states.conjugate}
 
 
+def _joint_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
+    """Effort and coordinate by the names of their keys, such as moment and angle."""
+    function = motion.model.joint[name]
+    states = motion.joint(name)
+    return {function.name_out(0): states.effort, function.name_out(1): states.conjugate}
+
+
 def _columns(motion: Motion) -> Iterator[Column]:
     model = motion.model
     yield "t", motion.times
@@ -201,6 +210,10 @@ def _columns(motion: Motion) -> Iterator[Column]:
     for actuator in model.scene.actuators:
         for quantity, values in _actuator_entry(motion, actuator.name).items():
             yield f"{actuator.name}.{quantity}", values
+    for name in model.joint:
+        for quantity, values in _joint_entry(motion, name).items():
+            if f"{name}.{quantity}" not in model.inputs.names:
+                yield f"{name}.{quantity}", values
     for energy, values in asdict(motion.energy).items():
         yield f"energy.{energy}", values
 

@@ -52,6 +52,8 @@ def result(solution: Solution) -> dict[str, Any]:
         data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
+    if solution.model.joint:
+        data["joints"] = {name: solution.joint(name) for name in solution.model.joint}
     if scene.obstacles:
         data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
     plain_data: dict[str, Any] = plain(data)

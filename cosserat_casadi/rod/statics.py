@@ -21,6 +21,7 @@ from cosserat_casadi.maths.numbers import (
     any_symbolic,
     as_matrix,
     is_symbolic,
+    is_zero,
     known,
     product,
     repeated,
@@ -126,6 +127,23 @@ class Statics:
         if covector is None:
             return ca.DM.zeros(3, 1)
         return -ca.sum2(covector)
+
+    @property
+    def held_force(self) -> Matrix:
+        """Force of what holds the base on the rod, base frame, 3×1, N: with that of a joint there."""
+        joints = [wrench.force for wrench in self._at_base if wrench.force is not None]
+        return sum(joints, self.base_force)
+
+    @property
+    def held_moment(self) -> Matrix:
+        """Moment of what holds the base on the rod, base frame, 3×1, N m: with that of a joint there."""
+        joints = [wrench.moment for wrench in self._at_base if wrench.moment is not None]
+        return sum(joints, self.base_moment)
+
+    @property
+    def _at_base(self) -> list[WrenchAt]:
+        """Wrenches on the base section, which pass through no other: those of a joint that holds the base."""
+        return [wrench for wrench in self.fixed_wrenches if isinstance(wrench, WrenchAt) and is_zero(wrench.at)]
 
     @cached_property
     def internal_force(self) -> Matrix:
@@ -245,7 +263,7 @@ class Statics:
             if isinstance(wrench, WrenchAt):
                 # The node at the tip side of a break does not carry what acts on the break.
                 loaded = grid.node_at(wrench.at)
-                before = (np.arange(grid.size) <= loaded).astype(float)
+                before = (np.arange(grid.size) <= loaded).astype(float) * (loaded > 0)
                 total = total + self._resultant(wrench, vector) @ ca.DM(before).T
             else:
                 to_tip = self.shape.rod.length * self._from_tip

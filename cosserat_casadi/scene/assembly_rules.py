@@ -81,7 +81,7 @@ def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
             continue
         section = (name, float(at))
         if section in holders:
-            where = "the tip" if at == TIP else f"X = {at:g}"
+            where = "the tip" if at == TIP else f"X = {at:g}" if at else "the base"
             problem = f"{holders[section]} holds {where} of {shown(name)} already"
             yield Fault(("joints", i, "rod"), problem, "one support or joint for each section: at = …")
         holders.setdefault(section, f"joints[{i}]")

@@ -13,11 +13,13 @@ from pydantic import AfterValidator, Discriminator, Field
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.input_fields import InputField
+from cosserat_casadi.scene.joint_ends import end_faults
+from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented, orientation_faults
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
 from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
-    ABOVE_BASE,
     SEVERAL,
     SINGLE,
     Direction,
@@ -27,10 +29,11 @@ from cosserat_casadi.scene.values import (
     Positive,
     Quadruple,
     Quaternion,
+    Share,
     Triple,
     Vector,
-    above_base,
     listed,
+    numbers_of,
 )
 
 # Supports
@@ -71,7 +74,7 @@ SUPPORTS: Family[SupportRecord] = Family("supports")
 
 
 @SUPPORTS.register
-class ClampedSupport(SupportRecord):
+class ClampedSupport(Oriented, SupportRecord):
     """Position and orientation of a tip are prescribed."""
 
     example: ClassVar[str] = """\
@@ -84,6 +87,12 @@ quaternion = [1, 0, 0, 0]
 
     kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
     quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from super().conflicts(given)
+        yield from orientation_faults(given)
 
     @property
     def orientation(self) -> Quadruple:
@@ -186,30 +195,120 @@ mass = 0.1
         return _matrix(self.inertia)
 
 
-class JointRecord(Entry):
-    """A joint, which joins a section of a rod to a body."""
+class JointEnd(Oriented):
+    """One end of a joint: a section of a rod, a place of a body, or a place in the world."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+kind = "spherical"
+between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 0.1] }]     # or world = true
+"""
+
+    rod: str | None = Field(None, description="name of a rod, whose section at X = at is jointed")
+    at: Share = Field(1.0, description="abscissa X of the section, without unit; 1 is the tip, 0 the base; with rod")
+    body: str | None = Field(None, description="name of a body, instead of a rod")
+    world: Literal[True] | None = Field(None, description="true for a place in the world, instead of a rod")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the body or in the world, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the other end in the body or in the world, of norm 1"
+    )
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from orientation_faults(given)
+
+
+class JointRecord(Oriented, Entry):
+    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names."""
 
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
-    body: str = Field(description="name of the body")
-    rod: str = Field(description="name of the rod that is jointed to it")
-    at: Annotated[
-        Number,
-        above_base("at its base a rod does not move: give an abscissa above it"),
-        ABOVE_BASE,
-    ] = Field(1.0, description="abscissa X of the jointed section, without unit, above 0 and at most 1; the tip")
-    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the axes of the body, m")
+    between: tuple[JointEnd, JointEnd] | None = Field(
+        None,
+        description='the two ends that are jointed, such as [{ rod = "upper" }, { rod = "lower", at = 0 }], in place '
+        "of rod, at and body; a quaternion beside it is the orientation of the second in the first",
+    )
+    body: str | None = Field(
+        None,
+        description="name of the body; left out, the joint is in the world, or at X = 0 where the base of the rod is, "
+        "in the world or on another rod",
+    )
+    rod: str = Field(description="name of the jointed rod")
+    at: Share = Field(1.0, description="abscissa X of the jointed section, without unit; 1 is the tip, 0 the base")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the body or in the world, m")
     quaternion: Quaternion = Field(
-        (1.0, 0.0, 0.0, 0.0), description="orientation of the section in the axes of the body, of norm 1"
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the section in the body or in the world, of norm 1"
     )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The place of a base is said by its rod, that of a joint in the world by the joint; an orientation once."""
+        yield from orientation_faults(given)
+        if "between" in given:
+            for fault in end_faults(given["between"]):
+                yield fault.below(("between",))
+            return
+        if "body" in given:
+            return
+        if given.get("at") == 0:
+            for key in ("position", *ORIENTATION_KEYS):
+                if key in given:
+                    problem = "stands in a joint at X = 0 without body"
+                    yield Fault((key,), problem, "give it to the base of the rod, which says where the joint is")
+        elif "position" not in given:
+            yield Fault(("position",), "missing", "name a body, or say where in the world the joint is, m")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """A base that a joint holds is not free, and starts at the section that carries it."""
+        name = given.get("rod")
+        _, rod = scene.named("rods").get(name if isinstance(name, str) else "", (0, {}))
+        base = rod.get("base")
+        if given.get("at") != 0 or not isinstance(base, Mapping):
+            return
+        if base.get("free") is True:
+            yield Fault(("at",), "holds a base that is free", "leave base.free out: the joint says what is free")
+        if "rod" in base and "body" in given:
+            yield Fault(("body",), f"the base of {shown(given['rod'])} is on another rod", "leave one of them out")
+        elif "rod" in base and any(numbers_of(base.get("position"))):
+            problem = f"the base of {shown(given['rod'])} is beside the section that carries it"
+            yield Fault(("at",), problem, "leave base.position out, or hold a body there by a fixed joint")
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """The base of a rod is jointed or not, whatever the parameters."""
+        if key == "at" and self.holds_base:
+            return "is the base of its rod", "only the place of a joint inside a rod can be a parameter"
+        return super().parameter_refusal(key)
+
+    @property
+    def holds_base(self) -> bool:
+        """Whether the jointed section is the base of its rod, which then floats."""
+        # An abscissa that is an expression of parameters is that of a section inside.
+        return isinstance(self.at, float) and self.at == 0.0
+
+    @property
+    def at_base(self) -> bool:
+        """Whether it holds the base of its rod to what the base names, the world or another rod."""
+        return self.body is None and self.holds_base
 
     @property
     def orientation(self) -> Quadruple:
         """Orientation of the section in the axes of the body, w, x, y, z."""
         return self.quaternion
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether something acts along a coordinate that the joint leaves free."""
+        return False
+
+    @property
+    def keeps_place(self) -> bool:
+        """Whether the joint, with what acts along it, leaves no motion free: a spring or a drive holds it."""
+        return False
 
 
 JOINTS: Family[JointRecord] = Family("joints")
@@ -230,6 +329,11 @@ position = [0.02, 0, 0]
 
     kind: Literal["fixed"] = Field(description="the section is clamped in the body")
 
+    @property
+    def keeps_place(self) -> bool:
+        """It does."""
+        return True
+
 
 @JOINTS.register
 class SphericalJoint(JointRecord):
@@ -246,46 +350,129 @@ position = [0.02, 0, 0]
     kind: Literal["spherical"] = Field(description="the section stays at a point of the body and turns freely")
 
 
+class AxisJoint(JointRecord):
+    """A joint that leaves one coordinate free, along which a spring, a damper, a motor or a drive may act.
+
+    Attributes:
+        coordinate_key: key that prescribes the coordinate.
+        effort_key: key of the motor that works on it.
+    """
+
+    coordinate_key: ClassVar[str]
+    effort_key: ClassVar[str]
+
+    axis: Direction = Field(
+        description="axis through the joint's position in the axes of the body, the world or the carrying section, "
+        "without unit; any length but zero"
+    )
+    if TYPE_CHECKING:
+        stiffness: float  # in the units of the kind, as the two that follow
+        rest: float
+        damping: float
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A drive says where the coordinate is: nothing else acts on it. Inputs have a name."""
+        yield from super().conflicts(given)
+        for key in (cls.effort_key, "stiffness", "rest", "damping"):
+            if cls.coordinate_key in given and key in given:
+                yield Fault((key,), f"stands beside {cls.coordinate_key}", "which is prescribed: leave one of them out")
+        if "rest" in given and "stiffness" not in given:
+            yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
+        if "name" not in given and (cls.coordinate_key in given or cls.effort_key in given):
+            yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
+
+    @classmethod
+    def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """A joint has the drive that its table gives it."""
+        if field not in given:
+            name = shown(given["name"])
+            yield Fault((), f"{name} has no {field}", f"give it one, such as {field} = 0.0")
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether a drive prescribes the coordinate."""
+        return getattr(self, self.coordinate_key) is not None
+
+    @property
+    def keeps_place(self) -> bool:
+        """Whether a spring or a drive holds the coordinate."""
+        # A stiffness that is an expression of parameters is one.
+        return self.prescribed or not (isinstance(self.stiffness, float) and self.stiffness == 0.0)
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether something acts along the coordinate."""
+        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping")
+        return any(getattr(self, key) is not None and key in self.model_fields_set for key in acting)
+
+
 @JOINTS.register
-class RevoluteJoint(JointRecord):
-    """A section of a rod stays at a point of a body and turns about one axis of the body."""
+class RevoluteJoint(AxisJoint):
+    """A section of a rod stays at a point of a body, the world or another rod and turns about one axis.
+
+    Its angle is counted from the orientation that the joint gives the section.
+    """
 
     example: ClassVar[str] = """\
 [[joints]]
+name = "hinge"
 rod = "finger"
 body = "platform"
 kind = "revolute"
 position = [0.02, 0, 0]
 axis = [0, 1, 0]
+stiffness = 0.3            # or angle = 0.0: a drive, as an input
+damping = 0.001
+moment = 0.0               # of a motor, an input
 """
 
-    kind: Literal["revolute"] = Field(description="the section stays at a point of the body and turns about one axis")
-    axis: Direction = Field(
-        description="axis that the section may turn about, through the joint's position, in the axes of the body, "
-        "without unit; any length but zero"
-    )
+    coordinate_key: ClassVar[str] = "angle"
+    effort_key: ClassVar[str] = "moment"
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "angle": InputField("rad", 1, continuous=True, nonlinear=True),
+        "moment": InputField("N m", 1),
+    }
+
+    kind: Literal["revolute"] = Field(description="the section stays at a point and turns about one axis")
+    stiffness: NotNegative = Field(0.0, description="moment of a spring by its angle, N m/rad")
+    rest: Number = Field(0.0, description="angle at which the spring is unloaded, rad")
+    damping: NotNegative = Field(0.0, description="moment by the rate of the angle, in motion, N m s/rad")
+    angle: Number | None = Field(None, description="angle of a drive, which prescribes it, rad; any number of turns")
+    moment: Number | None = Field(None, description="moment of a motor on the section about the axis, N m")
 
 
 @JOINTS.register
-class PrismaticJoint(JointRecord):
-    """A section of a rod slides along one axis of a body and does not turn in it."""
+class PrismaticJoint(AxisJoint):
+    """A section of a rod slides along one axis of a body, the world or another rod and does not turn.
+
+    Its displacement is counted from the position that the joint gives the section.
+    """
 
     example: ClassVar[str] = """\
 [[joints]]
+name = "slide"
 rod = "finger"
 body = "platform"
 kind = "prismatic"
 position = [0.02, 0, 0]
 axis = [1, 0, 0]
+displacement = 0.0         # of a drive, an input; or stiffness, rest, damping and force
 """
 
-    kind: Literal["prismatic"] = Field(
-        description="the section slides along one axis of the body and does not turn in it"
-    )
-    axis: Direction = Field(
-        description="axis that the section may slide along, through the joint's position, in the axes of the body, "
-        "without unit; any length but zero"
-    )
+    coordinate_key: ClassVar[str] = "displacement"
+    effort_key: ClassVar[str] = "force"
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "displacement": InputField("m", 1, continuous=True, nonlinear=True),
+        "force": InputField("N", 1),
+    }
+
+    kind: Literal["prismatic"] = Field(description="the section slides along one axis and does not turn")
+    stiffness: NotNegative = Field(0.0, description="force of a spring by its displacement, N/m")
+    rest: Number = Field(0.0, description="displacement at which the spring is unloaded, m")
+    damping: NotNegative = Field(0.0, description="force by the speed of the slide, in motion, N s/m")
+    displacement: Number | None = Field(None, description="displacement of a drive, which prescribes it, m")
+    force: Number | None = Field(None, description="force of a motor on the section along the axis, N")
 
 
 # The type checker knows the kinds that ship; a scene may hold any that is registered.

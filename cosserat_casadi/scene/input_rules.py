@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
+from cosserat_casadi.scene.constraint_records import JOINTS
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
@@ -79,10 +80,10 @@ def owners_of(scene: SceneTables) -> Owners:
 
 
 def _causes(scene: SceneTables) -> Owners:
-    """Actuators and loads by name, with the record where the kind is known."""
+    """Joints, actuators and loads by name, with the record where the kind is known."""
     causes: Owners = {}
     # A load hides an actuator of the same name; that they share it is a fault of its own.
-    for family in (ACTUATORS, LOADS):
+    for family in (JOINTS, ACTUATORS, LOADS):
         for name, (_, table) in scene.named(family.table).items():
             causes[name] = (family.record_of(table), table)
     return causes

@@ -16,6 +16,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.disk_record import lead_through_disks
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
+from cosserat_casadi.scene.joint_ends import place_joints_by_their_ends
 from cosserat_casadi.scene.messages import problem_of, problems_of
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
 from cosserat_casadi.scene.records import keys_of
@@ -144,6 +145,7 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     if faults:
         raise SceneError(*problems, *(problem_of(fault, applied) for fault in faults))
     _locate_files(tables, folder)
+    place_joints_by_their_ends(tables)
     lead_through_disks(tables)
     make_room_for_waves(tables)
     try:

@@ -96,6 +96,11 @@ class Record(BaseModel):
         """Faults of keys against each other, in a table whose values may be faulty too."""
         yield from ()
 
+    @classmethod
+    def settled(cls, given: Table) -> Table:
+        """A table as its fields take it; what can be written in several ways is written in one."""
+        return given
+
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
         """Why the numbers of a key cannot be a parameter, and what to do instead; None where they can."""
         return None
@@ -108,7 +113,7 @@ class Record(BaseModel):
             faults = list(cls.conflicts(_as_given(given)))
         # The rules go first but do not stop pydantic: its faults and theirs are reported together.
         try:
-            record = handler(given)
+            record = handler(cls.settled(given) if isinstance(given, Mapping) else given)
         except ValidationError as error:
             raise restated(error, faults=faults) from None
         if faults:

@@ -16,6 +16,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import ElasticMaterial
+from cosserat_casadi.scene.orientations import Oriented, orientation_faults
 from cosserat_casadi.scene.profiles import ends_of
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import (
@@ -23,7 +24,6 @@ from cosserat_casadi.scene.values import (
     BY_LENGTH,
     SEVERAL,
     SINGLE,
-    Direction,
     Name,
     NotEmpty,
     NotNegative,
@@ -234,7 +234,7 @@ intrinsic = { curvature = [0, { base = 4.0, tip = 6.0 }, 0] }     # bent about y
     )
 
 
-class Base(Record):
+class Base(Oriented):
     """Pose of the section X = 0, in the world or in a section of another rod."""
 
     example: ClassVar[str] = """\
@@ -253,10 +253,6 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
     quaternion: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="orientation of the base w, x, y, z, of norm 1, without unit"
     )
-    tangent: Direction | None = Field(
-        None,
-        description="direction of the base's z axis, without unit; the shortest rotation of z, instead of quaternion",
-    )
     free: StrictBool = Field(
         False, description="whether nothing holds the base in motion: the rod starts at this pose, free in space"
     )
@@ -264,12 +260,16 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The tangent is an orientation already; a section has a rod; what a rod carries is not free."""
-        if "tangent" in given and "quaternion" in given:
-            yield Fault(("tangent",), "stands beside quaternion", "give one of the two")
+        yield from orientation_faults(given)
         if "at" in given and "rod" not in given:
             yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
         if given.get("free") is True and "rod" in given:
             yield Fault(("free",), "stands beside rod", "a base that a rod carries is not free: leave one of them out")
+
+    @classmethod
+    def settled(cls, given: Table) -> Table:
+        """A tangent without a twist is kept."""
+        return given if given.get("tangent") is not None and "twist" not in given else super().settled(given)
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
         """An orientation is a parameter as a quaternion."""
@@ -389,7 +389,8 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         elif isinstance(base, Mapping) and base.get("free") is True:
             yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
-        held = any(table.get("rod") == name for _, table in holding)
+        # A joint at the base moves with it.
+        held = any(table.get("rod") == name and table.get("at") != 0 for _, table in holding)
         admitted = set(admitted_strains(given.get("strain")))
         # Constraints of a rod in a plane are those in its plane: out of it they would be too few.
         if held and admitted <= IN_PLANE:

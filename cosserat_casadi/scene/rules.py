@@ -117,14 +117,18 @@ def repeated_names(scene: SceneTables) -> Iterator[Fault]:
 
 
 def shared_names(scene: SceneTables) -> Iterator[Fault]:
-    """A load and an actuator have one name: their inputs could not be told apart."""
-    loads = scene.named("loads")
-    for i, table in scene.tables("actuators"):
-        name = table.get("name")
-        if isinstance(name, str) and name in loads:
-            load, _ = loads[name]
-            problem = f"{shown(name)} is already the name of loads[{load}]"
-            yield Fault(("actuators", i, "name"), problem)
+    """A load, an actuator and a joint have one name: their inputs could not be told apart."""
+    taken: dict[str, str] = {name: f"loads[{i}]" for name, (i, _) in scene.named("loads").items()}
+    for key in ("actuators", "joints"):
+        for i, table in scene.tables(key):
+            name = table.get("name")
+            # A joint without drive and motor has no input.
+            record = JOINTS.record_of(table) if key == "joints" else None
+            if record is not None and not any(field in table for field in record.inputs):
+                continue
+            if isinstance(name, str) and name in taken:
+                yield Fault((key, i, "name"), f"{shown(name)} is already the name of {taken[name]}")
+        taken.update({name: f"{key}[{i}]" for name, (i, _) in scene.named(key).items()})
 
 
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:

@@ -24,7 +24,7 @@ from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, Nam
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
 from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import scene_faults
-from cosserat_casadi.scene.simulation import Simulation
+from cosserat_casadi.scene.simulation import TOLERANCE, Simulation
 from cosserat_casadi.scene.target_records import Bound, Target
 from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
@@ -43,19 +43,19 @@ class FreeInput:
     """A field of one of the scene's tables that stays free at run time.
 
     Attributes:
-        record: the rod, tube, load or actuator that it belongs to.
+        record: the rod, tube, load, actuator or joint that it belongs to.
         field: its name in that record, with dots where it is in an inner table.
         declared: what the record says of it: unit, components, axes.
     """
 
-    record: Rod | Tube | Load | Actuator
+    record: Rod | Tube | Load | Actuator | Joint
     field: str
     declared: InputField
 
     @property
     def owner(self) -> str:
-        """Name of the rod, tube, load or actuator."""
-        return self.record.name
+        """Name of the rod, tube, load, actuator or joint."""
+        return self.record.name or ""
 
     @property
     def name(self) -> str:
@@ -125,6 +125,11 @@ inputs = ["push.force", "cable.tension"]
         """Loads, then actuators: all that may have an input."""
         return (*self.loads, *self.actuators)
 
+    @property
+    def input_owners(self) -> tuple[Load | Actuator | Joint, ...]:
+        """Loads and actuators, then joints with a name: all but rods and tubes that may have an input."""
+        return (*self.causes, *(joint for joint in self.joints if joint.name is not None))
+
     def free_inputs(self) -> tuple[FreeInput, ...]:
         """Inputs that stay free at run time: the listed ones, or else every magnitude of the scene.
 
@@ -138,7 +143,7 @@ inputs = ["push.force", "cable.tension"]
         of_tubes = [FreeInput(tube, *entry) for tube in self.tubes for entry in tube.inputs.items()]
         magnitudes = [
             FreeInput(record, field, declared)
-            for record in self.causes
+            for record in self.input_owners
             for field, declared in record.inputs.items()
             if field in record.model_fields_set and not declared.on_request
         ]
@@ -189,6 +194,21 @@ inputs = ["push.force", "cable.tension"]
         return {holder.rod for holder in (*self.supports, *joints)}
 
     @property
+    def joints_with_coordinate(self) -> tuple[Joint, ...]:
+        """Joints with a name that a spring, a damper, a motor or a drive acts along."""
+        return tuple(joint for joint in self.joints if joint.has_coordinate and joint.name is not None)
+
+    @property
+    def base_joints(self) -> dict[str, int]:
+        """Place in the list of the joint that holds the base of a rod, for each rod with one without a body."""
+        return {joint.rod: index for index, joint in enumerate(self.joints) if joint.at_base}
+
+    @property
+    def jointed_bases(self) -> set[str]:
+        """Names of the rods whose bases joints hold, be it to bodies: they float."""
+        return {joint.rod for joint in self.joints if joint.holds_base}
+
+    @property
     def touches_exactly(self) -> bool:
         """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)
@@ -202,9 +222,26 @@ inputs = ["push.force", "cable.tension"]
     @property
     def motion_tolerance(self) -> float:
         """Wanted error of the paths of tips relative to the rod length: the simulation's, or else the scene's."""
-        if self.simulation is None or self.simulation.tolerance is None:
-            return self.accuracy.tolerance
-        return self.simulation.tolerance
+        if self.simulation is not None and self.simulation.tolerance is not None:
+            return self.simulation.tolerance
+        return self.accuracy.tolerance if "tolerance" in self.accuracy.model_fields_set else TOLERANCE
+
+    @property
+    def starts_unloaded(self) -> bool:
+        """Whether its motion begins in the unloaded shape: by its word, or, without one, as something in it swings."""
+        if self.simulation is None or self.simulation.start is None:
+            return any(rod.base.free for rod in self.rods) or any(self._swings(joint) for joint in self.joints)
+        return self.simulation.start == "unloaded"
+
+    def _swings(self, joint: Joint) -> bool:
+        """Whether a joint at a base lets its rod, and all rods on it, move without straining any."""
+        if not joint.holds_base or joint.keeps_place:
+            return False
+        moved = {joint.rod}
+        while more := {rod.name for rod in self.rods if rod.base.rod in moved} - moved:
+            moved |= more
+        holders = (*self.supports, *(other for other in self.joints if not other.holds_base))
+        return not any(holder.rod in moved for holder in holders)
 
     def with_motion_inputs(self) -> Scene:
         """The scene in which the inputs that its motions move are free as well, behind its free inputs."""
@@ -220,7 +257,7 @@ inputs = ["push.force", "cable.tension"]
         names = [name for measurement in self.measurements for name in measurement.set_inputs]
         names += [unknown.input for unknown in self.unknowns if unknown.input is not None]
         # The same owners as in the rules: inputs of a load or an actuator hide those of a rod of the same name.
-        owners = {record.name: record for record in (*self.rods, *self.causes)}
+        owners = {record.name: record for record in (*self.rods, *self.input_owners)}
         fields = []
         for name in names:
             owner, _, rest = name.partition(".")
@@ -258,9 +295,9 @@ inputs = ["push.force", "cable.tension"]
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
         # The rules have seen to it that every listed input has its owner and is one of its fields.
-        records: dict[str, Rod | Load | Actuator] = {rod.name: rod for rod in self.rods}
-        # Inputs of a load or an actuator hide those of a rod of the same name.
-        for cause in self.causes:
+        records: dict[str | None, Rod | Load | Actuator | Joint] = {rod.name: rod for rod in self.rods}
+        # Inputs of a load, an actuator or a joint hide those of a rod of the same name.
+        for cause in self.input_owners:
             records[cause.name] = cause
         record = records[owner]
         return FreeInput(record, field, record.inputs[field])

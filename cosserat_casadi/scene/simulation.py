@@ -13,6 +13,9 @@ from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing, numbers_of
 
+TOLERANCE = 1e-3
+"""Error of the paths of tips, relative to the rod length, where the scene asks for none: that of a film."""
+
 FRAMES = 101
 """Rows of a result where the scene says neither how many nor when."""
 
@@ -34,15 +37,16 @@ start = "unloaded"
     times: Annotated[tuple[NotNegative, ...], NotEmpty()] | None = Field(
         None, description="times of the rows of the result, increasing, within the duration, s; instead of frames"
     )
-    start: Literal["equilibrium", "unloaded"] = Field(
-        "equilibrium",
+    start: Literal["equilibrium", "unloaded"] | None = Field(
+        None,
         description="how it begins, at rest: in the static equilibrium of the inputs at t = 0, or in the unloaded "
-        "shape",
+        "shape; left out, it is 'unloaded' where a base is free or hangs on a joint that it moves in, else "
+        "'equilibrium'",
     )
     tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] | None = Field(
         None,
         description="wanted error of the paths of tips, relative to the rod length, without unit; that of [accuracy] "
-        "when left out",
+        "when left out, or 1e-3 where that is left out too",
     )
     step: Positive | None = Field(
         None, description="time step that is kept to, s; its error is estimated, not controlled; chosen when left out"

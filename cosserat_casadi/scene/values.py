@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any
@@ -30,6 +31,11 @@ ROUNDING = 1e-15
 
 NORM_SLACK = 1e-6
 """Distance of a quaternion's norm from 1 that is put down to rounding in the file."""
+
+ROUNDED = 1e-3
+"""Distance up to which a quaternion is taken for one with few digits: it is brought to norm 1, with a note."""
+
+LOG = logging.getLogger(__name__)
 
 Quadruple = tuple[float, float, float, float]
 Triple = tuple[float, float, float]
@@ -174,9 +180,11 @@ def _range_faults(error: ValidationError, written: Profile, stored: Profile) -> 
 def _unit_quaternion(value: Quadruple) -> Quadruple:
     norm = math.hypot(*value)
     # Far from 1 it is a mistake, such as another order of the four numbers; near 1 it is rounding, and is mended.
-    if abs(norm - 1.0) > NORM_SLACK:
+    if abs(norm - 1.0) > ROUNDED:
         problem = f"must have norm 1, got norm {norm:.9g}"
         raise refusal([Fault((), problem, "divide it by its norm; order w, x, y, z")])
+    if abs(norm - 1.0) > NORM_SLACK:
+        LOG.warning("the quaternion %s has norm %.6g and is divided by it", list(value), norm)
     if abs(norm - 1.0) <= ROUNDING:
         return value
     w, x, y, z = value

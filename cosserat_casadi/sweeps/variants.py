@@ -196,7 +196,7 @@ def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
 
 def _possible_inputs(scene: Scene) -> list[str]:
     """Names of all that the records of a scene say may stay free."""
-    return [f"{record.name}.{field}" for record in (*scene.causes, *scene.rods) for field in record.inputs]
+    return [f"{record.name}.{field}" for record in (*scene.input_owners, *scene.rods) for field in record.inputs]
 
 
 def _input_of_column(column: str, possible: Sequence[str]) -> str | None:

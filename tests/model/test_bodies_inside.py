@@ -96,7 +96,7 @@ def test_the_place_of_a_joint_as_a_parameter() -> None:
 @pytest.mark.parametrize(
     ("places", "where", "problem"),
     [
-        ([0.0, 1.0], "joints[0].at", "must be > 0 and <= 1, got 0.0"),
+        ([-0.1, 1.0], "joints[0].at", "must be >= 0, got -0.1"),
         ([0.5, 0.5], "joints[1].rod", "joints[0] holds X = 0.5 of 'a' already"),
     ],
 )
@@ -104,3 +104,27 @@ def test_refusals(places: list[float], where: str, problem: str) -> None:
     with pytest.raises(SceneError) as refused:
         whole(places)
     assert [(one.where, one.problem) for one in refused.value.problems] == [(where, problem)]
+
+
+def test_a_body_at_the_tip_of_a_rod_that_is_wound_up_is_reached_as_the_rod_is() -> None:
+    """A tendon of 40 N turns the tip more than three times: the body goes with it, and weighs next to nothing there."""
+    rod = {
+        "name": "rod",
+        "length": 0.2,
+        "strain": "kirchhoff",
+        "material": {"youngs_modulus": 2e9, "poisson_ratio": 0.4, "density": 1100.0},
+        "section": {"shape": "circle", "radius": 1e-3},
+    }
+    tables = {
+        "schema": 1,
+        "accuracy": {"modes": 8, "nodes": 30},
+        "rods": [rod],
+        "loads": [{"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}],
+        "actuators": [{"name": "cable", "kind": "tendon", "rod": "rod", "tension": 40.0, "offset": [4e-3, 0.0]}],
+    }
+    alone = solve(build(scene_from_dict(tables)))
+    body = {"bodies": [{"name": "load", "mass": 0.02}], "joints": [{"rod": "rod", "body": "load", "kind": "fixed"}]}
+    loaded = solve(build(scene_from_dict({**tables, **body})))
+    assert loaded.converged and loaded.stable, loaded.message
+    assert_allclose(loaded.tip().position, alone.tip().position, rtol=0, atol=1e-3)
+    assert_allclose(loaded.base_wrench().force[2] - alone.base_wrench().force[2], 0.02 * 9.81, rtol=1e-9, atol=0)

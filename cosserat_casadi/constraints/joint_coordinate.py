@@ -1,0 +1,76 @@
+"""The coordinate that a joint leaves free: the angle of a hinge, the displacement of a slide.
+
+Where something acts along it, a spring, a damper, a motor or a drive, the joint holds its section in all directions at
+a pose that the coordinate moves. A drive prescribes the coordinate. Else it is an unknown q, whose equation is
+λ + V'(q) = 0 with the multiplier λ along the free direction, V the energy of spring and motor. As an unknown it counts
+turns: no function of the poses alone tells an angle from the same angle a turn further.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.constraints.held_directions import ALL, FLAT, across
+from cosserat_casadi.constraints.section_constraint import Coordinate, HeldDirections
+from cosserat_casadi.maths.numbers import Scalar, is_zero
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+
+def held_along(coordinate: Coordinate, normal: FloatArray | None) -> HeldDirections:
+    """All directions that a section can move in, that of a coordinate last among displacements or rotations.
+
+    Args:
+        coordinate: in the axes of the section.
+        normal: of the plane that the section moves in, in its axes, shape (3,); None where it moves in space.
+    """
+    axis = coordinate.axis
+    if normal is None:
+        around = np.column_stack([across(axis.tolist(), ALL), axis])
+        return HeldDirections(around, around, turn_with_pose=True)
+    if coordinate.turns:
+        return HeldDirections(across(axis.tolist(), ALL), axis[:, None], turn_with_pose=True)
+    in_plane = np.column_stack([np.cross(normal, axis), axis])
+    return HeldDirections(in_plane, normal[:, None], turn_with_pose=True)
+
+
+def moves_in_plane(coordinate: Coordinate, normal: FloatArray) -> bool:
+    """Whether a coordinate leaves its section in a plane: a turn about the normal, or a slide across it."""
+    if coordinate.turns:
+        return bool(np.linalg.norm(np.cross(coordinate.axis, normal)) <= FLAT)
+    return abs(float(coordinate.axis @ normal)) <= FLAT
+
+
+@dataclass(frozen=True)
+class JointEffort:
+    """Spring, damper and motor of a joint, in N m and rad or in N and m.
+
+    Attributes:
+        stiffness: by unit of the coordinate.
+        rest: coordinate at which the spring is unloaded.
+        damping: by unit of its rate.
+        motor: effort of the motor, 1×1.
+    """
+
+    stiffness: Scalar
+    rest: Scalar
+    damping: Scalar
+    motor: Matrix
+
+    def slope(self, value: Matrix) -> Matrix:
+        """V'(q), 1×1."""
+        spring: Matrix = ca.DM(1, 1)
+        if not is_zero(self.stiffness):
+            spring = self.stiffness * (value - self.rest)
+        return spring - self.motor
+
+    def spring_energy(self, value: Matrix) -> Matrix:
+        """Energy of the spring, 1×1, J."""
+        return self.stiffness / 2 * (value - self.rest) ** 2
+
+
+def unit_vector(axis: FloatArray) -> FloatArray:
+    """A vector over its length."""
+    return np.asarray(axis / np.linalg.norm(axis))

@@ -1,0 +1,93 @@
+"""Joints written by their two ends, ``between``: put as joints at a body, in the world or at a base."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.orientations import ORIENTATION_KEYS
+
+PLACE = ("position", *ORIENTATION_KEYS)
+"""Keys of an end in a body or in the world that say where the joint is."""
+
+Tables = dict[str, Any]
+
+
+def place_joints_by_their_ends(tables: Tables) -> None:
+    """Write joints that name two ends as joints of one section.
+
+    The base of a rod at a section of another rod, or in the world, is placed there. Between two sections that are no
+    bases stands a body without mass, fixed to the first. What cannot be read so is left for the records to refuse.
+    """
+    given = SceneTables(tables)
+    joints: list[tuple[int, Any]] = list(given.tables("joints"))
+    for index, joint in joints:
+        ends = joint.get("between")
+        if not isinstance(ends, list) or list(end_faults(ends)):
+            continue
+        rods = [end for end in ends if "rod" in end]
+        if len(rods) == 1:
+            (other,) = [end for end in ends if "rod" not in end]
+            written = _at_place(tables, joint, rods[0], other)
+        else:
+            written = _between_rods(tables, joint, rods, index)
+        if written:
+            del joint["between"]
+
+
+def end_faults(ends: Any) -> Iterator[Fault]:
+    """Why two ends make no joint, without path; nothing where they are no two tables, which is another fault."""
+    if not isinstance(ends, list) or len(ends) != 2 or not all(isinstance(end, Mapping) for end in ends):
+        return
+    rods = [end for end in ends if "rod" in end]
+    if not rods:
+        yield Fault((), "joins no rod", "one end at least is a section of a rod: { rod = …, at = … }")
+    elif len(rods) == 2 and all(_at(end) == 0 for end in rods):
+        yield Fault((), "joins two bases", "start one of the rods from its other end")
+    for end in ends:
+        if sum(key in end for key in ("rod", "body", "world")) != 1:
+            yield Fault((), "has an end that is not of one thing", "each end has one of rod, body and world = true")
+
+
+def _at(end: Table) -> Any:
+    return end.get("at", 1.0)
+
+
+def _at_place(tables: Tables, joint: Tables, section: Table, other: Table) -> bool:
+    """A section of a rod at a body or in the world."""
+    joint["rod"] = section["rod"]
+    joint["at"] = _at(section)
+    place = {key: other[key] for key in PLACE if key in other}
+    if "body" in other:
+        joint["body"] = other["body"]
+    elif _at(section) == 0:
+        return _put_base(tables, section["rod"], place)
+    joint.update(place)
+    return True
+
+
+def _between_rods(tables: Tables, joint: Tables, sections: list[Table], index: int) -> bool:
+    """A section of a rod at that of another: the base of one is put there, or a body holds both."""
+    first, second = sections if _at(sections[0]) != 0 else sections[::-1]
+    joint["rod"] = second["rod"]
+    joint["at"] = _at(second)
+    if _at(second) == 0:
+        place = {key: joint.pop(key) for key in PLACE if key in joint}
+        return _put_base(tables, second["rod"], {"rod": first["rod"], "at": _at(first), **place})
+    joint["body"] = joint.get("name", f"joint_{index}")
+    tables.setdefault("bodies", []).append({"name": joint["body"]})
+    tables["joints"].append({"kind": "fixed", "body": joint["body"], "rod": first["rod"], "at": _at(first)})
+    return True
+
+
+def _put_base(tables: Tables, name: Any, place: Tables) -> bool:
+    """Put the base of a rod at a place; whether there is such a rod."""
+    if not isinstance(name, str) or name not in SceneTables(tables).named("rods"):
+        return False
+    rod: Any = SceneTables(tables).named("rods")[name][1]
+    base = rod.setdefault("base", {})
+    if not isinstance(base, dict):
+        return False
+    base.update(place)
+    return True

@@ -1,0 +1,117 @@
+"""Orientations as scenes write them: a quaternion, a tangent with a twist, a rotation vector, or angles about axes.
+
+The record of a table that has an orientation keeps it as its quaternion, whichever way it is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from cosserat_casadi.maths.rotation import quaternion_from_tangent, quaternion_product
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.records import Record, refusal, sound
+from cosserat_casadi.scene.values import Direction, Number, Vector
+
+WAYS = ("tangent", "rotation_vector", "euler")
+"""Keys that say an orientation in place of a quaternion."""
+
+ORIENTATION_KEYS = ("quaternion", "twist", *WAYS)
+"""All keys of an orientation."""
+
+
+def _three_axes(value: str) -> str:
+    """Refuse what names no three axes."""
+    if len(value) == 3 and (set(value) <= set("xyz") or set(value) <= set("XYZ")):
+        return value
+    raise refusal(
+        [Fault((), f"must name three axes, got {shown(value)}", "such as 'xyz', or 'ZYX' for axes that turn")]
+    )
+
+
+class Euler(Record):
+    """Turns about three axes, one after another."""
+
+    example: ClassVar[str] = """\
+base = { euler = { sequence = "xyz", angles = [0.1, 0, 1.57] } }     # "XYZ": about axes that turn along
+"""
+
+    sequence: Annotated[str, AfterValidator(_three_axes)] = Field(
+        description="axes of the turns in their order: 'xyz' those that stand still, 'XYZ' those that turn along"
+    )
+    angles: Vector = Field(description="angles of the turns in their order, rad")
+
+    @property
+    def quaternion(self) -> FloatArray:
+        """The orientation as a quaternion, shape (4,)."""
+        turns = [_about(np.eye(3)["xyz".index(axis.lower())] * angle) for axis, angle in self._turns]
+        first, second, third = turns if self.sequence.isupper() else turns[::-1]
+        return np.asarray(quaternion_product(quaternion_product(first, second), third))
+
+    @property
+    def _turns(self) -> list[tuple[str, float]]:
+        return list(zip(self.sequence, self.angles, strict=True))
+
+
+class Oriented(Record):
+    """A table with an orientation: its quaternion, or another way to say it, which the record keeps as that."""
+
+    tangent: Direction | None = Field(
+        None, description="direction of the z axis, without unit; the shortest rotation of z, instead of quaternion"
+    )
+    twist: Number | None = Field(None, description="angle about that direction, rad; with tangent")
+    rotation_vector: Vector | None = Field(
+        None, description="axis of a rotation times its angle, rad; instead of quaternion"
+    )
+    euler: Euler | None = Field(None, description="turns about three axes; instead of quaternion")
+
+    @classmethod
+    def settled(cls, given: Table) -> Table:
+        """The table with a quaternion in place of what says it; as it is where that is faulty."""
+        written = {key: given[key] for key in ("twist", *WAYS) if given.get(key) is not None}
+        if not written or list(orientation_faults(given)):
+            return given
+        alternative = sound(_Ways, written)
+        if alternative is None:
+            return given
+        rest = {key: value for key, value in given.items() if key not in written}
+        return {**rest, "quaternion": alternative.as_quaternion.tolist()}
+
+
+class _Ways(Record):
+    """The keys that say an orientation in place of a quaternion, alone."""
+
+    tangent: Direction | None = None
+    twist: Number = 0.0
+    rotation_vector: Vector | None = None
+    euler: Euler | None = None
+
+    @property
+    def as_quaternion(self) -> FloatArray:
+        """The orientation, shape (4,)."""
+        if self.tangent is not None:
+            return np.asarray(
+                quaternion_product(quaternion_from_tangent(self.tangent), _about(np.array([0.0, 0.0, self.twist])))
+            )
+        if self.euler is not None:
+            return self.euler.quaternion
+        return _about(np.asarray(self.rotation_vector))
+
+
+def orientation_faults(given: Table) -> Iterator[Fault]:
+    """An orientation is given once; a twist belongs to a tangent."""
+    ways = [key for key in ("quaternion", *WAYS) if given.get(key) is not None]
+    for key in ways[1:]:
+        yield Fault((key,), f"stands beside {ways[0]}", "give one of the two")
+    if given.get("twist") is not None and "tangent" not in ways:
+        yield Fault(("twist",), "stands without tangent", "it is the angle about that direction")
+
+
+def _about(vector: FloatArray) -> FloatArray:
+    """Quaternion of a rotation vector, rad, shape (4,)."""
+    half = float(np.linalg.norm(vector)) / 2
+    return np.concatenate([[np.cos(half)], np.sinc(half / np.pi) / 2 * vector])

@@ -1,0 +1,130 @@
+"""Joints at the bases of rods, between rods, and between sections and the world."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, solve
+
+LENGTH = 0.5
+GRAVITY = 9.81
+WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -GRAVITY]}
+DOWN = {"position": [0, 0, 1], "tangent": [0.3, 0, -1]}
+WORLD = {"world": True, "position": [0.0, 0.0, 1.0]}
+
+
+def link(name: str, modulus: float = 2e9, **changes: Any) -> dict[str, Any]:
+    return {
+        "name": name,
+        "length": LENGTH,
+        "strain": "planar",
+        "material": {"youngs_modulus": modulus, "poisson_ratio": 0.4, "density": 1100.0},
+        "section": {"shape": "circle", "radius": 5e-3},
+        **changes,
+    }
+
+
+def hinge(rod: str = "a", **changes: Any) -> dict[str, Any]:
+    return {"rod": rod, "at": 0.0, "kind": "revolute", "axis": [0, 1, 0], **changes}
+
+
+def ends(first: Any, second: Any, **changes: Any) -> dict[str, Any]:
+    return {"kind": "revolute", "axis": [0, 1, 0], "between": [first, second], **changes}
+
+
+def scene(rods: list[Any], joints: list[Any], **changes: Any) -> dict[str, Any]:
+    accuracy = {"modes": 4, "nodes": 8}
+    return {"schema": 1, "accuracy": accuracy, "rods": rods, "joints": joints, "loads": [WEIGHT], **changes}
+
+
+TWO = scene([link("a", base=DOWN), link("b")], [hinge(), ends({"rod": "a"}, {"rod": "b", "at": 0.0})])
+TWO_LINKS = scene_from_dict({**TWO, "inputs": ["a.base.position"]})
+ON_A_BODY = scene(
+    [link("a", strain="kirchhoff", base=DOWN), link("b", strain="kirchhoff")],
+    [{"rod": "a", "body": "p", "kind": "fixed"}, hinge("b", body="p", position=[0.01, 0, 0.02])],
+    bodies=[{"name": "p", "mass": 0.02}],
+)
+SLIDING = scene([link("a", strain="reissner", base=DOWN)], [hinge(kind="prismatic", axis=[0.2, 1, 0.4])])
+
+
+@pytest.mark.parametrize("tables", [TWO, ON_A_BODY, SLIDING])
+def test_jacobian_vs_ad(tables: dict[str, Any]) -> None:
+    model = build(scene_from_dict(tables))
+    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
+    symbol = ca.MX.sym("x", model.size)
+    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
+    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+
+
+def test_chain_of_two_hangs_straight_and_each_joint_bears_what_hangs_from_it() -> None:
+    solution = solve(build(TWO_LINKS))
+    assert solution.converged and solution.stable
+    weight = 1100.0 * np.pi * 5e-3**2 * LENGTH * GRAVITY
+    assert_allclose(solution.tip("b").position[0], [0, 0, 0], rtol=0, atol=1e-9)
+    assert_allclose(solution.base_wrench("a").force, [0, 0, 2 * weight], rtol=0, atol=1e-9)
+    assert_allclose(solution.base_wrench("b").force, [0, 0, weight], rtol=0, atol=1e-9)
+    # Inside the rod the hinge is no load: what it bears passes the first section.
+    assert_allclose(np.linalg.norm(solution.internal_wrench([0.0], "b")[0][3:]), weight, rtol=1e-9, atol=0)
+
+
+def test_fixed_joint_at_a_base_is_a_clamp() -> None:
+    clamped = solve(build(scene_from_dict(scene([link("a", base=DOWN)], []))))
+    fixed = solve(build(scene_from_dict(scene([link("a", base=DOWN)], [{"rod": "a", "at": 0.0, "kind": "fixed"}]))))
+    assert_allclose(fixed.tip().position, clamped.tip().position, rtol=0, atol=1e-12)
+    assert_allclose(fixed.base_wrench().moment, clamped.base_wrench().moment, rtol=0, atol=1e-10)
+
+
+def test_beam_on_two_supports() -> None:
+    """A hinge at the base and a ball at X = 0.8, from moments about the ball and about the hinge."""
+    beam = link("a", base={"tangent": [1, 0, 0]})
+    ball = {"rod": "a", "at": 0.8, "kind": "spherical", "position": [0.8 * LENGTH, 0, 0]}
+    solution = solve(build(scene_from_dict(scene([beam], [hinge(), ball]))))
+    weight = 1100.0 * np.pi * 5e-3**2 * LENGTH * GRAVITY
+    assert_allclose(solution.base_wrench().force[2], weight * (1 - 0.5 / 0.8), rtol=1e-4, atol=0)
+    assert_allclose(solution.base_wrench().moment[1], 0.0, rtol=0, atol=1e-5)
+
+
+def test_frequency_of_a_rigid_pendulum() -> None:
+    """Of a rod that hardly bends: ω² = m g l/2 over m (l²/3 + r²/4)."""
+    rod = link("a", modulus=2e12, base={"tangent": [0, 0, -1]})
+    first = modes_of(scene_from_dict(scene([rod], [hinge()]))).modes[0]
+    squared = GRAVITY * LENGTH / 2 / (LENGTH**2 / 3 + 5e-3**2 / 4)
+    assert_allclose(2 * np.pi * first.frequency, np.sqrt(squared), rtol=1e-6, atol=0)
+
+
+def test_two_sections_that_are_no_bases_meet() -> None:
+    right = link("b", strain="kirchhoff", base={"position": [0.5, 0, 0.2], "tangent": [-1, 0, 0.6]})
+    model: Model = build(scene_from_dict(scene([link("a"), right], [ends({"rod": "a"}, {"rod": "b"}, name="pin")])))
+    solution = solve(model)
+    assert solution.converged
+    assert_allclose(solution.tip("a").position, solution.tip("b").position, rtol=0, atol=1e-10)
+
+
+def test_base_that_moves_as_an_input_takes_its_hinge_along() -> None:
+    model = build(TWO_LINKS)
+    moved = solve(model, {"a.base.position": [0.1, 0.2, 1.3]})
+    assert_allclose(moved.tip("b").position[0], [0.1, 0.2, 0.3], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("joint", "where", "problem"),
+    [
+        (ends({"rod": "a", "at": 0.0}, {"rod": "b", "at": 0.0}), "joints[0].between", "joins two bases"),
+        (ends({"body": "a"}, {"world": True}), "joints[0].between", "joins no rod"),
+        ({"rod": "a", "kind": "fixed"}, "joints[0].position", "missing"),
+        (hinge(position=[0, 0, 1]), "joints[0].position", "stands in a joint at X = 0 without body"),
+        (hinge("free"), "joints[0].at", "holds a base that is free"),
+        (hinge("carried"), "joints[0].at", "the base of 'carried' is beside the section that carries it"),
+    ],
+)
+def test_refusals(joint: dict[str, Any], where: str, problem: str) -> None:
+    carried = link("carried", base={"rod": "a", "position": [0.01, 0, 0]})
+    rods = [link("a"), link("b"), link("free", base={"free": True}), carried]
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict(scene(rods, [joint]))
+    assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]
