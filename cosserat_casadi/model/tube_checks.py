@@ -16,5 +16,5 @@ def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
     scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     if scene.tubes:
         problem = "this works on rods, and the scene has concentric tubes"
-        remedy = "solve, path, inverse, sweep, export and check take them"
+        remedy = "solve, path, inverse, sweep, export, identify and check take them; build where it is told the steps"
         raise SceneError(Problem("tubes", problem, remedy))

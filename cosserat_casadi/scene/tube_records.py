@@ -14,7 +14,20 @@ from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
-BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds", "targets")
+BESIDE_TUBES = (
+    "schema",
+    "title",
+    "accuracy",
+    "parameters",
+    "loads",
+    "tubes",
+    "ranges",
+    "bounds",
+    "targets",
+    "measurements",
+    "unknowns",
+    "identification",
+)
 """Keys of a scene that may stand beside tubes."""
 
 LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")

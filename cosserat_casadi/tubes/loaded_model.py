@@ -164,12 +164,11 @@ class LoadedTubeModel(TubeFunctions):
         """
         _, inputs, _ = self._arguments
         for index, rank in enumerate(self._ranks):
-            for number, load in enumerate(self.robot.loads):
-                share = float(load.shares[index])
-                if share == 0.0:
+            for number, load in enumerate(self.robot.numbers.loads):
+                if index not in load.bearers:
                     continue
                 start = self.robot.load_start(number)
-                value = share * inputs[start : start + COMPONENTS]
+                value = load.shares[index] * inputs[start : start + COMPONENTS]
                 at = self._point_ranks.get(number, rank)
                 yield load, ca.if_else(at == ca.MX(piece), value, 0.0), index
 
@@ -178,14 +177,14 @@ class LoadedTubeModel(TubeFunctions):
         """Where forces act beside the tips, as far as they do so outside: the housing bears those in it."""
         places = []
         for load in self._point_loads.values():
-            tip, _ = self._ends[int(np.argmax(load.shares))]
+            tip, _ = self._ends[load.bearers[0]]
             places.append(ca.fmax(tip - load.from_tip, 0.0))
         return places
 
     @property
     def _point_loads(self) -> dict[int, TubeLoad]:
         """Loads that act beside the tips, by their number."""
-        return {number: load for number, load in enumerate(self.robot.loads) if load.from_tip > 0.0}
+        return {number: load for number, load in enumerate(self.robot.numbers.loads) if load.is_beside_tip}
 
     @cached_property
     def _point_ranks(self) -> dict[int, ca.MX]:

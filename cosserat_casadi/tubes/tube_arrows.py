@@ -31,7 +31,7 @@ def load_arrows(solution: TubeSolution) -> list[Arrow]:
 
 def borne_loads(robot: Robot) -> list[tuple[TubeLoad, int]]:
     """Loads, each with the index of a tube that bears it."""
-    return [(load, index) for load in robot.loads for index in np.flatnonzero(load.shares).tolist()]
+    return [(load, index) for load in robot.loads for index in load.bearers]
 
 
 def sort_of(load: TubeLoad) -> Sort:
@@ -44,7 +44,7 @@ def sort_of(load: TubeLoad) -> Sort:
 def arrows_on(solution: TubeSolution, load: TubeLoad, tube: int) -> tuple[list[FloatArray], FloatArray]:
     """Places of the arrows of one load on one tube, and their vector, world axes; none where the housing bears it."""
     robot = solution.robot
-    vector = load.shares[tube] * solution.inputs[robot.layout.slices[load.name]]
+    vector = float(load.shares[tube]) * solution.inputs[robot.layout.slices[load.name]]
     if load.follower:
         vector = _frame(solution, load, tube) @ vector
     reach = float(robot.translations(solution.inputs)[tube]) - load.from_tip

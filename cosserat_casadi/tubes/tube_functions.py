@@ -7,22 +7,26 @@ from there to the base plate.
 from __future__ import annotations
 
 import itertools
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, Self
+from typing import Self
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
-from cosserat_casadi.tubes.robot import Robot, Values
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import TipVariations
 
@@ -33,16 +37,13 @@ NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
 
 
-PATH = ("x", "inputs", "load_factor")
-"""Arguments of the functions on the way from straight tubes, load factor 0, to those of the scene, 1."""
-
-
-class TubeFunctions(ABC):
+class TubeFunctions(WithParameters):
     """A robot of concentric tubes with a number of steps.
 
     Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
-    rotation and the translation of each tube, then the loads. Those of a path have the names and arguments that they
-    have in :class:`cosserat_casadi.Model`; the load factor multiplies all curvatures, so that 0 is straight tubes.
+    rotation and the translation of each tube, then the loads; behind the inputs the parameters, where the scene names
+    some. Those of a path have the names and arguments that they have in :class:`cosserat_casadi.Model`; the load factor
+    multiplies all curvatures, so that 0 is straight tubes.
 
     Attributes:
         robot: the tubes.
@@ -78,9 +79,13 @@ class TubeFunctions(ABC):
         """Length that the pose error of each tube is relative to, m: that of the longest one."""
         return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
 
-    def at(self, values: Any = None) -> Self:
-        """The model itself: tubes have no parameters."""
-        return self
+    @property
+    def parameters(self) -> ParameterLayout:
+        """Names, order and default values of the parameters."""
+        return self.robot.parameters
+
+    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Self:
+        return type(self)(robot_of(self.parameters.set_in(self.scene, values)), self.steps)
 
     def pack(self, values: Values = None) -> FloatArray:
         """The stacked inputs, as :meth:`Robot.packed`."""
@@ -163,23 +168,28 @@ class TubeFunctions(ABC):
         return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
+    def parameter_jacobian(self) -> ca.Function:
+        """(x, inputs, p) ↦ derivative of the residual with the parameters, a column each."""
+        by_parameters = ca.jacobian(self._residual, self.parameters.symbol)
+        return self._function("parameter_jacobian", {"parameter_jacobian": by_parameters})
+
+    @cached_property
     def path_residual(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ residual of tubes whose curvatures are those of the scene times the factor."""
-        return ca.Function("path_residual", [*self._arguments], [self._residual], [*PATH], ["residual"])
+        return self._on_path("path_residual", {"residual": self._residual})
 
     @cached_property
     def path_jacobian(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ derivative of that residual with x."""
-        return ca.Function("path_jacobian", [*self._arguments], [self._jacobian], [*PATH], ["jacobian"])
+        return self._on_path("path_jacobian", {"jacobian": self._jacobian})
 
     @cached_property
     def path_rate(self) -> ca.Function:
         """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of that residual at fixed x."""
         _, inputs, load_factor = self._arguments
-        rates = ca.MX.sym("inputs_rate", inputs.size1()), ca.MX.sym("load_factor_rate")
-        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates))
-        names = [*PATH, "inputs_rate", "load_factor_rate"]
-        return ca.Function("path_rate", [*self._arguments, *rates], [rate], names, ["residual_rate"])
+        rates = {"inputs_rate": ca.MX.sym("inputs_rate", inputs.size1()), "load_factor_rate": ca.MX.sym("rate")}
+        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates.values()))
+        return self._on_path("path_rate", {"residual_rate": rate}, rates)
 
     @property
     def step_weights(self) -> FloatArray:
@@ -204,15 +214,15 @@ class TubeFunctions(ABC):
         writes it in C. Full steps from the start, at most NEWTON_STEPS. Where the angle missed is not small, or no
         number, nothing was found: whoever calls it has to look.
         """
-        x, inputs, _ = self._arguments
-        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs)])
+        x, *given = self._symbols.values()
+        missed = ca.Function("missed", [x, *given], [self.residual(x, *given)])
         options = {"abstol": NEWTON_TOLERANCE, "max_iter": NEWTON_STEPS}
-        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, inputs)
+        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, *given)
         return ca.Function(
             "equilibrium",
-            [x, inputs],
-            [found, ca.sum1(ca.fabs(missed(found, inputs)))],
-            ["start", "inputs"],
+            [x, *given],
+            [found, ca.sum1(ca.fabs(missed(found, *given)))],
+            ["start", *list(self._symbols)[1:]],
             ["x", "missed"],
         )
 
@@ -251,7 +261,7 @@ class TubeFunctions(ABC):
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
         follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments[:2])
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._symbols.values())
         following = -ca.solve(jacobian, by_inputs)
         changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
@@ -269,12 +279,14 @@ class TubeFunctions(ABC):
         Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
         axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
         """
-        x, inputs, _ = self._arguments
+        x, inputs, *p = self._symbols.values()
         directions = Directions(self.robot, self.size)
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
-        at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
-        _, missed = at_plate(plate, x, inputs, plate_changes)
+        fixed = [ca.DM(symbol.size1(), directions.count) for symbol in p]
+        by_inputs = [directions.of_inputs, *fixed]
+        at_plate = with_changes(self._of_plate, directions, dict(enumerate([directions.of_x, *by_inputs], start=1)))
+        _, missed = at_plate(plate, x, inputs, *p, plate_changes)
         # A rotation turns its drive, and changes nothing else.
         by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
@@ -298,22 +310,23 @@ class TubeFunctions(ABC):
 
     def _changing(self, directions: Directions) -> list[tuple[Matrix, Matrix]]:
         """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
-        x, inputs, _ = self._arguments
+        x, *given = self._symbols.values()
+        fixed = [directions.of_inputs, *[ca.DM(symbol.size1(), directions.count) for symbol in given[1:]]]
         staged = self._staged
         width = staged.width_with_carried
-        begun = ca.Function("begun", [x, inputs], [self._begun])
-        state, changes = with_changes(begun, directions, {0: directions.of_x, 1: directions.of_inputs})(x, inputs)
+        begun = ca.Function("begun", [x, *given], [self._begun])
+        state, changes = with_changes(begun, directions, dict(enumerate([directions.of_x, *fixed])))(x, *given)
         ends = [(state, changes)]
-        of_pieces = ca.Function("lengths", [inputs], [ca.vertcat(*self._piece_lengths) / self.steps])
-        lengths, length_changes = with_changes(of_pieces, directions, {0: directions.of_inputs})(inputs)
+        of_pieces = ca.Function("lengths", given, [ca.vertcat(*self._piece_lengths) / self.steps])
+        lengths, length_changes = with_changes(of_pieces, directions, dict(enumerate(fixed)))(*given)
         length_changes = length_changes[:, directions.translations]
         steps = changing_step(staged, directions).mapaccum("changing_steps", self.steps)
         for piece, sections in enumerate(ca.horzsplit(self._sections, self.steps)):
             if staged.carried:
                 begin = ca.MX.sym("begin", width)
-                passing = ca.Function("passing", [begin, inputs], [self._passing(piece, begin)])
-                passed = with_changes(passing, directions, {1: directions.of_inputs})
-                state, changes = passed(state, inputs, changes)
+                passing = ca.Function("passing", [begin, *given], [self._passing(piece, begin)])
+                passed = with_changes(passing, directions, dict(enumerate(fixed, start=1)))
+                state, changes = passed(state, *given, changes)
             along = ca.vertcat(lengths[piece], length_changes[piece, :].T)
             stacked = steps(ca.vertcat(state, ca.vec(changes)), ca.repmat(along, 1, self.steps), sections)[:, -1]
             state, changes = stacked[:width], ca.reshape(stacked[width:], width, -1)
@@ -323,9 +336,8 @@ class TubeFunctions(ABC):
     @property
     def _of_plate(self) -> ca.Function:
         """(state at the plate, x, inputs) ↦ residual."""
-        x, inputs, _ = self._arguments
         plate = ca.MX.sym("plate", self._staged.width)
-        return ca.Function("of_plate", [plate, x, inputs], [self._missed(plate)])
+        return ca.Function("of_plate", [plate, *self._symbols.values()], [self._missed(plate)])
 
     def _of_tip(self, index: int) -> ca.Function:
         """(state at the plate, state at the tip of a tube, x) ↦ its pose in base axes, position and quaternion."""
@@ -359,6 +371,15 @@ class TubeFunctions(ABC):
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
         """Unknowns, inputs and load factor, of which all functions are."""
         return ca.MX.sym("x", self.size), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
+
+    @property
+    def _symbols(self) -> dict[str, ca.MX]:
+        """Arguments of all functions by name: unknowns, inputs, and parameters where the scene names some."""
+        x, inputs, _ = self._arguments
+        symbols = {"x": x, "inputs": inputs}
+        if self.parameters.size:
+            symbols[PARAMETERS] = self.parameters.symbol
+        return symbols
 
     @cached_property
     def _lengths(self) -> ca.MX:
@@ -413,7 +434,7 @@ class TubeFunctions(ABC):
         ends = []
         for index in range(self.tube_count):
             tip = inputs[2 * index + 1]
-            straight = tip - self.robot.curved[index]
+            straight = tip - self.robot.numbers.curved[index]
             # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
             bend = ca.if_else(straight > 0.0, straight, 0.0)
             ends.append((tip, bend))
@@ -436,14 +457,14 @@ class TubeFunctions(ABC):
 
     def _section(self, place: ca.MX) -> Matrix:
         """Stacked section at a place: torsion, moments, bending and own energy of the tubes there, (2 n + 2)×1."""
-        robot = self.robot
+        tubes = self.robot.numbers
         _, _, load_factor = self._arguments
         moments = []
         bending: Matrix = ca.MX(0.0)
         own: Matrix = ca.MX(0.0)
         for index, (tip, bend) in enumerate(self._ends):
-            stiffness = float(robot.bending[index])
-            curvature = load_factor * float(robot.curvature[index])
+            stiffness = tubes.bending[index]
+            curvature = load_factor * tubes.curvature[index]
             is_here = ca.if_else(place < tip, 1.0, 0.0)
             is_curved = is_here * ca.if_else(place > bend, 1.0, 0.0)
             moments.append(is_curved * stiffness * curvature)
@@ -451,7 +472,7 @@ class TubeFunctions(ABC):
             own = own + is_curved * stiffness * curvature**2 / 2
         # A piece without length may have no tube; dividing by its stiffness must do no harm.
         stiffness_or_one = bending + ca.if_else(bending > 0.0, 0.0, 1.0)
-        return ca.vertcat(robot.torsion, *moments, stiffness_or_one, own)
+        return ca.vertcat(as_matrix(tubes.torsion), *moments, stiffness_or_one, own)
 
     # What follows from it
 
@@ -459,8 +480,8 @@ class TubeFunctions(ABC):
     def _compliance(self) -> ca.MX:
         """Angle that a torque of one turns the drive end of every tube against the plate, n×1, rad/(N m)."""
         _, inputs, _ = self._arguments
-        inside = ca.DM(self.robot.length) - self.robot.translations(inputs)
-        return inside / ca.DM(self.robot.torsion)
+        inside = as_matrix(self.robot.numbers.length) - self.robot.translations(inputs)
+        return inside / as_matrix(self.robot.numbers.torsion)
 
     def _in_base(self, pose: Pose) -> Pose:
         """A pose in base axes, where it is given in those of the tip's frame."""
@@ -487,9 +508,17 @@ class TubeFunctions(ABC):
 
     def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
         """A function of unknowns and inputs, of tubes with the curvatures of the scene."""
-        x, inputs, load_factor = self._arguments
+        _, _, load_factor = self._arguments
         results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
-        return ca.Function(name, [x, inputs], results, ["x", "inputs"], list(outputs))
+        return ca.Function(name, list(self._symbols.values()), results, list(self._symbols), list(outputs))
+
+    def _on_path(
+        self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
+    ) -> ca.Function:
+        """A function of unknowns, inputs and load factor, and further arguments."""
+        _, _, load_factor = self._arguments
+        arguments = {**self._symbols, "load_factor": load_factor, **(further or {})}
+        return ca.Function(name, list(arguments.values()), list(outputs.values()), list(arguments), list(outputs))
 
 
 def _reversed(row: ca.MX) -> ca.MX:
