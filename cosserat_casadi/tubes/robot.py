@@ -60,7 +60,7 @@ class TubeNumbers:
 
 @dataclass(frozen=True)
 class Robot:
-    """Tubes as arrays with one entry a tube, in the order of the scene; numbers that are parameters as the scene has them.
+    """Tubes as arrays with one entry a tube, in the order of the scene; parameters have the scene's values.
 
     Attributes:
         scene: where the tubes are from.

@@ -261,7 +261,7 @@ class TubeFunctions(WithParameters):
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
         follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._symbols.values())
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs, *_ = self.sensitivity(*self._symbols.values())
         following = -ca.solve(jacobian, by_inputs)
         changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
@@ -277,16 +277,15 @@ class TubeFunctions(WithParameters):
         """(x, inputs) ↦ derivatives of residual and tips, from one integration with all changes.
 
         Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
-        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
+        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube. Where the
+        scene names parameters, derivatives of both with these.
         """
-        x, inputs, *p = self._symbols.values()
+        x, *given = self._symbols.values()
         directions = Directions(self.robot, self.size)
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
-        fixed = [ca.DM(symbol.size1(), directions.count) for symbol in p]
-        by_inputs = [directions.of_inputs, *fixed]
-        at_plate = with_changes(self._of_plate, directions, dict(enumerate([directions.of_x, *by_inputs], start=1)))
-        _, missed = at_plate(plate, x, inputs, *p, plate_changes)
+        fixed = dict(enumerate([directions.of_x, *directions.of_given], start=1))
+        _, missed = with_changes(self._of_plate, directions, fixed)(plate, x, *given, plate_changes)
         # A rotation turns its drive, and changes nothing else.
         by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
@@ -306,12 +305,15 @@ class TubeFunctions(WithParameters):
             "poses_by_x": moved[:, : self.size],
             "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.tube_count)),
         }
+        if self.parameters.size:
+            outputs["by_parameters"] = missed[:, directions.parameters]
+            outputs["poses_by_parameters"] = moved[:, directions.parameters]
         return self._function("sensitivity", outputs)
 
     def _changing(self, directions: Directions) -> list[tuple[Matrix, Matrix]]:
         """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
         x, *given = self._symbols.values()
-        fixed = [directions.of_inputs, *[ca.DM(symbol.size1(), directions.count) for symbol in given[1:]]]
+        fixed = directions.of_given
         staged = self._staged
         width = staged.width_with_carried
         begun = ca.Function("begun", [x, *given], [self._begun])
@@ -319,16 +321,20 @@ class TubeFunctions(WithParameters):
         ends = [(state, changes)]
         of_pieces = ca.Function("lengths", given, [ca.vertcat(*self._piece_lengths) / self.steps])
         lengths, length_changes = with_changes(of_pieces, directions, dict(enumerate(fixed)))(*given)
-        length_changes = length_changes[:, directions.translations]
+        length_changes = length_changes[:, directions.stretching]
         steps = changing_step(staged, directions).mapaccum("changing_steps", self.steps)
         for piece, sections in enumerate(ca.horzsplit(self._sections, self.steps)):
+            section = sections[:, 0]
+            if self.parameters.size:
+                section = ca.vertcat(section, ca.vec(ca.densify(ca.jacobian(section, self.parameters.symbol))))
             if staged.carried:
                 begin = ca.MX.sym("begin", width)
                 passing = ca.Function("passing", [begin, *given], [self._passing(piece, begin)])
                 passed = with_changes(passing, directions, dict(enumerate(fixed, start=1)))
                 state, changes = passed(state, *given, changes)
             along = ca.vertcat(lengths[piece], length_changes[piece, :].T)
-            stacked = steps(ca.vertcat(state, ca.vec(changes)), ca.repmat(along, 1, self.steps), sections)[:, -1]
+            repeated = [ca.repmat(constants, 1, self.steps) for constants in (along, section)]
+            stacked = steps(ca.vertcat(state, ca.vec(changes)), *repeated)[:, -1]
             state, changes = stacked[:width], ca.reshape(stacked[width:], width, -1)
             ends.append((state, changes))
         return [(state[: staged.width], changes[: staged.width, :]) for state, changes in ends]
