@@ -101,6 +101,22 @@ class Model(ModelFunctions, MotionFunctions, WithParameters):
         return {rod.name: rod.length for rod in self.scene.rods}
 
     @property
+    def parametric_scene(self) -> scenes.Scene:
+        """The scene, in which parameters are entries of their symbol."""
+        return self.discrete.scene
+
+    @property
+    def shape_unknowns(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns are those of a shape, shape (size,): strains and poses, no forces."""
+        return self.discrete.unknowns.differential
+
+    @property
+    def typical_sizes(self) -> tuple[float, float]:
+        """Length, m, and energy, N m, of the longest and the stiffest rod, bent by about a radian."""
+        rods = self.discrete.nominal.rods.values()
+        return max(rod.properties.length for rod in rods), max(rod.energy_unit for rod in rods)
+
+    @property
     def hessian_is_cheap(self) -> bool:
         """Whether an optimiser is faster with exact second derivatives: it is."""
         return True

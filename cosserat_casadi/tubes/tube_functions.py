@@ -10,7 +10,7 @@ import itertools
 from abc import abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Self
+from typing import Self, TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -20,6 +20,7 @@ from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
@@ -35,6 +36,11 @@ NEWTON_TOLERANCE = 1e-12
 
 NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
+
+RESOLVED = 64.0
+"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
+
+Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
 class TubeFunctions(WithParameters):
@@ -133,6 +139,11 @@ class TubeFunctions(WithParameters):
 
     @property
     @abstractmethod
+    def _step(self) -> ca.Function:
+        """(state, length, section) ↦ state: a step of such states."""
+
+    @property
+    @abstractmethod
     def _staged(self) -> Staged:
         """A step of such states, in its stages."""
 
@@ -150,6 +161,33 @@ class TubeFunctions(WithParameters):
         """The residual, from the stacked state at the plate."""
 
     # What is asked of the model
+
+    @cached_property
+    def parametric_scene(self) -> Scene:
+        """The scene, in which parameters are entries of their symbol."""
+        return self.parameters.written(self.scene, self.parameters.symbol)
+
+    @property
+    def shape_unknowns(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns are those of a shape, shape (size,): all."""
+        return np.ones(self.size, dtype=bool)
+
+    @property
+    def typical_sizes(self) -> tuple[float, float]:
+        """Length, m, and energy, N m, of the longest and stiffest tube, bent by about a radian."""
+        length = float(self.robot.length.max())
+        return length, float(self.robot.bending.max()) / length
+
+    @cached_property
+    def halved(self) -> Self:
+        """The robot with half of the steps."""
+        return type(self)(self.robot, max(self.steps // 2, 1))
+
+    @cached_property
+    def resolution_index(self) -> ca.Function:
+        """(x, inputs) ↦ residual that half of the steps leave, over what they may: above 1 all of them are too few."""
+        missed = ca.norm_inf(self.halved.residual(*self._symbols.values()))
+        return self._function("resolution_index", {"index": missed / (RESOLVED * self.robot.tolerance)})
 
     @cached_property
     def residual(self) -> ca.Function:
@@ -252,6 +290,20 @@ class TubeFunctions(WithParameters):
             rotation = quaternion_to_matrix(pose.quaternion)
             outputs = {"position": pose.position, "quaternion": pose.quaternion, "rotation": rotation}
             functions[name] = self._function("tip", outputs)
+        return functions
+
+    @cached_property
+    def section(self) -> dict[str, ca.Function]:
+        """(x, inputs, at) ↦ position, m, and quaternion of a section of a tube in base axes, by name.
+
+        The abscissa at is 0 at the drive's end of the tube and 1 at its tip. In the housing tubes are straight.
+        """
+        at = ca.MX.sym("at")
+        functions = {}
+        for index, name in enumerate(self.robot.names):
+            pose = self._section_pose(index, at)
+            outputs = {"position": pose.position, "quaternion": pose.quaternion}
+            functions[name] = self._function("section", outputs, {"at": at})
         return functions
 
     @cached_property
@@ -506,17 +558,41 @@ class TubeFunctions(WithParameters):
         turn = Pose(ca.DM.zeros(3), ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
         return self._state(plate).pose.seen(self._state(reached).pose).then(turn)
 
+    def _section_pose(self, index: int, at: ca.MX) -> Pose:
+        """Pose of a section of a tube in base axes, by a part of the step that it lies in."""
+        _, inputs, _ = self._arguments
+        length = self.robot.numbers.length[index]
+        distance = self.robot.translations(inputs)[index] - (1 - at) * length
+        outside = ca.fmax(distance, 0)
+        # The first step from the tip on that ends nearer to the plate, or there.
+        ends = self._places[0] + ca.cumsum(self._lengths, 1)
+        begins = ca.horzcat(self._places[0], ends[:-1])
+        # Sums of lengths are off by rounding: the last step has no other behind it.
+        first = ca.fmin(ca.sum2(ends > outside), ends.size2() - 1)
+        chosen = ca.DM(range(ends.size2())) == first
+        whole = self._whole
+        start = whole.starts @ chosen
+        state = self._state(self._step(start, outside - begins @ chosen, whole.sections @ chosen))
+        # Behind the plate the torque of the plate twists the tube.
+        inside = distance - outside
+        half = (state.angles[index] + inside * state.torques[index] / self.robot.numbers.torsion[index]) / 2
+        turned = ca.vertcat(ca.cos(half), 0, 0, ca.sin(half))
+        return self._in_base(state.pose).then(Pose(ca.vertcat(0, 0, inside), turned))
+
     @cached_property
     def _tips(self) -> list[Pose]:
         """Pose of every tube's tip in base axes."""
         ends = self._whole.ends
         return [self._tip_pose(index, ends[-1], _selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
 
-    def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
-        """A function of unknowns and inputs, of tubes with the curvatures of the scene."""
+    def _function(
+        self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
+    ) -> ca.Function:
+        """A function of unknowns, inputs and further arguments, of tubes with the curvatures of the scene."""
         _, _, load_factor = self._arguments
         results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
-        return ca.Function(name, list(self._symbols.values()), results, list(self._symbols), list(outputs))
+        arguments = {**self._symbols, **(further or {})}
+        return ca.Function(name, list(arguments.values()), results, list(arguments), list(outputs))
 
     def _on_path(
         self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
@@ -538,3 +614,7 @@ def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
     for number, column in enumerate(columns):
         chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)
     return chosen
+
+
+AnyModel: TypeAlias = Model | TubeFunctions
+"""A model of rods or of concentric tubes."""

@@ -69,7 +69,7 @@ def _inputs_of(load: scenes.Load, tubes: Sequence[scenes.Tube]) -> Iterator[Tube
     shares = tuple(float(tube.name == load.rod) for tube in tubes)
     from_tip: Scalar = 0.0
     if isinstance(load, scenes.PointWrench):
-        length = sum(tube.straight + tube.curved for tube in tubes if tube.name == load.rod)
+        length = sum(tube.length for tube in tubes if tube.name == load.rod)
         from_tip = (1.0 - load.at) * length
     for field in load.inputs:
         if field in load.model_fields_set:

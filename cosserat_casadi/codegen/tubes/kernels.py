@@ -19,12 +19,6 @@ from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_prod
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
-from cosserat_casadi.tubes.tube_solve import model_of
-
-RESOLVED = 64.0
-"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
-
-Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +48,7 @@ class TubeKernels:
             self._function("residual", [residual], path),
             self._function("jacobian", [self.model.path_jacobian(x, *on_path)], path),
             self._function("rate", [rate], rates),
-            self._function("halved_residual", [self._halved.residual(x, *given)]),
+            self._function("halved_residual", [self.model.halved.residual(x, *given)]),
             self._function("halved_change", [self._halved_change(step)], {"step": step}),
             self._function("poses", [ca.vertcat(*self.model.tips(x, *given))]),
             self._function("sensitivity", self._sensitivity()),
@@ -99,11 +93,6 @@ class TubeKernels:
         drives, loads = inputs[: 2 * robot.size], inputs[2 * robot.size :]
         return [ca.vertcat(drives, of_loads * loads), *p, ca.fmin(2 * t, 1)]
 
-    @cached_property
-    def _halved(self) -> TubeFunctions:
-        """The robot with half of the steps."""
-        return model_of(self.model.robot, self.model.steps // 2)
-
     def _halved_change(self, step: ca.MX) -> Matrix:
         """Distance of the tips with half of the steps, a step of the unknowns away, as :func:`tip_error` has it.
 
@@ -111,7 +100,7 @@ class TubeKernels:
         """
         x, *given = self._of_model.values()
         positions, quaternions = self.model.tips(x, *given)
-        other_positions, other_quaternions = self._halved.tips(x + step, *given)
+        other_positions, other_quaternions = self.model.halved.tips(x + step, *given)
         length = ca.mmax(self.model.robot.translations(self._symbols["inputs"]))
         changes = []
         for index in range(self.model.tube_count):

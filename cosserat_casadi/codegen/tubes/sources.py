@@ -35,14 +35,14 @@ from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
-from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
+from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.tubes.robot import Robot
-from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_functions import RESOLVED, TubeFunctions
 
 NEAR = 0.3
 """Twist, rad, by which a turn may change the tubes at once; farther on the way is followed."""
