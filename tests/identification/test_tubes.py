@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from cosserat_casadi import Identification, Scene, SceneError, build, identify, 
 from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.identification.model_identification import identify_model
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from tests.families import mostly_slow
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -41,8 +43,9 @@ def scene(text: str = MEASURED, *overrides: str) -> Scene:
     return parse_scene(tubes + text + unknowns, overrides)
 
 
-def shapes(cases: int, seed: int | None) -> dict[str, dict[str, FloatArray]]:
-    """Positions along the inner tube at random inputs, with the noise that the scene states; none without a seed."""
+@cache
+def exact_shapes(cases: int) -> FloatArray:
+    """Rows of inputs, abscissa and position along the inner tube, at random inputs."""
     truth = build(scene(MEASURED, *[f"{name}={value!r}" for name, value in TRUTH.items()]), STEPS)
     random = np.random.default_rng(5)
     rows = []
@@ -52,14 +55,24 @@ def shapes(cases: int, seed: int | None) -> dict[str, dict[str, FloatArray]]:
         for place in PLACES:
             position, _ = truth.section["inner"](solution.x, solution.inputs, place)
             rows.append([*inputs, place, *position.full()[:, 0]])
-    table = np.array(rows)
+    return np.array(rows)
+
+
+def shapes(cases: int, seed: int | None) -> dict[str, dict[str, FloatArray]]:
+    """Measured columns with the noise that the scene states; none without a seed."""
+    table = exact_shapes(cases).copy()
     if seed is not None:
         table[:, -3:] += 2e-4 * np.random.default_rng(seed).standard_normal((len(table), 3))
     return {"shapes.csv": dict(zip(("a", "b", "c", "d", "X", "x", "y", "z"), table.T, strict=True))}
 
 
+@cache
+def fitted_model() -> TubeFunctions:
+    return build(scene().with_unknowns(), STEPS)
+
+
 def found_in(seed: int | None, cases: int = 8) -> Identification:
-    return identify_model(build(scene().with_unknowns(), STEPS), shapes(cases, seed))
+    return identify_model(fitted_model(), shapes(cases, seed))
 
 
 def deviations(found: Identification) -> FloatArray:
@@ -86,11 +99,10 @@ def test_intervals_hold_the_truth() -> None:
 
 @pytest.mark.slow
 def test_intervals_of_95_percent_cover() -> None:
-    """Of 40 repeated experiments with three unknowns: 120 intervals, 114 of them expected to hold the truth."""
-    every = np.array([deviations(found_in(seed)) for seed in range(40)])
-    held = np.mean(np.abs(every) < 1.96)
-    assert 0.90 <= held <= 0.99
-    assert_allclose(np.sqrt(np.mean(every**2)), 1.0, rtol=0.2, atol=0)
+    """Of 20 repeated experiments with three unknowns: 60 intervals, 57 of them expected to hold the truth."""
+    every = np.array([deviations(found_in(seed)) for seed in range(20)])
+    assert 52 <= np.sum(np.abs(every) < 1.96) <= 60
+    assert_allclose(np.sqrt(np.mean(every**2)), 1.0, rtol=0.25, atol=0)
 
 
 def test_a_scene_is_identified_with_the_steps_that_it_needs() -> None:
