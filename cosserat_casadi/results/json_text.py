@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.model.build import Model
 
 SCHEMA = 1
 """Version of the result files."""
@@ -33,10 +33,8 @@ def json_text(data: dict[str, Any]) -> str:
     return json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
 
 
-def discretisation_entries(model: AnyModel) -> dict[str, Any]:
-    """Modes, nodes, breaks and integrator of every rod; of tubes the steps of a piece."""
-    if isinstance(model, TubeFunctions):
-        return {"steps": model.steps}
+def discretisation_entries(model: Model) -> dict[str, dict[str, Any]]:
+    """Modes, nodes, breaks and integrator of every rod."""
     entries = {}
     for name, d in model.discretisation.items():
         entries[name] = {

@@ -185,7 +185,7 @@ class TubeFunctions(WithParameters):
 
     @cached_property
     def resolution_index(self) -> ca.Function:
-        """(x, inputs) ↦ residual that half of the steps leave, over the largest that is enough: above 1 all are too few."""
+        """(x, inputs) ↦ residual that half of the steps leave, over the largest that is enough; above 1 unresolved."""
         missed = ca.norm_inf(self.halved.residual(*self._symbols.values()))
         return self._function("resolution_index", {"index": missed / (RESOLVED * self.robot.tolerance)})
 

@@ -8,13 +8,10 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import table_of
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import STRAINS
-from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 
 
-def discretisation_sentences(model: AnyModel) -> list[str]:
-    """Modes, intervals and elements of every rod; of tubes the steps of a piece."""
-    if isinstance(model, TubeFunctions):
-        return [f"{model.steps} steps a piece"]
+def discretisation_sentences(model: Model) -> list[str]:
+    """Modes, intervals and elements of every rod."""
     sentences = []
     for name, d in model.discretisation.items():
         sentence = f"{name}: modes {list(d.modes)}, {d.nodes} intervals"
