@@ -30,7 +30,7 @@ rotation = 1.0
 translation = 0.27
 """
 
-TIMES = ("turn_us", "turn_with_derivatives_us", "poses_us", "solve_us")
+TIMES = ("turn_us", "turn_with_derivatives_us", "poses_us", "cold_us")
 
 
 def scenes() -> dict[str, Scene]:

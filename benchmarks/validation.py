@@ -19,7 +19,7 @@ import numpy as np
 import typer
 from doc_tables import put, table
 
-from cosserat_casadi import Identification, Solution, identify, modes_of, read_scene, scene_from_dict, solve
+from cosserat_casadi import Identification, Model, Solution, identify, modes_of, read_scene, scene_from_dict, solve
 from cosserat_casadi.identification import Row
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.figure import figure_class, write_figure
@@ -158,6 +158,7 @@ def validated(report: Callable[[str], None] = lambda name: None) -> Validation:
 
 def at(found: Identification, values: Mapping[str, Any]) -> Solution:
     """The equilibrium of what was found under other inputs."""
+    assert isinstance(found.model, Model)
     return solve(found.model, values, parameters=found.parameters, raise_on_failure=True)
 
 

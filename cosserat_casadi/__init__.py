@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from cosserat_casadi.accuracy.choose import Choice as Choice
     from cosserat_casadi.accuracy.choose import choose as choose
+    from cosserat_casadi.accuracy.models import build as build
     from cosserat_casadi.accuracy.refine import solve as solve
     from cosserat_casadi.codegen.compiled import Compiled as Compiled
     from cosserat_casadi.codegen.export import export as export
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.identification.identification_result import Identification as Identification
     from cosserat_casadi.identification.model_identification import identify as identify
     from cosserat_casadi.model.build import Model as Model
-    from cosserat_casadi.model.build import build as build
     from cosserat_casadi.model.discretise import discretise as discretise
     from cosserat_casadi.motion.linear_model import LinearModel as LinearModel
     from cosserat_casadi.motion.linear_model import linearise as linearise
@@ -69,6 +69,7 @@ IMPORTED = time.time()
 
 _NAMES = {
     "accuracy.choose": ("Choice", "choose"),
+    "accuracy.models": ("build",),
     "accuracy.refine": ("solve",),
     "codegen.compiled": ("Compiled",),
     "codegen.export": ("export",),
@@ -80,7 +81,7 @@ _NAMES = {
     "errors": ("CosseratError", "ExportError", "Problem", "SceneError", "SolveError"),
     "identification.identification_result": ("Identification",),
     "identification.model_identification": ("identify",),
-    "model.build": ("Model", "build"),
+    "model.build": ("Model",),
     "model.discretise": ("discretise",),
     "motion.linear_model": ("LinearModel", "linearise"),
     "motion.trajectory": ("Motion", "MotionOutcome"),

@@ -179,7 +179,7 @@ CONCEPTS = (
             "codegen.contact.compiled.CompiledContact",
             "codegen.contact.compiled.CompiledContactSolution",
             "codegen.tubes.compiled.CompiledTubes",
-            "codegen.tubes.compiled.CompiledTubesSolution",
+            "codegen.compiled_results.CompiledTurn",
             "codegen.compiled_motion.StepState",
             "codegen.compiled_motion.StepMemory",
             "codegen.compiled_motion.StepOptions",

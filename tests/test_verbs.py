@@ -20,7 +20,6 @@ from cosserat_casadi import (
     discretise,
     export,
     follow,
-    identify,
     modes_of,
     read_scene,
     simulate,
@@ -103,7 +102,6 @@ def test_a_scene_is_exported_as_the_model_that_it_is_solved_with(tmp_path: Path)
 REFUSED: dict[str, Callable[[Any], object]] = {
     "simulate": simulate,
     "modes_of": modes_of,
-    "identify": identify,
     "sweep of a model": lambda subject: sweep(subject, {"inner.rotation": [0.0]}),
 }
 

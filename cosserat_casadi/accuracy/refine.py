@@ -116,6 +116,7 @@ def solve(
     subject: TubeFunctions,
     values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
     *,
+    parameters: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
     start: TubeSolution | FloatArray | None = None,
     stable: bool = False,
     estimate_error: bool = True,
@@ -151,7 +152,7 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
             stable equilibrium of least energy is wanted where the first equilibrium is not stable.
         progress: receives the share of the load path of rods that is done.
         report: receives the discretisation of rods, in words; of a scene.
-        parameters: of a model of rods, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
+        parameters: of a model, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
         start: of a model, like all that follow: where to start; by default the unloaded rod, or straight tubes. From a
             solution of the same model, continuation follows the inputs from those of the solution to the wanted ones,
             and so stays on its branch; of a scene with obstacles, the contacts of the solution are tried first. From

@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.compiled_results import (
     CompiledStability,
     Sensitivity,
     StabilityInfo,
-    solution_of,
+    judged_words,
 )
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.lanes import lanes_files
@@ -54,7 +54,12 @@ class Compiled(LoadedLibrary, CompiledMotion):
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
+        info_type: the struct in C that says how a call ended.
+        outcomes: of the solver, in the order of their numbers.
     """
+
+    info_type: ClassVar[type[AnswerInfo]] = AnswerInfo
+    outcomes: ClassVar[Sequence[Outcome]] = OUTCOMES
 
     @staticmethod
     def is_sound(described: Any) -> bool:
@@ -150,10 +155,15 @@ class Compiled(LoadedLibrary, CompiledMotion):
         """
         given = self.inputs.stacked(inputs)
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
-        info = AnswerInfo()
+        info = self.info_type()
         p = self.parameters.passed(parameters)
         self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
-        return solution_of(x, info, self.tolerance)
+        return self._solution(x, given, info)
+
+    def _solution(self, x: FloatArray, inputs: FloatArray, info: AnswerInfo) -> CompiledSolution:
+        """A solution from its unknowns, its inputs, and the struct beside them."""
+        words = judged_words(info, self.outcomes)
+        return CompiledSolution(**words, tolerance=self.tolerance, inputs=inputs, x=x)
 
     def error_estimate(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
@@ -177,7 +187,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         status = self._function("error_estimate")(
             pointer(given), *p, pointer(unknowns), ctypes.byref(estimate), self._workspace()
         )
-        return estimate.value if OUTCOMES[status] is Outcome.CONVERGED else None
+        return estimate.value if self.outcomes[status] is Outcome.CONVERGED else None
 
     def follow(
         self,
@@ -204,12 +214,12 @@ class Compiled(LoadedLibrary, CompiledMotion):
         old = self.inputs.stacked(before, "before")
         given = self.inputs.stacked(inputs)
         x = vector(start, self.size, "start").copy()
-        info = AnswerInfo()
+        info = self.info_type()
         old_p = self.parameters.passed(parameters_before)
         p = self.parameters.passed(parameters)
         work = self._workspace()
         self._function("follow")(pointer(old), *old_p, pointer(given), *p, pointer(x), work, ctypes.byref(info))
-        return solution_of(x, info, self.tolerance)
+        return self._solution(x, given, info)
 
     def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledSolution]:
         """Equilibria of many load cases.
@@ -232,12 +242,12 @@ class Compiled(LoadedLibrary, CompiledMotion):
         given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
         p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
         x = np.zeros((count, self.size))
-        infos = (AnswerInfo * count)()
+        infos = (self.info_type * count)()
         passed = [pointer(p)] if self.parameters.size else []
         side_by_side = lanes_files(self._names.name)[0] in self.manifest["files"]
         work = room(self._function("batch_workspace_size")()) if side_by_side else self._workspace()
         self._function("solve_batch")(count, pointer(given), *passed, pointer(x), work, 1, infos)
-        return [solution_of(row, info, self.tolerance) for row, info in zip(x, infos, strict=True)]
+        return [self._solution(*row) for row in zip(x, given, infos, strict=True)]
 
     def sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None

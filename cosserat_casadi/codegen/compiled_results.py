@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -53,11 +52,20 @@ class AnswerInfo(Info):
 
 
 def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """What :class:`JudgedAnswer` takes from the struct; arguments as for :func:`answer_words`."""
-    return {
+    """What :class:`CompiledSolution` takes from the struct; arguments as for :func:`answer_words`."""
+    words = {
         **answer_words(info, outcomes),
         "error_estimate": None if info.error_estimate < 0 else info.error_estimate,
     }
+    if isinstance(info, TubeInfo):
+        words["determinant"] = info.determinant
+    return words
+
+
+class TubeInfo(AnswerInfo):
+    """The same of concentric tubes."""
+
+    _fields_ = (("determinant", ctypes.c_double),)
 
 
 class StabilityInfo(ctypes.Structure):
@@ -158,10 +166,27 @@ class CompiledSolution(JudgedAnswer):
     """What the solver in C found.
 
     Attributes:
+        inputs: that it is of, shape (m,).
         x: unknowns; the last equilibrium on the way where it did not converge.
+        determinant: of concentric tubes that do not twist 1; 0 where they snap, negative where they cannot stay.
     """
 
+    inputs: FloatArray
     x: FloatArray
+    determinant: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompiledTurn(CompiledSolution):
+    """A turn of a control loop.
+
+    Attributes:
+        derivatives: of position and quaternion of each tip with the inputs, shape (7, m), where they were asked for.
+        memory: what the next turn begins with.
+    """
+
+    derivatives: Mapping[str, FloatArray] | None = None
+    memory: bytes = field(default=b"", repr=False)
 
 
 @dataclass(frozen=True)
@@ -177,8 +202,3 @@ class Sensitivity:
     x: FloatArray
     tips: dict[str, FloatArray]
     bodies: dict[str, FloatArray]
-
-
-def solution_of(x: FloatArray, info: AnswerInfo, tolerance: float | None = None) -> CompiledSolution:
-    """A solution from its unknowns and the struct beside them."""
-    return CompiledSolution(**judged_words(info, OUTCOMES), x=x, tolerance=tolerance)

@@ -43,6 +43,7 @@ def error_words(model: Model, names: Names) -> Words:
     cable_count = len(watched_cables(model.discrete))
     return {
         "estimates_errors": True,
+        "tells_errors": True,
         "missing": richer.missing_size,
         "watched": watched_count,
         "watched_poses": (watched_count - cable_count) // POSE_SIZE,

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.assembled import assembled
@@ -129,7 +130,11 @@ def _solved(scene: Scene) -> tuple[Model | TubeFunctions, float | None]:
     solution = solve(scene)
     if not solution.converged:
         raise ExportError(Problem("scene", solution.message, "change its inputs, or export a model"))
-    return solution.model, solution.error_estimate
+    model = solution.model
+    if scene.parameters:
+        # What was solved has the scene's own numbers as constants.
+        model = build(scene, model.steps if isinstance(model, TubeFunctions) else model.discretisation)
+    return model, solution.error_estimate
 
 
 def check_export(directory: Path, name: str) -> set[str]:

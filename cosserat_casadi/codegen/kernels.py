@@ -79,10 +79,10 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     if not model.parameters.size:
         return []
     name = names.kernel("parameter_rate")
-    plain = kernel(model, parameter_rate(model, name), name, STRAIGHT_IN_SHARES)
+    plain = kernel(model, parameter_rate(model.path_residual, name), name, STRAIGHT_IN_SHARES)
     if parts is None or not plain.is_a("SXFunction"):
         return [plain]
-    return [in_one(parameter_rate(model, name), parts.blocks.owners, name)]
+    return [in_one(parameter_rate(model.path_residual, name), parts.blocks.owners, name)]
 
 
 def _written(model: Model, entry: FunctionInC) -> Kernel:

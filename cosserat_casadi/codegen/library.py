@@ -233,6 +233,7 @@ def _words(
     return {
         **sizes,
         **dict.fromkeys(("of_rods", "with_axes"), True),
+        "family": "solver_",
         **_solver_constants(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),

@@ -32,7 +32,7 @@ ALWAYS = ("", "_kernels")
 ASKED_FOR = ("_derivatives", "_stability", "_lanes")
 """Ends of the names of the sources that a folder has where they were asked for."""
 
-Loaded = Compiled | CompiledContact | CompiledTubes
+Loaded = Compiled | CompiledContact
 """An exported folder of rods, of rods in exact contact, or of concentric tubes."""
 
 
@@ -71,7 +71,7 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None, *, prog
     return kind(library, described, _scene_text(folder))
 
 
-def _kind(described: Any) -> type[Compiled] | type[CompiledContact] | type[CompiledTubes]:
+def _kind(described: Any) -> type[Compiled] | type[CompiledContact]:
     """The class of the folder that a manifest, which need not be sound, is of."""
     if isinstance(described, dict) and ARRANGEMENTS in described:
         return CompiledContact

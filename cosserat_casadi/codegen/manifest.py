@@ -175,7 +175,7 @@ def _ends(values: FloatArray) -> list[float | None]:
     return [value if np.isfinite(value) else None for value in values.tolist()]
 
 
-def parameter_entries(model: Model) -> list[dict[str, Any]]:
+def parameter_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
     """Parameters in the order of their vector."""
     return [_stacked_entry(entry, indices) for entry, indices in model.parameters]
 

@@ -9,6 +9,7 @@ from cosserat_casadi.codegen.manifest import parameter_entries
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.structs import initialiser, listed, parameter_macro, parameter_struct_words
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 DERIVATIVES = {
     "x_by_parameters": "d_x_d_parameters",
@@ -18,7 +19,7 @@ DERIVATIVES = {
 }
 """Arguments of the header for derivatives with parameters, each behind that for the derivative with inputs."""
 
-ROWS_OF_INPUTS: Words = {"parameters_in_source": "", "given_of_row": "inputs + (size_t)i * INPUTS"}
+ROWS_OF_INPUTS: Words = {"parameters_in_source": "", "given_of_row": "inputs + (size_t)i * INPUTS", "given": "inputs"}
 """Words of a batch without parameters."""
 
 WITHOUT: Words = {
@@ -28,6 +29,7 @@ WITHOUT: Words = {
     "from_parameters": "",
     "parameters_in_readme": "",
     "passed": "",
+    "no_derivatives": "",
     "inner": "",
     "inner_equations": "",
     "pose_adapters": "",
@@ -36,7 +38,9 @@ WITHOUT: Words = {
 """Words of a library without parameters, beside those that depend on the library."""
 
 
-def parameter_words(render: Render, basics: Words, model: Model, names: Names, *, dynamics: bool) -> Words:
+def parameter_words(
+    render: Render, basics: Words, model: Model | TubeFunctions, names: Names, *, dynamics: bool
+) -> Words:
     """Words of a library, with parameters where the scene names some.
 
     Args:
@@ -67,6 +71,8 @@ def parameter_words(render: Render, basics: Words, model: Model, names: Names, *
         "with_parameters": True,
         "solves_tangent": True,
         "passed": ", parameters",
+        "no_derivatives": ", 0",
+        "given": "stack(inputs, parameters, work->stacked)",
         "inner": "stacked_",
         "inner_equations": "stacked_",
         "solver_inputs": f"({names.macro}_INPUTS + {names.macro}_PARAMETERS)",

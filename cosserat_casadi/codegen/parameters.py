@@ -11,9 +11,10 @@ import casadi as ca
 
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec
+from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 
-def given_size(model: Model) -> int:
+def given_size(model: Model | TubeFunctions) -> int:
     """Numbers that the solver in C is given: inputs and parameters."""
     return model.inputs.size + model.parameters.size
 
@@ -57,20 +58,21 @@ def input_jacobian(model: Model) -> ca.Function:
     return with_parameters_behind_inputs(both)
 
 
-def parameter_rate(model: Model, name: str) -> ca.Function:
+def parameter_rate(path_residual: ca.Function, name: str) -> ca.Function:
     """(x, inputs, load_factor, parameters_rate) ↦ what moving parameters add to the rate of the residual at fixed x.
 
     A function of its own: to inputs alone the residual answers by far fewer instructions.
 
     Args:
-        model: whose function it is; it has parameters.
+        path_residual: (x, inputs, p, load_factor) ↦ residual.
         name: what it is called.
     """
-    residual = with_parameters_behind_inputs(model.path_residual)
+    residual = with_parameters_behind_inputs(path_residual)
     x, inputs, load_factor = residual.mx_in()
-    count = model.inputs.size
-    speed = ca.MX.sym("parameters_rate", model.parameters.size)
-    p = ca.MX.sym("p", model.parameters.size)
+    size = path_residual.size1_in(PARAMETERS)
+    count = inputs.size1() - size
+    speed = ca.MX.sym("parameters_rate", size)
+    p = ca.MX.sym("p", size)
     moving = residual.call([x, ca.vertcat(inputs[:count], p), load_factor], True, False)[0]
     at_point = ca.substitute(ca.jtimes(moving, p, speed), p, inputs[count:])
     words = [*residual.name_in(), "parameters_rate"]

@@ -21,7 +21,7 @@ FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
-def continuation_limits(model: Model) -> ContinuationSettings:
+def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
     """Limits of a continuation: in no step does a rod bend so much that it may pass through a smooth obstacle.
 
     A step as long as one radian of bending moves a section by half the length of the rod at most.

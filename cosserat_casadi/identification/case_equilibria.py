@@ -15,10 +15,11 @@ import numpy.typing as npt
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.continuation import Path, follow
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.tubes.tube_solve import solve_at
 
 STEPS = 12
 """Newton steps of all cases together; cases that have not converged by then are followed one by one."""
@@ -55,14 +56,14 @@ class Equilibria:
         sought: which cases are to be in equilibrium, shape (cases,); the others stay unloaded.
     """
 
-    def __init__(self, model: Model, cases: int, unloaded: Flags | None = None) -> None:
+    def __init__(self, model: AnyModel, cases: int, unloaded: Flags | None = None) -> None:
         self.model = model
         self.cases = cases
         self.sought: Flags = np.ones(cases, dtype=bool) if unloaded is None else ~unloaded
         self._tolerance = NewtonSettings()
         self._residual = self._mapped(model.residual)
         self._jacobian = self._mapped(model.jacobian)
-        self._moved = model.discrete.unknowns.differential
+        self._moved = model.shape_unknowns
         self._input_jacobian: ca.Function | None = None
         self._parameter_jacobian: ca.Function | None = None
 
@@ -103,15 +104,23 @@ class Equilibria:
         """
         x = np.zeros((self.cases, self.model.size))
         outcomes = []
-        given = p if self.model.parameters.size else None
         for case in range(self.cases):
             if not self.sought[case]:
                 outcomes.append(Outcome.CONVERGED)
                 continue
-            end = follow(load_path(self.model, inputs[case], given), continuation_limits(self.model))
-            x[case] = end.x
-            outcomes.append(end.outcome)
+            x[case], outcome = self._loaded(inputs[case], p)
+            outcomes.append(outcome)
         return Point(x, inputs, p, self._inverses(x, inputs, p)), outcomes
+
+    def _loaded(self, inputs: FloatArray, p: FloatArray) -> tuple[FloatArray, Outcome]:
+        """The end of one load path, of tubes of that from straight ones, and how it ended."""
+        model = self.model
+        if isinstance(model, TubeFunctions):
+            solution = solve_at(model.at(p), inputs)
+            return solution.x, solution.outcome
+        given = p if model.parameters.size else None
+        end = follow(load_path(model, inputs, given), continuation_limits(model))
+        return end.x, end.outcome
 
     def _inverses(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
         jacobians = self.jacobians(x, inputs, p)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -30,6 +31,7 @@ from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.step import TimeStep, stages_of
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 FIRST_STEPS = 16
 """Steps that the longest motion is first divided into; they are halved until their error is small enough."""
@@ -47,7 +49,7 @@ class StartInputs:
         held: which inputs have no table over time, so that those of the case count, shape (inputs,).
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: AnyModel) -> None:
         motions = model.scene.motions if model.scene.measured_over_time else ()
         self.held: Flags = np.ones(model.inputs.size, dtype=bool)
         for motion in motions:
@@ -108,15 +110,15 @@ class Motions:
     """The motions of a model.
 
     Attributes:
-        model: with its parameters, and flows behind the unknowns where stress relaxes.
+        model: with its parameters, and flows behind the unknowns where stress relaxes; of rods where there are times.
         unknowns: number of the unknowns of an equilibrium.
         start: inputs at the start.
         times: at which each case was measured, by its number, ascending, s.
         size: of the steps, s.
     """
 
-    def __init__(self, model: Model, times: Mapping[int, FloatArray]) -> None:
-        self.model = model.in_motion
+    def __init__(self, model: Any, times: Mapping[int, FloatArray]) -> None:
+        self.model = model.in_motion if isinstance(model, Model) else model
         self.unknowns = model.size
         self.start = StartInputs(model)
         self.times = times

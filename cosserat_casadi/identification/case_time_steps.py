@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.simulate import HALVED, LEFT_BY_HALF
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 STEP_ERROR = 0.05
 """Error that the steps leave in any number that was measured, in standard deviations, that is small enough."""
@@ -27,7 +27,7 @@ MOST_HALVINGS = 9
 """Times that the first steps are halved before they are taken as they are."""
 
 
-def given_steps(model: Model) -> bool:
+def given_steps(model: AnyModel) -> bool:
     """Whether the scene says how long the steps are."""
     simulation = model.scene.simulation
     return simulation is not None and simulation.step is not None

@@ -13,9 +13,9 @@ from cosserat_casadi.identification.identification_result import Identification,
 from cosserat_casadi.identification.measured_modes import JointModes
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.statistics import Direction, Statistics
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
 from cosserat_casadi.spelling import counted
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
@@ -38,7 +38,7 @@ class Ending:
         warnings: sentences on what looks wrong.
     """
 
-    model: Model
+    model: AnyModel
     layout: UnknownLayout
     left_out: list[LeftOut] = field(default_factory=list)
     unstable: list[str] = field(default_factory=list)

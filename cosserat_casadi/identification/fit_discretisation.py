@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with_accuracy
+from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.identification.case_motions import StartInputs
 from cosserat_casadi.identification.fitted_scene import with_inputs
 from cosserat_casadi.identification.measured_cases import Case, Datum
@@ -21,6 +22,9 @@ from cosserat_casadi.motion.vibration_modes import ModesOutcome, modes_of
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.measurements import ModeMeasurement
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.tubes.tube_solve import TubeModels, solve_inputs
 
 SAMPLES = 4
 """Cases that a discretisation is chosen on."""
@@ -42,13 +46,22 @@ class FitDiscretisation:
     Attributes:
         scene: with fixed modes and nodes, unless no case has an equilibrium to choose them on.
         warnings: sentences.
+        steps: of a piece of concentric tubes; None of rods.
     """
 
     scene: scenes.Scene
     warnings: tuple[str, ...] = ()
+    steps: int | None = None
+
+    @property
+    def model(self) -> AnyModel:
+        """The model of the scene."""
+        return build(self.scene) if self.steps is None else build(self.scene, self.steps)
 
 
-def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case], report: Report) -> FitDiscretisation:
+def with_discretisation(
+    scene: scenes.Scene, draft: AnyModel, cases: Sequence[Case], report: Report
+) -> FitDiscretisation:
     """The scene on modes and nodes that serve those cases that lie farthest apart.
 
     Args:
@@ -60,6 +73,12 @@ def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]
     if scene.accuracy.fixed:
         return FitDiscretisation(scene)
     tolerance = _tolerance(scene, cases)
+    if isinstance(draft, TubeFunctions):
+        asked = with_accuracy(scene, tolerance=tolerance)
+        models = TubeModels(robot_of(asked))
+        rows = inputs_of(cases)
+        steps = [solve_inputs(models, rows[row]).model.steps for row in _far_apart(rows, SAMPLES)]
+        return FitDiscretisation(asked, steps=max(steps))
     baked = unfixed(scene.baked(), tolerance)
     warnings: list[str] = []
     chosen: list[Discretisation] = []
@@ -100,7 +119,7 @@ def _tolerance(scene: scenes.Scene, cases: Sequence[Case]) -> float:
     default = scene.accuracy.tolerance
     if "tolerance" in scene.accuracy.model_fields_set:
         return default
-    lengths = {rod.name: rod.length for rod in scene.rods}
+    lengths = {rod.name: rod.length for rod in scene.rods} | {tube.name: tube.length for tube in scene.tubes}
     relative: list[float] = []
     for number in {number for case in cases for number in case.data}:
         record = scene.measurements[number]

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.case_equilibria import Equilibria, Point
 from cosserat_casadi.identification.case_motions import StartInputs
 from cosserat_casadi.identification.case_time_steps import STEP_ERROR, error_of_steps, given_steps, with_steps
@@ -27,6 +28,8 @@ from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fi
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.tubes.tube_stability import stability_of as stability_of_tubes
 
 SEED = 16
 """Of the cases that are held out, and of the random starts."""
@@ -101,7 +104,7 @@ class Task:
         progress: told the steps of the search.
     """
 
-    model: Model
+    model: AnyModel
     layout: UnknownLayout
     loss: Loss
     options: scenes.IdentificationSettings
@@ -366,15 +369,31 @@ class Task:
 def _unstable(misfit: Misfit, point: Point) -> list[str]:
     """Cases whose equilibrium is unstable, where that has a meaning."""
     model = misfit.model
-    allowed = variations(model)
+    is_stable = _stable_tubes(model, point.p) if isinstance(model, TubeFunctions) else _stable_rods(model)
     jacobians = misfit.equilibria.jacobians(point.x, point.inputs, point.p)
     unstable = []
     for i, (case, jacobian, inputs) in enumerate(zip(misfit.cases, jacobians, point.inputs, strict=True)):
         if not misfit.equilibria.sought[i] or not model.has_potential(inputs):
             continue
-        if not stability_of(admissible_eigenvalues(jacobian, allowed)).stable:
+        if not is_stable(point.x[i], inputs, jacobian):
             unstable.append(case.where)
     return unstable
+
+
+def _stable_rods(model: Model) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
+    """(x, inputs, Jacobian) ↦ whether the equilibrium is stable."""
+    allowed = variations(model)
+    return lambda x, inputs, jacobian: bool(stability_of(admissible_eigenvalues(jacobian, allowed)).stable)
+
+
+def _stable_tubes(model: TubeFunctions, p: FloatArray) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
+    """The same of tubes with these parameters."""
+    try:
+        bound = model.at(p)
+    except SceneError:
+        # Numbers that the scene refuses are no tubes whose stability could be told.
+        return lambda x, inputs, jacobian: True
+    return lambda x, inputs, jacobian: bool(stability_of_tubes(bound, x, inputs).stable)
 
 
 def _resolved(misfit: Misfit, state: MisfitState) -> list[bool]:
@@ -390,8 +409,8 @@ def _resolved(misfit: Misfit, state: MisfitState) -> list[bool]:
     return resolved
 
 
-def _index(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
-    """Resolution index, which is above 1 where the nodes do not resolve the rods."""
+def _index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
+    """Resolution index, which is above 1 where the nodes do not resolve the rods, or the steps the tubes."""
     parameters: list[npt.NDArray[np.float64]] = [p] if model.parameters.size else []
     return float(model.resolution_index(x, inputs, *parameters))
 

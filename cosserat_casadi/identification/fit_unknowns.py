@@ -16,12 +16,12 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.scene.input_fields import AXES
 from cosserat_casadi.scene.profiles import ENDS
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 TURN = 1e-4
 """Angle below which the derivative of a quaternion with its rotation vector is taken from the series."""
@@ -229,7 +229,7 @@ def _limits(entries: Sequence[UnknownEntry]) -> Limits:
     return Limits(lower, upper, mean, weight, np.array(ratios, dtype=bool))
 
 
-def unknown_layout(model: Model) -> UnknownLayout:
+def unknown_layout(model: AnyModel) -> UnknownLayout:
     """The unknowns of a model's scene.
 
     Raises:
@@ -287,7 +287,7 @@ def refuse_row_parameters(scene: scenes.Scene) -> None:
         raise SceneError(*refused)
 
 
-def _input_indices(model: Model) -> dict[str, list[int]]:
+def _input_indices(model: AnyModel) -> dict[str, list[int]]:
     """Places in the stacked inputs by the name of an input, or of one of its numbers."""
     indices = {name: [index] for name, index in column_indices(model.inputs).items()}
     for entry, entries in model.inputs:
@@ -296,7 +296,7 @@ def _input_indices(model: Model) -> dict[str, list[int]]:
 
 
 def _of_parameter(
-    model: Model, record: scenes.Unknown, parameter: Parameter, typical: Mapping[str, float]
+    model: AnyModel, record: scenes.Unknown, parameter: Parameter, typical: Mapping[str, float]
 ) -> UnknownEntry:
     entries = model.parameters.slices[parameter.name]
     start = parameter.default.ravel(order="F")
@@ -314,7 +314,7 @@ def _of_parameter(
     )
 
 
-def _of_input(model: Model, record: scenes.Unknown, places: list[int], typical: Mapping[str, float]) -> UnknownEntry:
+def _of_input(model: AnyModel, record: scenes.Unknown, places: list[int], typical: Mapping[str, float]) -> UnknownEntry:
     names = {index: name for name, index in column_indices(model.inputs).items()}
     labels = tuple(names[place] for place in places)
     start = model.pack()[places]
@@ -362,7 +362,7 @@ def _labels(parameter: Parameter) -> tuple[str, ...]:
     return tuple(labels)
 
 
-def _is_positive(model: Model, parameter: Parameter) -> bool:
+def _is_positive(model: AnyModel, parameter: Parameter) -> bool:
     """Whether the scene refuses the parameter with the other sign."""
     if not np.all(parameter.default > 0):
         return False
@@ -373,11 +373,9 @@ def _is_positive(model: Model, parameter: Parameter) -> bool:
     return False
 
 
-def _typical_sizes(model: Model) -> dict[str, float]:
-    """Sizes of what may have any sign, by unit: of a rod that is bent by about a radian."""
-    rods = model.discrete.nominal.rods
-    length = max(rod.properties.length for rod in rods.values())
-    energy = max(rod.energy_unit for rod in rods.values())
+def _typical_sizes(model: AnyModel) -> dict[str, float]:
+    """Sizes of what may have any sign, by unit: of a rod or a tube that is bent by about a radian."""
+    length, energy = model.typical_sizes
     return {
         "1": 1.0,
         "rad": 1.0,

@@ -12,13 +12,13 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout, parts
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.overrides import assign
 from cosserat_casadi.scene.reading import SCENE_KEYS
 from cosserat_casadi.scene.writing import scene_tables
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 
-def with_identified(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
+def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout, shared: FloatArray) -> scenes.Scene:
     """A scene with the identified values of its parameters and of the inputs that all cases share.
 
     Args:

@@ -14,9 +14,9 @@ from cosserat_casadi.identification.fitted_scene import with_identified
 from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.identification.statistics import Statistics
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.result import Result
 from cosserat_casadi.scene import Scene
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 OUTLIER = 4.0
 """Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
@@ -124,7 +124,7 @@ class Identification(Result):
         error_case: the case in which it is largest; None likewise.
     """
 
-    model: Model
+    model: AnyModel
     layout: UnknownLayout
     shared: FloatArray
     own: FloatArray

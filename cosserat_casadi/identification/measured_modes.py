@@ -67,10 +67,10 @@ class Vibrations:
     """The modes of a model about equilibria, and their derivatives.
 
     Attributes:
-        model: with its parameters.
+        model: with its parameters; of rods where vibrations were measured.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Any) -> None:
         self.model = model
         self._slope: ca.Function | None = None
 
@@ -119,7 +119,8 @@ class Vibrations:
 
     @property
     def _arguments(self) -> int:
-        return self.model.size + self.model.inputs.size + self.model.parameters.size
+        sizes = self.model.size, self.model.inputs.size, self.model.parameters.size
+        return int(sum(sizes))
 
     def _slope_function(self) -> ca.Function:
         """(x, inputs, p, l, (z, λz, λ²z)) ↦ derivatives of l (λ² M + λ C + K) z by x, inputs and p.

@@ -22,7 +22,6 @@ from cosserat_casadi.maths.rotation import (
     rotation_vector,
 )
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.section_poses import SectionPoses, interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
@@ -39,6 +38,7 @@ from cosserat_casadi.scene.measurements import (
     MeasuredStrain,
     MeasuredTension,
 )
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 
 RecordType = TypeVar("RecordType", bound=MeasurementRecord)
 
@@ -48,16 +48,22 @@ class MeasurementSite:
     """System, record and measurement that the expression of a quantity is written in.
 
     Attributes:
-        system: the equations in their symbols.
+        written: the equations in their symbols; None of tubes.
         record: the measurement.
         at: abscissae of the sections, 1×k.
         measured: the measurement, a column for each section, entries×k.
     """
 
-    system: System
+    written: System | None
     record: Any
     at: Matrix
     measured: Matrix
+
+    @property
+    def system(self) -> System:
+        """The equations of rods in their symbols."""
+        assert self.written is not None, "rules of the scene: of tubes positions and poses are measured"
+        return self.written
 
     @property
     def sections(self) -> int:
@@ -98,6 +104,24 @@ class MeasurementSite:
             return ca.repmat(pose, 1, self.sections), ca.repmat(by_unknowns, self.sections, 1)
         sections = SectionPoses(self.system, self.record.rod, self.weights(self.record.rod))
         return sections.stacked, sections.by_unknowns
+
+
+@dataclass(frozen=True)
+class TubeSite(MeasurementSite):
+    """The same of concentric tubes.
+
+    Attributes:
+        section: unknowns, inputs and abscissa ↦ position and quaternion.
+        arguments: the unknowns, the inputs and the parameters.
+    """
+
+    section: ca.Function
+    arguments: tuple[ca.MX, ...]
+
+    def placed(self) -> tuple[Matrix, Matrix]:
+        """Value of :attr:`poses`, 7×k, and its derivative with the unknowns, 7k×size."""
+        poses = ca.vertcat(*self.section.map(self.sections)(*self.arguments, self.at))
+        return poses, ca.jacobian(ca.vec(poses), self.arguments[0])
 
 
 class MeasuredQuantity(Kind, ABC, Generic[RecordType]):
@@ -326,7 +350,7 @@ def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
     return ca.horzcat(*columns)
 
 
-def difference(model: Model, record: Any, sections: int) -> ca.Function:
+def difference(model: AnyModel, record: Any, sections: int) -> ca.Function:
     """Model minus measurement, and its derivatives.
 
     Args:
@@ -338,16 +362,20 @@ def difference(model: Model, record: Any, sections: int) -> ca.Function:
         (x, inputs, p, at 1×k, measured entries×k) ↦ difference, section after section, (d k)×1, and its derivatives
         with respect to x, inputs and p.
     """
-    discrete = model.discrete
-    x = ca.MX.sym("x", discrete.size)
-    inputs = ca.MX.sym("inputs", discrete.layout.size)
-    p = discrete.parameters.symbol
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    p = model.parameters.symbol
     at = ca.MX.sym("at", 1, sections)
     measured = ca.MX.sym("measured", len(record.entries), sections)
     place = getattr(record, "at", None)
     # A place that is unknown is a number of p, whatever the rows say.
     places = ca.repmat(place, 1, sections) if is_symbolic(place) else at
-    site = MeasurementSite(System(discrete, Arguments(x, inputs)), record, places, measured)
+    site: MeasurementSite
+    if isinstance(model, TubeFunctions):
+        given = (x, inputs, p) if model.parameters.size else (x, inputs)
+        site = TubeSite(None, record, places, measured, model.section[record.rod], given)
+    else:
+        site = MeasurementSite(System(model.discrete, Arguments(x, inputs)), record, places, measured)
     stacked = ca.vec(ca.densify(ca.MX(QUANTITIES[record.quantity].difference(site))))
     derivatives = [ca.jacobian(stacked, argument) for argument in (x, inputs, p)]
     results = [stacked, *derivatives]

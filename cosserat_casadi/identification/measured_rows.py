@@ -13,7 +13,7 @@ from cosserat_casadi.identification.case_equilibria import split
 from cosserat_casadi.identification.measured_cases import Datum
 from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 Indices = npt.NDArray[np.int64]
 
@@ -31,7 +31,7 @@ class MeasuredRows:
         sigma: standard deviations of the entries of all sections of a place, one after the other.
     """
 
-    def __init__(self, model: Model, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
+    def __init__(self, model: AnyModel, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
         self.record = record
         self.cases: Indices = np.array([case for case, _ in rows], dtype=np.int64)
         self.times = np.array([data[0].time for _, data in rows])

@@ -19,8 +19,8 @@ from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.identification.measured_modes import JointModes, MeasuredModes, Vibrations
 from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.measurements import ModeMeasurement
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 Indices = npt.NDArray[np.int64]
 
@@ -65,7 +65,7 @@ class Misfit:
         offsets: where the residuals of each case begin, shape (cases + 1,).
     """
 
-    def __init__(self, model: Model, layout: UnknownLayout, cases: Sequence[Case], equilibria: Equilibria) -> None:
+    def __init__(self, model: AnyModel, layout: UnknownLayout, cases: Sequence[Case], equilibria: Equilibria) -> None:
         self.model = model
         self.layout = layout
         self.cases = cases
@@ -75,7 +75,7 @@ class Misfit:
         self.motions = Motions(model, {i: _times(case) for i, case in enumerate(cases) if case.moves})
         self.measurements: dict[int, MeasuredRows | MeasuredModes] = {}
         vibrations = Vibrations(model)
-        for number, record in enumerate(model.discrete.scene.measurements):
+        for number, record in enumerate(model.parametric_scene.measurements):
             rows = [(i, case.data[number]) for i, case in enumerate(cases) if number in case.data]
             if rows and isinstance(record, ModeMeasurement):
                 self.measurements[number] = MeasuredModes(vibrations, record, rows)

@@ -10,7 +10,10 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.identification_result import Identification
 from cosserat_casadi.identification.measured_cases import Case
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.tubes.tube_solve import error_beside, finer_than, solution_at
 
 
 def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identification:
@@ -28,7 +31,7 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
         # Numbers that the scene refuses are no model whose error could be told.
         return found
     errors = {
-        where: _error(Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0))
+        where: _error(model, inputs, x)
         for where, x, inputs in zip(found.cases, found.unknowns_x, found.inputs, strict=True)
         if not cases[where].moves
     }
@@ -41,18 +44,26 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
     return replace(told, warnings=(*told.warnings, _warning(told)))
 
 
-def _error(equilibrium: Solution) -> float:
-    """The estimated error that the tolerance binds."""
+def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
+    """The estimated error of an equilibrium that the tolerance binds; of tubes beside twice the steps."""
+    if isinstance(model, TubeFunctions):
+        solution = solution_at(model, inputs, x, found=True)
+        beside = error_beside(solution, finer_than(solution))
+        return UNKNOWN if beside is None else beside
+    equilibrium = Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0)
     error = answer_error(equilibrium)
     return error.shape if equilibrium.model.scene.accuracy.shape else error.watched
 
 
 def _warning(found: Identification) -> str:
     tolerance = found.model.scene.accuracy.tolerance
+    remedy = "Choose modes and nodes for the range of what was measured with cosserat tune."
+    if isinstance(found.model, TubeFunctions):
+        remedy = "Build the model with more steps, or identify the scene."
     error = f"may be off by {found.error_estimate:.2g} of the length"
     if found.error_estimate == UNKNOWN:
         error = "has an error that is not known"
     return (
         f"The model itself {error} in {found.error_case}, where the tolerance is {tolerance:g}: the numbers found make "
-        "up for that. Choose modes and nodes for the range of what was measured with cosserat tune."
+        f"up for that. {remedy}"
     )

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.case_motions import StartInputs, check_motions
 from cosserat_casadi.identification.fit_discretisation import with_discretisation
@@ -17,19 +18,20 @@ from cosserat_casadi.identification.identification_result import Identification
 from cosserat_casadi.identification.measured_cases import Case, Data, read_cases
 from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.identification.model_error import with_model_error
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.spelling import counted
+from cosserat_casadi.tubes.tube_functions import AnyModel
+from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS
 
 RECHOSEN = 2
 """Times that a discretisation is chosen again at the identified numbers."""
 
 
 def identify_model(
-    model: Model,
+    model: AnyModel,
     data: Data | None = None,
     *,
     hold_out: float | None = None,
@@ -66,7 +68,7 @@ def _untold(stage: str) -> None:
 
 
 def identify(
-    subject: scenes.Scene | Model,
+    subject: scenes.Scene | AnyModel,
     data: Data | None = None,
     *,
     hold_out: float | None = None,
@@ -76,10 +78,10 @@ def identify(
 ) -> Identification:
     """Identify the unknowns of a scene, or of a model, from measurements.
 
-    A model keeps its modes and nodes. A scene has modes and nodes that meet its tolerance. They are chosen on the cases
+    A model keeps its modes and nodes, or its steps. Those of a scene meet its tolerance. They are chosen on the cases
     that lie farthest apart: at the scene's own numbers, and again at the identified numbers, which may bend the rods
-    otherwise. Where that asks for other modes or nodes, the search is made on them. Where the scene writes no tolerance
-    and poses alone were measured, a tenth of the least of their deviations is enough.
+    otherwise. Where that asks for others, the search is made on them. Where the scene writes no tolerance and poses
+    alone were measured, a tenth of the least of their deviations is enough.
 
     Args:
         subject: a scene with measurements and unknowns; or a model in which these are parameters and inputs:
@@ -93,14 +95,13 @@ def identify(
     Raises:
         SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
     """
-    if isinstance(subject, Model):
+    if not isinstance(subject, scenes.Scene):
         return identify_model(subject, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
-    refuse_tubes(subject)
     scene = subject
     refuse_obstacles(scene, "an identification")
     refuse_row_parameters(scene)
     completed = scene.with_unknowns()
-    draft = build(completed)
+    draft = build(completed, FEWEST_STEPS) if scene.tubes else build(completed)
     # All that is refused is refused before time is spent on a discretisation.
     unknown_layout(draft)
     check_measured(draft)
@@ -108,9 +109,7 @@ def identify(
     tell = report or _untold
     tell("choosing the discretisation")
     choice = with_discretisation(completed, draft, cases, tell)
-    found = identify_model(
-        build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress
-    )
+    found = identify_model(choice.model, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
     for _ in range(RECHOSEN):
         if scene.accuracy.fixed or not found.converged:
             break
@@ -121,12 +120,11 @@ def identify(
             # What was found is told all the same; whoever wants the scene is told why there is none.
             break
         judged = with_discretisation(fitted, draft, _with_identified_inputs(cases, found), tell)
-        if judged.scene.accuracy == choice.scene.accuracy:
+        same = judged.scene.accuracy == choice.scene.accuracy
+        if same and judged.steps == choice.steps:
             break
         choice = replace(judged, scene=completed.model_copy(update={"accuracy": judged.scene.accuracy}))
-        found = identify_model(
-            build(choice.scene), data, hold_out=hold_out, starts=starts, report=report, progress=progress
-        )
+        found = identify_model(choice.model, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
     return replace(found, warnings=(*choice.warnings, *found.warnings))
 
 
@@ -141,7 +139,7 @@ def _with_identified_inputs(cases: Sequence[Case], found: Identification) -> lis
     return chosen
 
 
-def check_measured(model: Model) -> None:
+def check_measured(model: AnyModel) -> None:
     """Refuse a scene in which nothing was measured, or what cannot be had of it.
 
     Raises:
@@ -150,9 +148,10 @@ def check_measured(model: Model) -> None:
     scene = model.scene
     if not scene.measurements:
         raise SceneError(Problem("measurements", "missing", "say what was measured"))
-    if scene.measured_over_time:
-        check_motions(model)
-    check_vibrations(model)
+    if isinstance(model, Model):
+        if scene.measured_over_time:
+            check_motions(model)
+        check_vibrations(model)
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:

@@ -24,7 +24,7 @@ from cosserat_casadi.model.load_potential import loads_have_potential
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
-from cosserat_casadi.model.parameters import ParameterLayout
+from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.model.scene_actuators import actuators_have_potential
 from cosserat_casadi.model.scene_constraints import decisive_axes
 from cosserat_casadi.model.system import Arguments, ratio_of
@@ -33,7 +33,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 
 
 @dataclass(frozen=True)
-class Model(ModelFunctions, MotionFunctions):
+class Model(ModelFunctions, MotionFunctions, WithParameters):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
@@ -59,38 +59,14 @@ class Model(ModelFunctions, MotionFunctions):
 
     @property
     def parameters(self) -> ParameterLayout:
-        """Names, order and default values of the parameters, the third argument of the functions; often none."""
+        """Names, order and default values of the parameters."""
         return self.discrete.parameters
 
-    def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Model:
-        """The model with its parameters fixed: its functions take unknowns and inputs alone.
-
-        Unknowns keep their meaning: they are counted in units of the scene's numbers.
-
-        Args:
-            values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
-                (parameters.size,).
-
-        Raises:
-            SceneError: a name is unknown, the scene refuses a value, or a load cannot be where it is then.
-        """
-        layout = self.parameters
-        if values is not None and not isinstance(values, Mapping):
-            values = layout.split(values)
-        if not layout.size:
-            layout.pack(values)
-            return self
+    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Model:
         nominal = self.discrete.nominal
-        p = layout.pack(values).tobytes()
-        known = self.__dict__.setdefault("_bound", {})
-        if p not in known:
-            # The last one is kept: a loop solves a model with one set of parameters again and again.
-            known.clear()
-            discrete = with_numbers(nominal, layout.set_in(nominal.scene, values))
-            check_loads(discrete)
-            known[p] = Model(discrete)
-        bound: Model = known[p]
-        return bound
+        discrete = with_numbers(nominal, self.parameters.set_in(nominal.scene, values))
+        check_loads(discrete)
+        return Model(discrete)
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
         """The model, without parameters, of a scene with other constraints, on the same modes and nodes.
@@ -134,6 +110,22 @@ class Model(ModelFunctions, MotionFunctions):
     def lengths(self) -> dict[str, float]:
         """Length of each rod in the scene, m."""
         return {rod.name: rod.length for rod in self.scene.rods}
+
+    @property
+    def parametric_scene(self) -> scenes.Scene:
+        """The scene, in which parameters are entries of their symbol."""
+        return self.discrete.scene
+
+    @property
+    def shape_unknowns(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns are those of a shape, shape (size,): strains and poses, no forces."""
+        return self.discrete.unknowns.differential
+
+    @property
+    def typical_sizes(self) -> tuple[float, float]:
+        """Length, m, and energy, N m, of the longest and the stiffest rod, bent by about a radian."""
+        rods = self.discrete.nominal.rods.values()
+        return max(rod.properties.length for rod in rods), max(rod.energy_unit for rod in rods)
 
     @property
     def hessian_is_cheap(self) -> bool:

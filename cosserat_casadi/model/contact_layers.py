@@ -103,7 +103,7 @@ def thinnest(scene: scenes.Scene) -> float:
         for obstacle in scene.obstacles
         if obstacle.is_smooth
     ]
-    return min(thicknesses, default=inf) / min(rod.length for rod in scene.rods)
+    return min(thicknesses, default=inf) / min((rod.length for rod in scene.rods), default=1.0)
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:

@@ -7,9 +7,11 @@ that only scales the equations, such as EI/ℓ, is of the scene's own numbers, s
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import casadi as ca
 import numpy as np
@@ -158,6 +160,49 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
         raise SceneError(*problems)
     moving = moving_ends(scene, layout.written(scene, layout.symbol), layout.symbol, movers)
     return replace(layout, moving=moving)
+
+
+class WithParameters(ABC):
+    """A model whose functions may take parameters behind the inputs."""
+
+    @property
+    @abstractmethod
+    def parameters(self) -> ParameterLayout:
+        """Names, order and default values of the parameters, the third argument of the functions; often none."""
+
+    @abstractmethod
+    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Self:
+        """The model with constants for its parameters.
+
+        Raises:
+            SceneError: the scene refuses a value, or a load cannot be where it is then.
+        """
+
+    def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Self:
+        """The model with its parameters fixed: its functions take unknowns and inputs alone.
+
+        Unknowns keep their meaning: they are counted in units of the scene's numbers.
+
+        Args:
+            values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
+                (parameters.size,).
+
+        Raises:
+            SceneError: a name is unknown, the scene refuses a value, or a load cannot be where it is then.
+        """
+        layout = self.parameters
+        if values is not None and not isinstance(values, Mapping):
+            values = layout.split(values)
+        p = layout.pack(values).tobytes()
+        if not layout.size:
+            return self
+        known = self.__dict__.setdefault("_models", {})
+        if p not in known:
+            # The last one is kept: a loop solves a model with one set of parameters again and again.
+            known.clear()
+            known[p] = self._bound(values)
+        bound: Self = known[p]
+        return bound
 
 
 NO_PARAMETERS = ParameterLayout(())

@@ -16,5 +16,8 @@ def refuse_tubes(subject: scenes.Scene | OfScene) -> None:
     scene = subject if isinstance(subject, scenes.Scene) else subject.scene
     if scene.tubes:
         problem = "this works on rods, and the scene has concentric tubes"
-        remedy = "solve, path, inverse, sweep, export and check take them"
+        remedy = (
+            "solve, path, inverse, sweep, export, identify and check take them, each answer with the steps that its "
+            "tolerance asks for, so that nothing is chosen over ranges; build takes them with a number of steps"
+        )
         raise SceneError(Problem("tubes", problem, remedy))

@@ -24,7 +24,7 @@ class FrameMeasurement(MovingMeasurement):
     references: ClassVar[Mapping[str, str]] = {"rod": "rods", "body": "bodies"}
     of_sensor: ClassVar[tuple[str, ...]] = ("at", "offset")
 
-    rod: str | None = Field(None, description="name of the rod; or body")
+    rod: str | None = Field(None, description="name of the rod, or of the tube; or body")
     at: Abscissa = Field(1.0, description="abscissa X of the section, or the column that has it, without unit")
     body: str | None = Field(None, description="name of the body; or rod")
     offset: Vector = Field(

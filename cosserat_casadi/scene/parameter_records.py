@@ -23,7 +23,7 @@ from cosserat_casadi.scene.profiles import ENDS
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.spelling import closest
 
-PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "disks", "supports", "measurements")
+PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "disks", "supports", "measurements", "tubes")
 """Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
 
 SPAN = ("start", "end")

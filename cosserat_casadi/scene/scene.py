@@ -257,7 +257,7 @@ inputs = ["push.force", "cable.tension"]
         names = [name for measurement in self.measurements for name in measurement.set_inputs]
         names += [unknown.input for unknown in self.unknowns if unknown.input is not None]
         # The same owners as in the rules: inputs of a load or an actuator hide those of a rod of the same name.
-        owners = {record.name: record for record in (*self.rods, *self.input_owners)}
+        owners = {record.name: record for record in (*self.rods, *self.tubes, *self.input_owners)}
         fields = []
         for name in names:
             owner, _, rest = name.partition(".")

@@ -14,11 +14,27 @@ from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
-BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes", "ranges", "bounds", "targets")
+BESIDE_TUBES = (
+    "schema",
+    "title",
+    "accuracy",
+    "parameters",
+    "loads",
+    "tubes",
+    "ranges",
+    "bounds",
+    "targets",
+    "measurements",
+    "unknowns",
+    "identification",
+)
 """Keys of a scene that may stand beside tubes."""
 
 LOADS_ON_TUBES = ("tip_wrench", "point_wrench", "distributed_wrench", "gravity")
 """Kinds of loads that act on tubes."""
+
+MEASURED_ON_TUBES = ("position", "pose")
+"""Quantities that can be measured on tubes."""
 
 OF_RODS = ("shape", "modes", "nodes", "rotation", "chosen_for")
 """Keys of `[accuracy]` that are for rods."""
@@ -109,10 +125,15 @@ translation = 0.15
         description="how far its tip stands out of the plate along the tube, m; at most its length"
     )
 
+    @property
+    def length(self) -> float:
+        """Length of both parts, m."""
+        return self.straight + self.curved
+
     def input_upper(self, field: str) -> float:
         """A tube is not pushed out of its drive; inf of its rotation."""
         if field == "translation":
-            return self.straight + self.curved
+            return self.length
         return super().input_upper(field)
 
     @classmethod
@@ -161,6 +182,7 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
     yield from _nesting_faults(scene)
     yield from _load_faults(scene)
     yield from _target_faults(scene)
+    yield from _measurement_faults(scene)
     yield from _weightless_tubes(scene)
 
 
@@ -195,6 +217,17 @@ def _target_faults(scene: SceneTables) -> Iterator[Fault]:
             yield Fault(("targets", index, "kind"), "is for points along a rod", remedy)
         elif numbers_of(target.get("at", 1.0)) != [1.0]:
             yield Fault(("targets", index, "at"), "is a place on a rod", "leave it out: of a tube it is the tip")
+
+
+def _measurement_faults(scene: SceneTables) -> Iterator[Fault]:
+    """Quantities that are of rods, and measurements over time."""
+    for index, measurement in scene.tables("measurements"):
+        quantity = measurement.get("quantity")
+        if isinstance(quantity, str) and quantity not in MEASURED_ON_TUBES:
+            remedy = f"of tubes, give {' or '.join(MEASURED_ON_TUBES)}"
+            yield Fault(("measurements", index, "quantity"), f"{shown(quantity)} is not measured on tubes", remedy)
+        if "time" in measurement:
+            yield Fault(("measurements", index, "time"), "is of a motion, and tubes have none", "leave it out")
 
 
 def _spread_faults(load: Table) -> Iterator[Fault]:

@@ -1,7 +1,8 @@
 """Functions with the changes of their results, and steps along a robot with the changes of its state.
 
-A robot changes with its unknowns, with the translations of its tubes, which move the ends of its pieces, and with its
-loads. Steps are taken once for all of these directions: what does not depend on the direction is computed once.
+A robot changes with its unknowns, with the translations of its tubes, which move the ends of its pieces, with its
+loads, and with its parameters. Steps are taken once for all of these directions: what does not depend on the direction
+is computed once.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from cosserat_casadi.tubes.stages import Staged, composed
 
 @dataclass(frozen=True)
 class Directions:
-    """Directions in which a robot changes, in this order: its m unknowns, its n translations, the numbers of its loads.
+    """Directions in which a robot changes: its m unknowns, its n translations, the numbers of its loads, parameters.
 
     Attributes:
         robot: the tubes.
@@ -32,12 +33,24 @@ class Directions:
     @property
     def count(self) -> int:
         """Number of directions."""
-        return self.unknowns + len(self._moving)
+        return self.unknowns + len(self._moving) + self.robot.parameters.size
 
     @property
     def translations(self) -> slice:
         """Which of them are translations."""
         return slice(self.unknowns, self.unknowns + self.robot.size)
+
+    @property
+    def parameters(self) -> slice:
+        """Which of them are parameters."""
+        first = self.unknowns + len(self._moving)
+        return slice(first, first + self.robot.parameters.size)
+
+    @property
+    def stretching(self) -> list[int]:
+        """Which of them change the lengths of pieces: translations and parameters."""
+        every = list(range(self.count))
+        return [*every[self.translations], *every[self.parameters]]
 
     @cached_property
     def _moving(self) -> list[int]:
@@ -48,14 +61,26 @@ class Directions:
     @property
     def of_x(self) -> ca.DM:
         """Changes of the unknowns, a column for each direction."""
-        return ca.horzcat(ca.DM.eye(self.unknowns), ca.DM(self.unknowns, len(self._moving)))
+        return self._among(ca.DM.eye(self.unknowns), slice(0, self.unknowns))
 
     @property
     def of_inputs(self) -> ca.DM:
         """Changes of the inputs, a column for each direction."""
         size = self.robot.inputs.size
-        chosen = ca.DM.eye(size)[:, self._moving]
-        return ca.horzcat(ca.DM(size, self.unknowns), chosen)
+        return self._among(ca.DM.eye(size)[:, self._moving], slice(self.unknowns, self.parameters.start))
+
+    @property
+    def of_given(self) -> list[ca.DM]:
+        """Changes of the inputs, then of the parameters where there are any."""
+        if not self.robot.parameters.size:
+            return [self.of_inputs]
+        return [self.of_inputs, self._among(ca.DM.eye(self.robot.parameters.size), self.parameters)]
+
+    def _among(self, columns: ca.DM, place: slice) -> ca.DM:
+        """Columns at their place among those of all directions."""
+        among = ca.DM(columns.size1(), self.count)
+        among[:, place] = columns
+        return among
 
     def by_inputs(self, changes: Matrix, by_rotations: Matrix) -> Matrix:
         """Derivatives with all inputs in their order.
@@ -101,11 +126,13 @@ def changing_step(staged: Staged, directions: Directions) -> ca.Function:
     """(stacked, lengths, section) ↦ stacked: a step of the state and its changes.
 
     Stacked are the state, the carried numbers, and the changes of both column after column. The lengths are the length
-    of the step and its derivatives with the translations, (1 + n)×1; the section is without the carried numbers.
+    of the step and its derivatives in the directions that stretch it; the section is without the carried numbers, and
+    behind it are its changes with the parameters, column after column.
     """
     stacked = ca.SX.sym("stacked", staged.width_with_carried * (1 + directions.count))
-    before, length = (ca.SX.sym(name, 1 + directions.robot.size) for name in ("before", "length"))
-    section = ca.SX.sym("section", staged.stage.size1_in(3) - staged.carried)
+    before, length = (ca.SX.sym(name, 1 + len(directions.stretching)) for name in ("before", "length"))
+    width = staged.stage.size1_in(3) - staged.carried
+    section = ca.SX.sym("section", width * (1 + directions.robot.parameters.size))
     stage = _changed(staged, staged.stage, directions, stacked, [before, length], section)
     last = _changed(staged, staged.last, directions, stacked, [length], section)
     return composed(
@@ -123,18 +150,21 @@ def _changed(
     lengths: list[ca.SX],
     section: ca.SX,
 ) -> Matrix:
-    """The state and its changes after a stage."""
+    """The state and its changes after a stage; arguments as for :func:`changing_step`."""
     width = staged.width_with_carried
     state = stacked[: staged.width]
     carried = stacked[staged.width : width]
-    after = function(state, *[length[0] for length in lengths], ca.vertcat(section, carried))
+    constants = section[: staged.stage.size1_in(3) - staged.carried]
+    after = function(state, *[length[0] for length in lengths], ca.vertcat(constants, carried))
     # Nobody asks for the energy here: without it, it costs nothing.
     after[staged.energy] = 0
     changes = ca.reshape(stacked[width:], width, directions.count)
     of_lengths = ca.SX(len(lengths), directions.count)
     for index, length in enumerate(lengths):
-        of_lengths[index, directions.translations] = length[1:].T
-    arguments = ca.vertcat(stacked[:width], *[length[0] for length in lengths])
-    moved = ca.jtimes(ca.vertcat(after, carried), arguments, ca.vertcat(changes, of_lengths))
+        of_lengths[index, directions.stretching] = length[1:].T
+    of_constants = ca.SX(constants.size1(), directions.count)
+    of_constants[:, directions.parameters] = ca.reshape(section[constants.size1() :], constants.size1(), -1)
+    arguments = ca.vertcat(stacked[:width], *[length[0] for length in lengths], constants)
+    moved = ca.jtimes(ca.vertcat(after, carried), arguments, ca.vertcat(changes, of_lengths, of_constants))
     both: Matrix = ca.cse(ca.vertcat(after, carried, ca.vec(ca.densify(moved))))
     return both

@@ -90,7 +90,7 @@ class LoadedTubeModel(TubeFunctions):
         momenta[2 * self.tube_count + VECTOR : 2 * self.tube_count + 2 * VECTOR, self.tube_count :] = np.eye(VECTOR)
         count = self._lengths.size2()
         starts = ca.vertcat(stations[:width, :-1], ca.repmat(ca.vec(ca.DM(momenta)), 1, count))
-        ends = self._tangent_step.map(count)(starts, self._lengths, self._stacked_sections)
+        ends = self._tangent_step.map(count)(starts, self._lengths, self._whole.sections)
         height = 2 * self.tube_count + 3 * VECTOR
         outputs = {
             "stations": stations[:width, :],
@@ -110,17 +110,8 @@ class LoadedTubeModel(TubeFunctions):
         """Whether there are forces per length."""
         return any(load.spread for load in self.robot.loads)
 
-    @property
-    def _whole(self) -> March:
-        return self._marched[0]
-
-    @property
-    def _stacked_sections(self) -> Matrix:
-        """Stacked section of every step, with the loads."""
-        return self._marched[1]
-
     @cached_property
-    def _marched(self) -> tuple[March, Matrix]:
+    def _whole(self) -> March:
         """Take the steps of all pieces from the tip on, and pick up the loads on the way."""
         steps = self._step.mapaccum("steps", self.steps)
         lengths = ca.horzsplit(self._lengths, self.steps)
@@ -128,6 +119,7 @@ class LoadedTubeModel(TubeFunctions):
         forces = _Forces(ca.MX.zeros(3), ca.MX.zeros(3))
         ends = [self._tip.stacked]
         stations = [self._tip.stacked]
+        starts = []
         loaded_sections = []
         for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
             start, forces = self._picked_up(piece, LoadedState.of(ends[-1]), forces)
@@ -138,8 +130,9 @@ class LoadedTubeModel(TubeFunctions):
             passed = steps(start.stacked, length, loaded_section)
             ends.append(passed[:, -1])
             stations.append(passed)
+            starts += [start.stacked, passed[:, :-1]]
             loaded_sections.append(loaded_section)
-        return March(ends, ca.horzcat(*stations)), ca.horzcat(*loaded_sections)
+        return March(ends, ca.horzcat(*stations), ca.horzcat(*starts), ca.horzcat(*loaded_sections))
 
     @property
     def _tip(self) -> LoadedState:
@@ -164,12 +157,11 @@ class LoadedTubeModel(TubeFunctions):
         """
         _, inputs, _ = self._arguments
         for index, rank in enumerate(self._ranks):
-            for number, load in enumerate(self.robot.loads):
-                share = float(load.shares[index])
-                if share == 0.0:
+            for number, load in enumerate(self.robot.numbers.loads):
+                if index not in load.bearers:
                     continue
                 start = self.robot.load_start(number)
-                value = share * inputs[start : start + COMPONENTS]
+                value = load.shares[index] * inputs[start : start + COMPONENTS]
                 at = self._point_ranks.get(number, rank)
                 yield load, ca.if_else(at == ca.MX(piece), value, 0.0), index
 
@@ -178,14 +170,14 @@ class LoadedTubeModel(TubeFunctions):
         """Where forces act beside the tips, as far as they do so outside: the housing bears those in it."""
         places = []
         for load in self._point_loads.values():
-            tip, _ = self._ends[int(np.argmax(load.shares))]
+            tip, _ = self._ends[load.bearers[0]]
             places.append(ca.fmax(tip - load.from_tip, 0.0))
         return places
 
     @property
     def _point_loads(self) -> dict[int, TubeLoad]:
         """Loads that act beside the tips, by their number."""
-        return {number: load for number, load in enumerate(self.robot.loads) if load.from_tip > 0.0}
+        return {number: load for number, load in enumerate(self.robot.numbers.loads) if load.is_beside_tip}
 
     @cached_property
     def _point_ranks(self) -> dict[int, ca.MX]:
@@ -218,13 +210,14 @@ class LoadedTubeModel(TubeFunctions):
         """States without the energy of loads, each with its changes behind it, column after column."""
         steps = self._tangent_step.mapaccum("steps", self.steps)
         lengths = ca.horzsplit(self._lengths, self.steps)
-        sections = ca.horzsplit(self._stacked_sections, self.steps)
+        sections = ca.horzsplit(self._whole.sections, self.steps)
         height = 2 * self.tube_count + 3 * VECTOR
         at_tip = np.zeros((height, self.tube_count + VECTOR))
         at_tip[: self.tube_count, : self.tube_count] = np.eye(self.tube_count)
         at_tip[2 * self.tube_count : 2 * self.tube_count + VECTOR, self.tube_count :] = np.eye(VECTOR)
         ends = [ca.vertcat(self._tip.stacked, ca.vec(ca.DM(at_tip)))]
         stations = list(ends)
+        starts = []
         for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
             state = LoadedState.of(ends[-1][: self._width])
             tangent = LoadedTangent.of(ca.reshape(ends[-1][self._width :], height, -1))
@@ -235,10 +228,12 @@ class LoadedTubeModel(TubeFunctions):
                 tangent = tangent.picked_up(load, _in_world(load, borne, index, state), index, state)
                 tip, _ = self._ends[index]
                 state, forces = _with_load(load, borne, index, tip, state, forces)
-            passed = steps(ca.vertcat(state.stacked, ca.vec(tangent.stacked)), length, section)
+            start = ca.vertcat(state.stacked, ca.vec(tangent.stacked))
+            passed = steps(start, length, section)
             ends.append(passed[:, -1])
             stations.append(passed)
-        return March(ends, ca.horzcat(*stations))
+            starts += [start, passed[:, :-1]]
+        return March(ends, ca.horzcat(*stations), ca.horzcat(*starts), self._whole.sections)
 
     @cached_property
     def _jacobian(self) -> Matrix:

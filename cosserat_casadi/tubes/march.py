@@ -36,7 +36,11 @@ class March:
     Attributes:
         ends: stacked states at the ends of the pieces.
         stations: stacked states at all ends of steps from the tip to the plate, a column each.
+        starts: stacked states that the steps begin with, beyond the loads that act there, a column each.
+        sections: stacked sections of the steps, with the loads, a column each.
     """
 
     ends: list[Matrix]
     stations: Matrix
+    starts: Matrix
+    sections: Matrix

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.scene_rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
 from cosserat_casadi.spelling import closest
@@ -32,8 +33,34 @@ SLACK = 1e-12
 
 
 @dataclass(frozen=True)
+class TubeNumbers:
+    """Numbers of tubes, one entry a tube in the order of the scene: known, or expressions of parameters.
+
+    Attributes:
+        bending: EI, shape (n,), N m².
+        torsion: GJ, shape (n,), N m².
+        curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
+        straight: length of the straight part, shape (n,), m.
+        curved: length of the curved part behind it, shape (n,), m.
+        loads: what acts on the tubes, m inputs of three numbers.
+    """
+
+    bending: Numbers
+    torsion: Numbers
+    curvature: Numbers
+    straight: Numbers
+    curved: Numbers
+    loads: tuple[TubeLoad, ...]
+
+    @property
+    def length(self) -> Numbers:
+        """Lengths of the tubes, shape (n,), m."""
+        return self.straight + self.curved
+
+
+@dataclass(frozen=True)
 class Robot:
-    """Tubes as arrays with one entry a tube, in the order of the scene.
+    """Tubes as arrays with one entry a tube, in the order of the scene; parameters have the scene's values.
 
     Attributes:
         scene: where the tubes are from.
@@ -45,6 +72,7 @@ class Robot:
         curved: length of the curved part behind it, shape (n,), m.
         loads: what acts on the tubes, m inputs of three numbers.
         layout: the inputs: rotation and translation of each tube, then the loads, 2 n + 3 m numbers.
+        parameters: numbers that are arguments of the model's functions; often none.
     """
 
     scene: scenes.Scene
@@ -56,6 +84,12 @@ class Robot:
     curved: FloatArray
     loads: tuple[TubeLoad, ...]
     layout: InputLayout
+    parameters: ParameterLayout = NO_PARAMETERS
+
+    @cached_property
+    def numbers(self) -> TubeNumbers:
+        """The numbers of the tubes, expressions where parameters change them."""
+        return tube_numbers(self.parameters.written(self.scene, self.parameters.symbol))
 
     @cached_property
     def inputs(self) -> FloatArray:
@@ -171,28 +205,52 @@ class Robot:
 
 
 def robot_of(scene: scenes.Scene) -> Robot:
-    """The tubes of a scene.
+    """The tubes of a scene, all of whose numbers are constants.
 
     Raises:
         SceneError: the scene has no tubes.
     """
     if not scene.tubes:
         raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve"))
-    stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
+    numbers = tube_numbers(scene)
     return Robot(
-        scene=scene,
+        scene=scene.baked(),
         names=tuple(tube.name for tube in scene.tubes),
-        bending=stiffness[:, 0],
-        torsion=stiffness[:, 1],
-        curvature=np.array([tube.curvature for tube in scene.tubes]),
-        straight=np.array([tube.straight for tube in scene.tubes]),
-        curved=np.array([tube.curved for tube in scene.tubes]),
-        loads=loads_of(scene),
+        bending=known(numbers.bending),
+        torsion=known(numbers.torsion),
+        curvature=known(numbers.curvature),
+        straight=known(numbers.straight),
+        curved=known(numbers.curved),
+        loads=numbers.loads,
         layout=input_layout(scene),
     )
 
 
-def _stiffness(tube: scenes.Tube) -> tuple[float, float]:
+def parametric_robot(scene: scenes.Scene) -> Robot:
+    """The tubes of a scene whose parameters are arguments of the model's functions.
+
+    Raises:
+        SceneError: the scene has no tubes.
+    """
+    if not scene.parameters:
+        return robot_of(scene)
+    return replace(robot_of(scene), scene=scene, parameters=parameter_layout(scene))
+
+
+def tube_numbers(scene: scenes.Scene) -> TubeNumbers:
+    """The numbers of the tubes of a scene, some of which may be expressions of parameters."""
+    stiffness = [_stiffness(tube) for tube in scene.tubes]
+    return TubeNumbers(
+        bending=as_vector([bending for bending, _ in stiffness]),
+        torsion=as_vector([torsion for _, torsion in stiffness]),
+        curvature=as_vector([tube.curvature for tube in scene.tubes]),
+        straight=as_vector([tube.straight for tube in scene.tubes]),
+        curved=as_vector([tube.curved for tube in scene.tubes]),
+        loads=loads_of(scene),
+    )
+
+
+def _stiffness(tube: scenes.Tube) -> tuple[Scalar, Scalar]:
     """EI and GJ of a tube, N m²."""
     if tube.stiffness is not None:
         return tube.stiffness.bending, tube.stiffness.torsion
@@ -201,7 +259,8 @@ def _stiffness(tube: scenes.Tube) -> tuple[float, float]:
     # The rules of the scene have seen to it that one of the two is given whole.
     assert material is not None
     assert section is not None
-    shape = annulus(np.array([section.outer_radius]), np.array([section.inner_radius]))
+    shape = annulus(as_vector([section.outer_radius]), as_vector([section.inner_radius]))
     diagonal = hooke(shape, material.youngs_modulus, shear_modulus(material), shear_correction=1.0)
-    bending, _, torsion, *_ = known(diagonal)[0]
-    return float(bending), float(torsion)
+    bending: Scalar = diagonal[0, 0]
+    torsion: Scalar = diagonal[0, 2]
+    return bending, torsion

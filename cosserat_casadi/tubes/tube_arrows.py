@@ -31,7 +31,7 @@ def load_arrows(solution: TubeSolution) -> list[Arrow]:
 
 def borne_loads(robot: Robot) -> list[tuple[TubeLoad, int]]:
     """Loads, each with the index of a tube that bears it."""
-    return [(load, index) for load in robot.loads for index in np.flatnonzero(load.shares).tolist()]
+    return [(load, index) for load in robot.loads for index in load.bearers]
 
 
 def sort_of(load: TubeLoad) -> Sort:
@@ -44,15 +44,20 @@ def sort_of(load: TubeLoad) -> Sort:
 def arrows_on(solution: TubeSolution, load: TubeLoad, tube: int) -> tuple[list[FloatArray], FloatArray]:
     """Places of the arrows of one load on one tube, and their vector, world axes; none where the housing bears it."""
     robot = solution.robot
-    vector = load.shares[tube] * solution.inputs[robot.layout.slices[load.name]]
+    vector = float(load.shares[tube]) * solution.inputs[robot.layout.slices[load.name]]
     if load.follower:
         vector = _frame(solution, load, tube) @ vector
-    reach = float(robot.translations(solution.inputs)[tube]) - load.from_tip
+    reach = _reach(solution, load, tube)
     if load.spread:
         return [_point(solution, distance) for distance in np.linspace(0.0, reach, ALONG)], vector
-    if load.from_tip > 0.0:
+    if load.is_beside_tip:
         return [_point(solution, reach)] if reach > 0.0 else [], vector
     return [solution.tips[robot.names[tube]].position], vector
+
+
+def _reach(solution: TubeSolution, load: TubeLoad, tube: int) -> float:
+    """Distance from the plate to where a load acts on a tube, or to where a spread one ends, m."""
+    return float(solution.robot.translations(solution.inputs)[tube]) - float(load.from_tip)
 
 
 def _point(solution: TubeSolution, distance: float) -> FloatArray:
@@ -64,10 +69,10 @@ def _point(solution: TubeSolution, distance: float) -> FloatArray:
 def _frame(solution: TubeSolution, load: TubeLoad, tube: int) -> FloatArray:
     """Rotation of a tube where a load acts on it, shape (3, 3)."""
     robot = solution.robot
-    if load.from_tip == 0.0:
+    if not load.is_beside_tip:
         return solution.tips[robot.names[tube]].rotation
     shape = solution.shape
-    reach = float(robot.translations(solution.inputs)[tube]) - load.from_tip
+    reach = _reach(solution, load, tube)
     station = int(np.argmin(np.abs(shape.distance - reach)))
     half = shape.angles[station, tube] / 2
     turn = quaternion_to_matrix(np.array([np.cos(half), 0.0, 0.0, np.sin(half)]))

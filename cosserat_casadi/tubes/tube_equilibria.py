@@ -134,6 +134,7 @@ def tubes_at_rest(
     values: Values = None,
     *,
     start: TubeSolution | FloatArray | None = None,
+    parameters: Values = None,
     stable: bool = False,
     estimate_error: bool = True,
     progress: Progress | None = None,
@@ -146,6 +147,7 @@ def tubes_at_rest(
         values: as in :func:`solve_tubes`.
         start: of a model: a solution whose inputs are followed to these, or unknowns near the equilibrium; where that
             leads nowhere, and by default, straight tubes.
+        parameters: of a model, by name or stacked; by default the scene's.
         stable: as in :func:`cosserat_casadi.solve`.
         estimate_error: of a model, whether its error is estimated, by the equilibrium with twice its steps.
         progress: not called: the search takes a moment.
@@ -156,6 +158,7 @@ def tubes_at_rest(
     """
     if isinstance(subject, scenes.Scene):
         return stable_tubes(subject, values) if stable else solve_tubes(subject, values)
+    subject = subject.at(parameters)
     inputs = subject.pack(values)
     if stable:
         # The unknowns do not depend on the steps.

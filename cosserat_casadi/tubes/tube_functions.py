@@ -7,22 +7,27 @@ from there to the base plate.
 from __future__ import annotations
 
 import itertools
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, Self
+from typing import Self, TypeAlias
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import POSE_SIZE, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.march import AnyState, March
-from cosserat_casadi.tubes.robot import Robot, Values
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.stages import Staged
 from cosserat_casadi.tubes.variations import TipVariations
 
@@ -32,17 +37,19 @@ NEWTON_TOLERANCE = 1e-12
 NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
 
+RESOLVED = 64.0
+"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
 
-PATH = ("x", "inputs", "load_factor")
-"""Arguments of the functions on the way from straight tubes, load factor 0, to those of the scene, 1."""
+Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
-class TubeFunctions(ABC):
+class TubeFunctions(WithParameters):
     """A robot of concentric tubes with a number of steps.
 
     Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
-    rotation and the translation of each tube, then the loads. Those of a path have the names and arguments that they
-    have in :class:`cosserat_casadi.Model`; the load factor multiplies all curvatures, so that 0 is straight tubes.
+    rotation and the translation of each tube, then the loads; behind the inputs the parameters, where the scene names
+    some. Those of a path have the names and arguments that they have in :class:`cosserat_casadi.Model`; the load factor
+    multiplies all curvatures, so that 0 is straight tubes.
 
     Attributes:
         robot: the tubes.
@@ -78,9 +85,13 @@ class TubeFunctions(ABC):
         """Length that the pose error of each tube is relative to, m: that of the longest one."""
         return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
 
-    def at(self, values: Any = None) -> Self:
-        """The model itself: tubes have no parameters."""
-        return self
+    @property
+    def parameters(self) -> ParameterLayout:
+        """Names, order and default values of the parameters."""
+        return self.robot.parameters
+
+    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Self:
+        return type(self)(robot_of(self.parameters.set_in(self.scene, values)), self.steps)
 
     def pack(self, values: Values = None) -> FloatArray:
         """The stacked inputs, as :meth:`Robot.packed`."""
@@ -128,6 +139,11 @@ class TubeFunctions(ABC):
 
     @property
     @abstractmethod
+    def _step(self) -> ca.Function:
+        """(state, length, section) ↦ state: a step of such states."""
+
+    @property
+    @abstractmethod
     def _staged(self) -> Staged:
         """A step of such states, in its stages."""
 
@@ -147,6 +163,33 @@ class TubeFunctions(ABC):
     # What is asked of the model
 
     @cached_property
+    def parametric_scene(self) -> Scene:
+        """The scene, in which parameters are entries of their symbol."""
+        return self.parameters.written(self.scene, self.parameters.symbol)
+
+    @property
+    def shape_unknowns(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns are those of a shape, shape (size,): all."""
+        return np.ones(self.size, dtype=bool)
+
+    @property
+    def typical_sizes(self) -> tuple[float, float]:
+        """Length, m, and energy, N m, of the longest and stiffest tube, bent by about a radian."""
+        length = float(self.robot.length.max())
+        return length, float(self.robot.bending.max()) / length
+
+    @cached_property
+    def halved(self) -> Self:
+        """The robot with half of the steps."""
+        return type(self)(self.robot, max(self.steps // 2, 1))
+
+    @cached_property
+    def resolution_index(self) -> ca.Function:
+        """(x, inputs) ↦ residual that half of the steps leave, over the largest that is enough; above 1 unresolved."""
+        missed = ca.norm_inf(self.halved.residual(*self._symbols.values()))
+        return self._function("resolution_index", {"index": missed / (RESOLVED * self.robot.tolerance)})
+
+    @cached_property
     def residual(self) -> ca.Function:
         """(x, inputs) ↦ residual, zero in equilibrium: see the model; angles in rad."""
         return self._function("residual", {"residual": self._residual})
@@ -163,23 +206,28 @@ class TubeFunctions(ABC):
         return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
+    def parameter_jacobian(self) -> ca.Function:
+        """(x, inputs, p) ↦ derivative of the residual with the parameters, a column each."""
+        by_parameters = ca.jacobian(self._residual, self.parameters.symbol)
+        return self._function("parameter_jacobian", {"parameter_jacobian": by_parameters})
+
+    @cached_property
     def path_residual(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ residual of tubes whose curvatures are those of the scene times the factor."""
-        return ca.Function("path_residual", [*self._arguments], [self._residual], [*PATH], ["residual"])
+        return self._on_path("path_residual", {"residual": self._residual})
 
     @cached_property
     def path_jacobian(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ derivative of that residual with x."""
-        return ca.Function("path_jacobian", [*self._arguments], [self._jacobian], [*PATH], ["jacobian"])
+        return self._on_path("path_jacobian", {"jacobian": self._jacobian})
 
     @cached_property
     def path_rate(self) -> ca.Function:
         """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of that residual at fixed x."""
         _, inputs, load_factor = self._arguments
-        rates = ca.MX.sym("inputs_rate", inputs.size1()), ca.MX.sym("load_factor_rate")
-        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates))
-        names = [*PATH, "inputs_rate", "load_factor_rate"]
-        return ca.Function("path_rate", [*self._arguments, *rates], [rate], names, ["residual_rate"])
+        rates = {"inputs_rate": ca.MX.sym("inputs_rate", inputs.size1()), "load_factor_rate": ca.MX.sym("rate")}
+        rate = ca.jtimes(self._residual, ca.vertcat(inputs, load_factor), ca.vertcat(*rates.values()))
+        return self._on_path("path_rate", {"residual_rate": rate}, rates)
 
     @property
     def step_weights(self) -> FloatArray:
@@ -204,15 +252,15 @@ class TubeFunctions(ABC):
         writes it in C. Full steps from the start, at most NEWTON_STEPS. Where the angle missed is not small, or no
         number, nothing was found: whoever calls it has to look.
         """
-        x, inputs, _ = self._arguments
-        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs)])
+        x, *given = self._symbols.values()
+        missed = ca.Function("missed", [x, *given], [self.residual(x, *given)])
         options = {"abstol": NEWTON_TOLERANCE, "max_iter": NEWTON_STEPS}
-        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, inputs)
+        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, *given)
         return ca.Function(
             "equilibrium",
-            [x, inputs],
-            [found, ca.sum1(ca.fabs(missed(found, inputs)))],
-            ["start", "inputs"],
+            [x, *given],
+            [found, ca.sum1(ca.fabs(missed(found, *given)))],
+            ["start", *list(self._symbols)[1:]],
             ["x", "missed"],
         )
 
@@ -245,13 +293,27 @@ class TubeFunctions(ABC):
         return functions
 
     @cached_property
+    def section(self) -> dict[str, ca.Function]:
+        """(x, inputs, at) ↦ position, m, and quaternion of a section of a tube in base axes, by name.
+
+        The abscissa at is 0 at the drive's end of the tube and 1 at its tip. In the housing tubes are straight.
+        """
+        at = ca.MX.sym("at")
+        functions = {}
+        for index, name in enumerate(self.robot.names):
+            pose = self._section_pose(index, at)
+            outputs = {"position": pose.position, "quaternion": pose.quaternion}
+            functions[name] = self._function("section", outputs, {"at": at})
+        return functions
+
+    @cached_property
     def tip_jacobian(self) -> ca.Function:
         """(x, inputs) ↦ derivatives of the poses of all tips with the inputs in equilibrium, 6 n rows.
 
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per unit of the input. Unknowns
         follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs = self.sensitivity(*self._arguments[:2])
+        jacobian, by_inputs, poses, poses_by_x, poses_by_inputs, *_ = self.sensitivity(*self._symbols.values())
         following = -ca.solve(jacobian, by_inputs)
         changes = poses_by_inputs + poses_by_x @ following
         rows: list[Matrix] = []
@@ -267,14 +329,15 @@ class TubeFunctions(ABC):
         """(x, inputs) ↦ derivatives of residual and tips, from one integration with all changes.
 
         Derivatives of the residual with x, square, and with the inputs; positions and quaternions of the tips in base
-        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube.
+        axes, 7×n, and their derivatives with x and with the inputs at the same x, 7 n rows, tube after tube. Where the
+        scene names parameters, derivatives of both with these.
         """
-        x, inputs, _ = self._arguments
+        x, *given = self._symbols.values()
         directions = Directions(self.robot, self.size)
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
-        at_plate = with_changes(self._of_plate, directions, {1: directions.of_x, 2: directions.of_inputs})
-        _, missed = at_plate(plate, x, inputs, plate_changes)
+        fixed = dict(enumerate([directions.of_x, *directions.of_given], start=1))
+        _, missed = with_changes(self._of_plate, directions, fixed)(plate, x, *given, plate_changes)
         # A rotation turns its drive, and changes nothing else.
         by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
@@ -294,28 +357,36 @@ class TubeFunctions(ABC):
             "poses_by_x": moved[:, : self.size],
             "poses_by_inputs": directions.by_inputs(moved, ca.DM(moved.size1(), self.tube_count)),
         }
+        if self.parameters.size:
+            outputs["by_parameters"] = missed[:, directions.parameters]
+            outputs["poses_by_parameters"] = moved[:, directions.parameters]
         return self._function("sensitivity", outputs)
 
     def _changing(self, directions: Directions) -> list[tuple[Matrix, Matrix]]:
         """States at the ends of the pieces from the tip on, and their changes, a column for each direction."""
-        x, inputs, _ = self._arguments
+        x, *given = self._symbols.values()
+        fixed = directions.of_given
         staged = self._staged
         width = staged.width_with_carried
-        begun = ca.Function("begun", [x, inputs], [self._begun])
-        state, changes = with_changes(begun, directions, {0: directions.of_x, 1: directions.of_inputs})(x, inputs)
+        begun = ca.Function("begun", [x, *given], [self._begun])
+        state, changes = with_changes(begun, directions, dict(enumerate([directions.of_x, *fixed])))(x, *given)
         ends = [(state, changes)]
-        of_pieces = ca.Function("lengths", [inputs], [ca.vertcat(*self._piece_lengths) / self.steps])
-        lengths, length_changes = with_changes(of_pieces, directions, {0: directions.of_inputs})(inputs)
-        length_changes = length_changes[:, directions.translations]
+        of_pieces = ca.Function("lengths", given, [ca.vertcat(*self._piece_lengths) / self.steps])
+        lengths, length_changes = with_changes(of_pieces, directions, dict(enumerate(fixed)))(*given)
+        length_changes = length_changes[:, directions.stretching]
         steps = changing_step(staged, directions).mapaccum("changing_steps", self.steps)
         for piece, sections in enumerate(ca.horzsplit(self._sections, self.steps)):
+            section = sections[:, 0]
+            if self.parameters.size:
+                section = ca.vertcat(section, ca.vec(ca.densify(ca.jacobian(section, self.parameters.symbol))))
             if staged.carried:
                 begin = ca.MX.sym("begin", width)
-                passing = ca.Function("passing", [begin, inputs], [self._passing(piece, begin)])
-                passed = with_changes(passing, directions, {1: directions.of_inputs})
-                state, changes = passed(state, inputs, changes)
+                passing = ca.Function("passing", [begin, *given], [self._passing(piece, begin)])
+                passed = with_changes(passing, directions, dict(enumerate(fixed, start=1)))
+                state, changes = passed(state, *given, changes)
             along = ca.vertcat(lengths[piece], length_changes[piece, :].T)
-            stacked = steps(ca.vertcat(state, ca.vec(changes)), ca.repmat(along, 1, self.steps), sections)[:, -1]
+            repeated = [ca.repmat(constants, 1, self.steps) for constants in (along, section)]
+            stacked = steps(ca.vertcat(state, ca.vec(changes)), *repeated)[:, -1]
             state, changes = stacked[:width], ca.reshape(stacked[width:], width, -1)
             ends.append((state, changes))
         return [(state[: staged.width], changes[: staged.width, :]) for state, changes in ends]
@@ -323,9 +394,8 @@ class TubeFunctions(ABC):
     @property
     def _of_plate(self) -> ca.Function:
         """(state at the plate, x, inputs) ↦ residual."""
-        x, inputs, _ = self._arguments
         plate = ca.MX.sym("plate", self._staged.width)
-        return ca.Function("of_plate", [plate, x, inputs], [self._missed(plate)])
+        return ca.Function("of_plate", [plate, *self._symbols.values()], [self._missed(plate)])
 
     def _of_tip(self, index: int) -> ca.Function:
         """(state at the plate, state at the tip of a tube, x) ↦ its pose in base axes, position and quaternion."""
@@ -359,6 +429,15 @@ class TubeFunctions(ABC):
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
         """Unknowns, inputs and load factor, of which all functions are."""
         return ca.MX.sym("x", self.size), ca.MX.sym("inputs", self.robot.inputs.size), ca.MX.sym("load_factor")
+
+    @property
+    def _symbols(self) -> dict[str, ca.MX]:
+        """Arguments of all functions by name: unknowns, inputs, and parameters where the scene names some."""
+        x, inputs, _ = self._arguments
+        symbols = {"x": x, "inputs": inputs}
+        if self.parameters.size:
+            symbols[PARAMETERS] = self.parameters.symbol
+        return symbols
 
     @cached_property
     def _lengths(self) -> ca.MX:
@@ -413,7 +492,7 @@ class TubeFunctions(ABC):
         ends = []
         for index in range(self.tube_count):
             tip = inputs[2 * index + 1]
-            straight = tip - self.robot.curved[index]
+            straight = tip - self.robot.numbers.curved[index]
             # Where all of the straight part is inside, derivatives are those of drawing the tube in: it may have none.
             bend = ca.if_else(straight > 0.0, straight, 0.0)
             ends.append((tip, bend))
@@ -436,14 +515,14 @@ class TubeFunctions(ABC):
 
     def _section(self, place: ca.MX) -> Matrix:
         """Stacked section at a place: torsion, moments, bending and own energy of the tubes there, (2 n + 2)×1."""
-        robot = self.robot
+        tubes = self.robot.numbers
         _, _, load_factor = self._arguments
         moments = []
         bending: Matrix = ca.MX(0.0)
         own: Matrix = ca.MX(0.0)
         for index, (tip, bend) in enumerate(self._ends):
-            stiffness = float(robot.bending[index])
-            curvature = load_factor * float(robot.curvature[index])
+            stiffness = tubes.bending[index]
+            curvature = load_factor * tubes.curvature[index]
             is_here = ca.if_else(place < tip, 1.0, 0.0)
             is_curved = is_here * ca.if_else(place > bend, 1.0, 0.0)
             moments.append(is_curved * stiffness * curvature)
@@ -451,7 +530,7 @@ class TubeFunctions(ABC):
             own = own + is_curved * stiffness * curvature**2 / 2
         # A piece without length may have no tube; dividing by its stiffness must do no harm.
         stiffness_or_one = bending + ca.if_else(bending > 0.0, 0.0, 1.0)
-        return ca.vertcat(robot.torsion, *moments, stiffness_or_one, own)
+        return ca.vertcat(as_matrix(tubes.torsion), *moments, stiffness_or_one, own)
 
     # What follows from it
 
@@ -459,8 +538,8 @@ class TubeFunctions(ABC):
     def _compliance(self) -> ca.MX:
         """Angle that a torque of one turns the drive end of every tube against the plate, n×1, rad/(N m)."""
         _, inputs, _ = self._arguments
-        inside = ca.DM(self.robot.length) - self.robot.translations(inputs)
-        return inside / ca.DM(self.robot.torsion)
+        inside = as_matrix(self.robot.numbers.length) - self.robot.translations(inputs)
+        return inside / as_matrix(self.robot.numbers.torsion)
 
     def _in_base(self, pose: Pose) -> Pose:
         """A pose in base axes, where it is given in those of the tip's frame."""
@@ -479,17 +558,49 @@ class TubeFunctions(ABC):
         turn = Pose(ca.DM.zeros(3), ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
         return self._state(plate).pose.seen(self._state(reached).pose).then(turn)
 
+    def _section_pose(self, index: int, at: ca.MX) -> Pose:
+        """Pose of a section of a tube in base axes, by a part of the step that it lies in."""
+        _, inputs, _ = self._arguments
+        length = self.robot.numbers.length[index]
+        distance = self.robot.translations(inputs)[index] - (1 - at) * length
+        outside = ca.fmax(distance, 0)
+        # The first step from the tip on that ends nearer to the plate, or there.
+        ends = self._places[0] + ca.cumsum(self._lengths, 1)
+        begins = ca.horzcat(self._places[0], ends[:-1])
+        # Sums of lengths are off by rounding: the last step has no other behind it.
+        first = ca.fmin(ca.sum2(ends > outside), ends.size2() - 1)
+        chosen = ca.DM(range(ends.size2())) == first
+        whole = self._whole
+        start = whole.starts @ chosen
+        state = self._state(self._step(start, outside - begins @ chosen, whole.sections @ chosen))
+        # Behind the plate the torque of the plate twists the tube.
+        inside = distance - outside
+        half = (state.angles[index] + inside * state.torques[index] / self.robot.numbers.torsion[index]) / 2
+        turned = ca.vertcat(ca.cos(half), 0, 0, ca.sin(half))
+        return self._in_base(state.pose).then(Pose(ca.vertcat(0, 0, inside), turned))
+
     @cached_property
     def _tips(self) -> list[Pose]:
         """Pose of every tube's tip in base axes."""
         ends = self._whole.ends
         return [self._tip_pose(index, ends[-1], _selected(rank, ends[:-1])) for index, rank in enumerate(self._ranks)]
 
-    def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
-        """A function of unknowns and inputs, of tubes with the curvatures of the scene."""
-        x, inputs, load_factor = self._arguments
+    def _function(
+        self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
+    ) -> ca.Function:
+        """A function of unknowns, inputs and further arguments, of tubes with the curvatures of the scene."""
+        _, _, load_factor = self._arguments
         results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
-        return ca.Function(name, [x, inputs], results, ["x", "inputs"], list(outputs))
+        arguments = {**self._symbols, **(further or {})}
+        return ca.Function(name, list(arguments.values()), results, list(arguments), list(outputs))
+
+    def _on_path(
+        self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
+    ) -> ca.Function:
+        """A function of unknowns, inputs and load factor, and further arguments."""
+        _, _, load_factor = self._arguments
+        arguments = {**self._symbols, "load_factor": load_factor, **(further or {})}
+        return ca.Function(name, list(arguments.values()), list(outputs.values()), list(arguments), list(outputs))
 
 
 def _reversed(row: ca.MX) -> ca.MX:
@@ -503,3 +614,7 @@ def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:
     for number, column in enumerate(columns):
         chosen = chosen + ca.if_else(rank == ca.MX(number), column, 0.0)
     return chosen
+
+
+AnyModel: TypeAlias = Model | TubeFunctions
+"""A model of rods or of concentric tubes."""

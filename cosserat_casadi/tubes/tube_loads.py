@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.maths.numbers import known
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic, is_zero
 from cosserat_casadi.rod.section import annulus
 
 COMPONENTS = 3
@@ -22,7 +19,8 @@ class TubeLoad:
 
     Attributes:
         name: of the input, such as "push.force".
-        shares: of each tube, shape (n,): 1 of a wrench on it; mass per length of one that is weighed, kg/m.
+        shares: of each tube: 1 of a wrench on it; mass per length of one that is weighed, kg/m, which may be an
+            expression of parameters.
         is_moment: whether it is a moment, and not a force.
         spread: whether it acts per length from the plate to the tip, and not at the tip.
         follower: whether it turns with the tube, and does not keep its direction in the world.
@@ -30,16 +28,26 @@ class TubeLoad:
     """
 
     name: str
-    shares: FloatArray
+    shares: tuple[Scalar, ...]
     is_moment: bool = False
     spread: bool = False
     follower: bool = False
-    from_tip: float = 0.0
+    from_tip: Scalar = 0.0
 
     @property
     def has_energy(self) -> bool:
         """Whether its work is that of a potential: a force that keeps its direction."""
         return not self.is_moment and not self.follower
+
+    @property
+    def bearers(self) -> list[int]:
+        """Indices of the tubes that bear it."""
+        return [index for index, share in enumerate(self.shares) if not is_zero(share)]
+
+    @property
+    def is_beside_tip(self) -> bool:
+        """Whether it acts beside the tip, or a parameter may move it there."""
+        return is_symbolic(self.from_tip) or self.from_tip > 0.0
 
 
 def loads_of(scene: scenes.Scene) -> tuple[TubeLoad, ...]:
@@ -50,18 +58,18 @@ def loads_of(scene: scenes.Scene) -> tuple[TubeLoad, ...]:
     return tuple(found)
 
 
-def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[TubeLoad]:
+def _inputs_of(load: scenes.Load, tubes: Sequence[scenes.Tube]) -> Iterator[TubeLoad]:
     """The inputs of one load: the magnitudes that the scene gives."""
     if isinstance(load, scenes.Gravity):
-        masses = [linear_density(tube) if load.acts_on_rod(tube.name) else 0.0 for tube in tubes]
-        yield TubeLoad(f"{load.name}.acceleration", np.array(masses), spread=True)
+        masses = tuple(linear_density(tube) if load.acts_on_rod(tube.name) else 0.0 for tube in tubes)
+        yield TubeLoad(f"{load.name}.acceleration", masses, spread=True)
         return
     # The rules of the scene admit no other kinds beside tubes.
     assert isinstance(load, scenes.TipWrench | scenes.PointWrench | scenes.DistributedWrench)
-    shares = np.array([float(tube.name == load.rod) for tube in tubes])
-    from_tip = 0.0
+    shares = tuple(float(tube.name == load.rod) for tube in tubes)
+    from_tip: Scalar = 0.0
     if isinstance(load, scenes.PointWrench):
-        length = sum(tube.straight + tube.curved for tube in tubes if tube.name == load.rod)
+        length = sum(tube.length for tube in tubes if tube.name == load.rod)
         from_tip = (1.0 - load.at) * length
     for field in load.inputs:
         if field in load.model_fields_set:
@@ -75,7 +83,7 @@ def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[Tu
             )
 
 
-def linear_density(tube: scenes.Tube) -> float:
+def linear_density(tube: scenes.Tube) -> Scalar:
     """Mass per length of a tube, kg/m."""
     if tube.linear_density is not None:
         return tube.linear_density
@@ -85,5 +93,5 @@ def linear_density(tube: scenes.Tube) -> float:
     assert material is not None
     assert material.density is not None
     assert section is not None
-    area = known(annulus(np.array([section.outer_radius]), np.array([section.inner_radius])).area)
-    return float(area.item() * material.density)
+    area: Scalar = annulus(as_vector([section.outer_radius]), as_vector([section.inner_radius])).area[0]
+    return area * material.density

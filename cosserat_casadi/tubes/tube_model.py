@@ -67,7 +67,7 @@ class TubeModel(TubeFunctions):
     @cached_property
     def _whole(self) -> March:
         """The same with the frame of the centre line and the energy."""
-        return self._marched(whole_step(self.tube_count), self._begun)
+        return self._marched(self._step, self._begun)
 
     def _marched(self, step: ca.Function, state: Matrix) -> March:
         """Take the steps of all pieces from the tip on."""
@@ -80,7 +80,8 @@ class TubeModel(TubeFunctions):
             passed = steps(ends[-1], length, section)
             ends.append(passed[:, -1])
             stations.append(passed)
-        return March(ends, ca.horzcat(*stations))
+        along = ca.horzcat(*stations)
+        return March(ends, along, along[:, :-1], self._sections)
 
     @cached_property
     def _residual(self) -> Matrix:
@@ -94,6 +95,10 @@ class TubeModel(TubeFunctions):
 
     def _state(self, stacked: Matrix) -> FlowState:
         return FlowState.of(stacked)
+
+    @property
+    def _step(self) -> ca.Function:
+        return whole_step(self.tube_count)
 
     @property
     def _staged(self) -> Staged:

@@ -47,12 +47,20 @@ static double parse(const char *word, int *sound) {
   return value;
 }
 
+static void print_position(const real *position) {
+  printf("[");
+  for (int i = 0; i < 3; i++) {
+    if (i) printf(", ");
+    print_number((double)position[i]);
+  }
+  printf("]");
+}
+
 static void print_field(const char *word, double value) {
   printf(", \"%s\": ", word);
   print_number(value);
 }
 
-/* Best time of several runs, us. */
 enum { COLD, WARM, IGM, JACOBIAN };
 
 static void perform(int task, const real *inputs, const real *near_inputs, real *x) {
@@ -75,6 +83,7 @@ static void perform(int task, const real *inputs, const real *near_inputs, real 
   }
 }
 
+/* Best time of several runs, us, with inputs that go to and fro by a hundredth. */
 static double best_of(int task, int repeat, const real *inputs, const real *solution) {
   double best = HUGE_VAL;
   for (int k = 0; k < repeat; k++) {
@@ -108,16 +117,12 @@ int main(int count, char **words) {
     if (!sound) return usage("not a number", words[first + i]);
   }
   nitinol_wire_solve(inputs, x, &workspace, &info);
+  printf("{\"status\": \"%s\", \"iterations\": %d", nitinol_wire_status_label(info.status), info.iterations);
   nitinol_wire_tip(x, inputs, position, quaternion);
-  printf("{\"status\": \"%s\", \"iterations\": %d, \"tip\": [", nitinol_wire_status_label(info.status), info.iterations);
-  for (int i = 0; i < 3; i++) {
-    if (i) printf(", ");
-    print_number((double)position[i]);
-  }
-  printf("], \"load_factor\": ");
-  print_number((double)info.load_factor);
-  printf(", \"error_estimate\": ");
-  print_number((double)info.error_estimate);
+  printf(", \"tip\": ");
+  print_position(position);
+  print_field("load_factor", (double)info.load_factor);
+  print_field("error_estimate", (double)info.error_estimate);
   print_field("residual_norm", (double)info.residual_norm);
   print_field("cold_us", best_of(COLD, repeat, inputs, x));
   print_field("warm_us", best_of(WARM, repeat, inputs, x));

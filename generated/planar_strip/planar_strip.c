@@ -108,6 +108,21 @@ static void watched_at(const real *x, const real *inputs, real *watched, workspa
 #include "solver_error.c"
 #include "solver_path.c"
 #include "solver.c"
+
+/* The Jacobian, factorised, and the derivative of the residual with the inputs where that is not null. Zero where the
+   Jacobian is not finite. */
+static int linearise_by_inputs(const real *x, const loads *at, jacobian_factors *jacobian, real *d_residual_d_inputs,
+                               workspace *work) {
+  if (!linearise(x, at, jacobian, work)) return 0;
+  if (d_residual_d_inputs && jacobian->regular) input_jacobian_at(x, at, d_residual_d_inputs, work);
+  return 1;
+}
+
+/* Derivatives of a pose with the unknowns, which stay in the workspace, and with the inputs. */
+static void pose_derivatives_at(int pose, const real *x, const real *inputs, real *d_pose_d_inputs, workspace *work) {
+  POSE_DERIVATIVES[pose](x, inputs, work->d_pose_d_x, d_pose_d_inputs);
+}
+
 #include "solver_sensitivity.c"
 #include "solver_track.c"
 #include "solver_recover.c"

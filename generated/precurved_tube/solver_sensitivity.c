@@ -1,4 +1,6 @@
-/* Derivatives of an equilibrium and its poses with the inputs. */
+/* Derivatives of an equilibrium and its poses with the inputs.
+
+   Uses of the equations: linearise_by_inputs, pose_derivatives_at. */
 
 /* Adds d_pose_d_x times d_x_d_inputs to d_pose_d_inputs. A pose depends on few rods: columns of zeros are left out. */
 static void add_product(const real *d_pose_d_x, const real *d_x_d_inputs, real *d_pose_d_inputs) {
@@ -21,13 +23,13 @@ static void add_product(const real *d_pose_d_x, const real *d_x_d_inputs, real *
 static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
                                  workspace *work) {
   updated_jacobian *jacobian = work->updated_jacobians;
-  const loads at = full_load(inputs);
-  jacobian->count = 0;
-  if (!linearise(x, &at, &jacobian->factors, work)) return SOLVER_NOT_FINITE;
-  if (!jacobian->factors.regular) return SOLVER_SINGULAR;
-  if (!d_x_d_inputs && !d_poses_d_inputs) return SOLVER_CONVERGED;
   real *columns = work->d_x_d_inputs;
-  input_jacobian_at(x, &at, columns, work);
+  const loads at = full_load(inputs);
+  const int wanted = d_x_d_inputs || d_poses_d_inputs;
+  jacobian->count = 0;
+  if (!linearise_by_inputs(x, &at, &jacobian->factors, wanted ? columns : 0, work)) return SOLVER_NOT_FINITE;
+  if (!jacobian->factors.regular) return SOLVER_SINGULAR;
+  if (!wanted) return SOLVER_CONVERGED;
   for (int j = 0; j < INPUTS; j++) {
     real *column = columns + j * N;
     for (int i = 0; i < N; i++) column[i] = -column[i];
@@ -38,7 +40,7 @@ static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_
   if (!d_poses_d_inputs) return SOLVER_CONVERGED;
   for (int i = 0; i < POSES; i++) {
     real *pose = d_poses_d_inputs + i * POSE_SIZE * INPUTS;
-    POSE_DERIVATIVES[i](x, inputs, work->d_pose_d_x, pose);
+    pose_derivatives_at(i, x, inputs, pose, work);
     add_product(work->d_pose_d_x, columns, pose);
   }
   return SOLVER_CONVERGED;

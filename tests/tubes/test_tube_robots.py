@@ -469,7 +469,7 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
         ("simulate tubes.toml --output out.csv", "works on rods"),
         ("modes tubes.toml --output out.json", "works on rods"),
         ("inverse tubes.toml --output out.json", "targets: missing"),
-        ("identify tubes.toml --output out.json", "works on rods"),
+        ("identify tubes.toml --output out.json", "name what is to be found"),
         ("estimate tubes.toml --output out.csv", "works on rods"),
         ("sweep tubes.toml --output out.csv --over t.csv --set tubes[1].translation=9", "must be at most the length"),
         ("export tubes.toml --output out --dynamics", "is for rods"),

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
+from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay
@@ -31,7 +32,6 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
 from cosserat_casadi.page.page import export_page
@@ -239,7 +239,7 @@ def _export_tubes(scene: Scene, output: Path, name: str) -> None:
     scene_names(name, scene)
     solution = solve_tubes(scene)
     _check_solved(solution)
-    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    export_model(build(scene, solution.model.steps), output, name, error_estimate=solution.error_estimate)
     print_tubes_export(Console(), solution, output)
 
 

@@ -22,7 +22,7 @@ solver_status tubes_error_estimate(const real *inputs, const real *x, real *erro
   const loads at = full_load(inputs);
   const real size = 1 + norm_of(x);
   if (!all_finite(inputs, INPUTS) || !isfinite(size)) return SOLVER_NOT_FINITE;
-  if (!in_range(inputs)) return SOLVER_OUT_OF_RANGE;
+  if (!in_range(inputs, work)) return SOLVER_OUT_OF_RANGE;
   residual_at(x, &at, work->trial_residual, work);
   if (!(norm_of(work->trial_residual) <= 10 * TOLERANCE * size)) return SOLVER_NOT_IN_EQUILIBRIUM;
   if (!linearise(x, &at, &work->updated_jacobians[0].factors, work)) return SOLVER_NOT_FINITE;

@@ -71,7 +71,7 @@ static int solve_with_care(const real *inputs, real *x, workspace *work, solver_
 
 solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
-  if (!in_range(inputs)) return out_of_range(info);
+  if (!in_range(inputs, work)) return out_of_range(info);
   const int is_cold = !all_finite(x, N) || is_zero(x);
   solver_status end = solver_solve(inputs, x, work, &found);
   const int is_resolved = end != SOLVER_UNRESOLVED && end != SOLVER_NOT_FINITE;
@@ -87,7 +87,7 @@ solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, s
 
 solver_status tubes_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
-  if (!in_range(from) || !in_range(inputs)) return out_of_range(info);
+  if (!in_range(from, work) || !in_range(inputs, work)) return out_of_range(info);
   const int before = sign_of(tubes_determinant(x, from, work));
   solver_status end = solver_follow(from, inputs, x, work, &found);
   if (end == SOLVER_CONVERGED) {
@@ -100,10 +100,10 @@ solver_status tubes_follow(const real *from, const real *inputs, real *x, solver
   return end;
 }
 
-solver_status tubes_sensitivity(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
-                                solver_workspace *work) {
-  if (!in_range(inputs)) return SOLVER_OUT_OF_RANGE;
-  return sensitivity(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
+solver_status tubes_solve_sensitivity(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
+                                      solver_workspace *work) {
+  if (!in_range(inputs, work)) return SOLVER_OUT_OF_RANGE;
+  return solver_solve_sensitivity(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
 }
 
 /* The determinant at the solution of a turn, whose Jacobian the memory is left with; 0 at a snap. */
@@ -120,7 +120,7 @@ solver_status tubes_track(const real *inputs, real *x, solver_memory *memory, co
                           real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
   real kept[N];
-  if (!in_range(inputs)) return out_of_range(info);
+  if (!in_range(inputs, work)) return out_of_range(info);
   memcpy(kept, x, sizeof kept);
   work->memory = *memory;
   solver_status end = solver_track(inputs, x, memory, options, d_x_d_inputs, d_poses_d_inputs, work, &found);

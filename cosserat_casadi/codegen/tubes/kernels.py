@@ -14,15 +14,11 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.codegen.kernels import dense
+from cosserat_casadi.codegen.parameters import parameter_rate, with_parameters_behind_inputs
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
-from cosserat_casadi.tubes.tube_solve import model_of
-
-RESOLVED = 64.0
-"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
-
-Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
 @dataclass(frozen=True)
@@ -39,64 +35,73 @@ class TubeKernels:
 
     def all(self) -> list[ca.Function]:
         """Residual, Jacobian, rate, what half of the steps give, poses and sensitivity, with dense results."""
-        y, inputs, t = self._arguments
-        change = ca.MX.sym("inputs_rate", inputs.size1())
-        t_rate = ca.MX.sym("t_rate")
+        x, *given = self._of_model.values()
+        load_factor = self._load_factor
+        on_path = self._on_path
+        inputs_rate, load_factor_rate = ca.MX.sym("inputs_rate", given[0].size1()), ca.MX.sym("load_factor_rate")
         step = ca.MX.sym("step", self.model.size)
-        at = self._given(t)
-        residual = self.model.path_residual(*at)
-        jacobian = self.model.path_jacobian(*at)
-        rate = ca.jtimes(residual, ca.vertcat(inputs, t), ca.vertcat(change, t_rate))
-        solution = {"y": y, "inputs": inputs}
-        state = {**solution, "t": t}
-        return [
-            self._function("residual", state, [residual]),
-            self._function("jacobian", state, [jacobian]),
-            self._function("rate", {**state, "inputs_rate": change, "t_rate": t_rate}, [rate]),
-            self._function("halved_residual", solution, [self._halved.residual(self._x, inputs)]),
-            self._function("halved_change", {"y": y, "step": step, "inputs": inputs}, [self._halved_change(step)]),
-            self._function("poses", solution, [ca.vertcat(*self.model.tips(self._x, inputs))]),
-            self._function("sensitivity", solution, self._sensitivity()),
+        residual = self.model.path_residual(x, *on_path)
+        rate = ca.jtimes(residual, ca.vertcat(given[0], load_factor), ca.vertcat(inputs_rate, load_factor_rate))
+        path = {"load_factor": load_factor}
+        rates = {**path, "inputs_rate": inputs_rate, "load_factor_rate": load_factor_rate}
+        functions = [
+            self._function("residual", [residual], path),
+            self._function("jacobian", [self.model.path_jacobian(x, *on_path)], path),
+            self._function("rate", [rate], rates),
+            self._function("halved_residual", [self.model.halved.residual(x, *given)]),
+            self._function("halved_change", [self._halved_change(step)], {"step": step}),
+            self._function("poses", [ca.vertcat(*self.model.tips(x, *given))]),
+            self._function("sensitivity", self._sensitivity()),
         ]
+        if self.model.parameters.size:
+            lengths = ca.Function("lengths", given, [self.model.robot.numbers.length], ["inputs", PARAMETERS], ["m"])
+            functions.append(dense(with_parameters_behind_inputs(lengths), f"{self.name}_lengths"))
+            path_residual = self._written("residual", [residual], path)
+            functions.append(dense(parameter_rate(path_residual, "of_p"), f"{self.name}_parameter_rate"))
+        return functions
 
     @cached_property
-    def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """Twist, inputs, and place t on the way from straight tubes."""
-        return ca.MX.sym("y", self.model.size), ca.MX.sym("inputs", self.model.robot.inputs.size), ca.MX.sym("t")
+    def _symbols(self) -> dict[str, ca.MX]:
+        """Twist, inputs, and parameters where the scene names some."""
+        symbols = {"y": ca.MX.sym("y", self.model.size), "inputs": ca.MX.sym("inputs", self.model.inputs.size)}
+        if self.model.parameters.size:
+            symbols[PARAMETERS] = self.model.parameters.symbol
+        return symbols
 
-    def _given(self, t: ca.MX) -> tuple[Matrix, Matrix, Matrix]:
-        """Unknowns, inputs and load factor of the model at a place on the way."""
-        _, inputs, _ = self._arguments
-        robot = self.model.robot
-        x = self._x
-        if not robot.loads:
-            return x, inputs, t
-        of_loads = ca.fmax(2 * t - 1, 0)
-        drives, loads = inputs[: 2 * robot.size], inputs[2 * robot.size :]
-        return x, ca.vertcat(drives, of_loads * loads), ca.fmin(2 * t, 1)
+    @cached_property
+    def _load_factor(self) -> ca.MX:
+        """Place t on the way from straight tubes."""
+        return ca.MX.sym("load_factor")
 
-    @property
-    def _x(self) -> Matrix:
-        """Unknowns of the model."""
-        y, inputs, _ = self._arguments
+    @cached_property
+    def _of_model(self) -> dict[str, Matrix]:
+        """Unknowns of the model, inputs, and parameters."""
         robot = self.model.robot
         frame = ca.DM([1, 0, 0, 0])[: self.model.size - robot.size]
-        return y + ca.vertcat(robot.rotations(inputs), frame)
+        x = self._symbols["y"] + ca.vertcat(robot.rotations(self._symbols["inputs"]), frame)
+        return {**self._symbols, "y": x}
 
-    @cached_property
-    def _halved(self) -> TubeFunctions:
-        """The robot with half of the steps."""
-        return model_of(self.model.robot, self.model.steps // 2)
+    @property
+    def _on_path(self) -> list[Matrix]:
+        """Inputs, parameters and load factor of the model at a place on the way."""
+        robot = self.model.robot
+        t = self._load_factor
+        _, inputs, *p = self._symbols.values()
+        if not robot.loads:
+            return [inputs, *p, t]
+        of_loads = ca.fmax(2 * t - 1, 0)
+        drives, loads = inputs[: 2 * robot.size], inputs[2 * robot.size :]
+        return [ca.vertcat(drives, of_loads * loads), *p, ca.fmin(2 * t, 1)]
 
     def _halved_change(self, step: ca.MX) -> Matrix:
         """Distance of the tips with half of the steps, a step of the unknowns away, as :func:`tip_error` has it.
 
         The largest of all tubes: distances over the length that stands out, and angles.
         """
-        _, inputs, _ = self._arguments
-        positions, quaternions = self.model.tips(self._x, inputs)
-        other_positions, other_quaternions = self._halved.tips(self._x + step, inputs)
-        length = ca.mmax(self.model.robot.translations(inputs))
+        x, *given = self._of_model.values()
+        positions, quaternions = self.model.tips(x, *given)
+        other_positions, other_quaternions = self.model.halved.tips(x + step, *given)
+        length = ca.mmax(self.model.robot.translations(self._symbols["inputs"]))
         changes = []
         for index in range(self.model.tube_count):
             difference = quaternion_product(quaternion_conjugate(quaternions[:, index]), other_quaternions[:, index])
@@ -107,16 +112,30 @@ class TubeKernels:
         return largest
 
     def _sensitivity(self) -> list[Matrix]:
-        """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both."""
-        jacobian, by_inputs, _, poses_by_x, poses_by_inputs = self.model.sensitivity(self._x, self._arguments[1])
+        """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both.
+
+        Those with the parameters follow those with the inputs.
+        """
+        at = list(self._of_model.values())
+        jacobian, by_inputs, _, poses_by_x, poses_by_inputs, *by_parameters = self.model.sensitivity(*at)
         # At the same twist a tip turns with its drive.
         size = self.model.tube_count
-        turning = ca.DM(self.model.size, self.model.robot.inputs.size)
+        turning = ca.DM(self.model.size, self.model.inputs.size)
         for index in range(size):
             turning[index, 2 * index] = 1
-        return [jacobian, by_inputs + jacobian @ turning, poses_by_x, poses_by_inputs + poses_by_x @ turning]
+        by_given = ca.horzcat(by_inputs + jacobian @ turning, *by_parameters[:1])
+        poses_by_given = ca.horzcat(poses_by_inputs + poses_by_x @ turning, *by_parameters[1:])
+        return [jacobian, by_given, poses_by_x, poses_by_given]
 
-    def _function(self, word: str, arguments: Mapping[str, ca.MX], results: Sequence[Matrix]) -> ca.Function:
+    def _function(
+        self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None
+    ) -> ca.Function:
+        """A kernel; parameters stand behind the inputs in one argument."""
+        written = with_parameters_behind_inputs(self._written(word, results, further))
+        return dense(written, f"{self.name}_{word}")
+
+    def _written(self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None) -> ca.Function:
+        """A function of the twist, of the inputs and the parameters, and of what is more."""
+        arguments = {**self._symbols, **(further or {})}
         names = [f"{word}_{number}" for number in range(len(results))]
-        function = ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)
-        return dense(function, f"{self.name}_{word}")
+        return ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)

@@ -21,20 +21,28 @@ from cosserat_casadi.codegen.library import (
     solver_constants,
     version_words,
 )
-from cosserat_casadi.codegen.manifest import MANIFEST, SCHEMA, TUBES, input_entries
+from cosserat_casadi.codegen.manifest import (
+    MANIFEST,
+    SCHEMA,
+    TUBES,
+    accuracy_entries,
+    input_entries,
+    parameter_entries,
+)
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.parameter_sources import WITHOUT
+from cosserat_casadi.codegen.parameter_sources import parameter_words
+from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.texts import render, resource
-from cosserat_casadi.codegen.tubes.kernels import RESOLVED, TubeKernels
+from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.tubes.robot import Robot
-from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from cosserat_casadi.tubes.tube_functions import RESOLVED, TubeFunctions
 
 NEAR = 0.3
 """Twist, rad, by which a turn may change the tubes at once; farther on the way is followed."""
@@ -42,10 +50,10 @@ NEAR = 0.3
 LIMITS = replace(ContinuationSettings(), longest=0.5)
 """Limits of a way: in no step do the tubes twist by much more than that, rad, so that it leads past no snap."""
 
-OWN = ("tubes_error.c", "tubes_sensitivity.c", "tubes_turn.c")
+OWN = ("tubes_error.c", "tubes_turn.c")
 """Files of the folder ``c`` for tubes alone."""
 
-OTHERS = ("solver_sensitivity.c", "solver_recover.c")
+OTHERS = ("solver_recover.c",)
 """Files of the solver that tubes do without."""
 
 RANGES = (
@@ -96,7 +104,7 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
         f"{name}.h": render("library.h.in", words),
         f"{name}.c": render("library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
-        f"{name}_demo.c": render("tubes_demo.c.in", words),
+        f"{name}_demo.c": render("demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in VERBATIM},
@@ -120,6 +128,7 @@ def _words(
         "unknowns": size,
         "inputs": robot.inputs.size,
         "poses": robot.size,
+        "input_room": given_size(model),
     }
     under_loads = ",\n   then by how much the quaternion of the frame at the tip of the robot differs from 1 0 0 0"
     return {
@@ -134,17 +143,18 @@ def _words(
         "title": comment(robot.scene.title or names.name),
         **PLAIN_BUILD,
         "of_tubes": True,
-        **WITHOUT,
+        **parameter_words(render, basics, model, names, dynamics=False),
         **dict.fromkeys(("functions", "prototypes"), ""),
         "inner": "any_",
+        "outer": "stacked_" if model.parameters.size else "",
+        "family": "tubes_",
+        "tells_errors": True,
         "solves_tangent": True,
         "first": 1.0,
-        "input_room": robot.inputs.size,
         "batch_workspace": f"{names.name}_workspace",
         "pose_owners": "the tip of each tube",
         "one_sided": ONE_SIDED,
         "turn_jacobians": 3,
-        "solver_inputs": f"{names.macro}_INPUTS",
         "max_reuses": newton.MAX_REUSES,
         "kept_steps": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
@@ -183,15 +193,20 @@ def _number_macros(names: Names, robot: Robot) -> str:
 def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) -> dict[str, Any]:
     """What the folder holds, as data."""
     robot = model.robot
+    unknowns = [{"rod": tube, "first": index, "count": 1} for index, tube in enumerate(robot.names)]
+    if model.size > robot.size:
+        outermost = robot.names[int(np.argmax(robot.translations(robot.inputs)))]
+        unknowns.append({"rod": outermost, "frame": "tip", "first": robot.size, "count": model.size - robot.size})
     return {
         "schema": SCHEMA,
         "name": names.name,
         "title": robot.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(model),
+        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         TUBES: list(robot.names),
-        "unknowns": model.size,
+        "unknowns": unknowns,
         "steps": model.steps,
-        "tolerance": robot.tolerance,
-        "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
+        **accuracy_entries(robot.scene, error_estimate, None),
+        "functions": [],
     }
