@@ -384,7 +384,10 @@ def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> N
         open_by = f"{start.position_error:.2g} (of the length, or rad)"
         what = f"supports or joints are open by {open_by} where the motion starts"
         problems.append(Problem("simulation.start", what, "start from an equilibrium"))
-    if start.velocity_error * duration > CONSISTENT:
+    if start.velocity_error * duration > CONSISTENT and np.any(start.instant.v):
+        what = f"supports, joints or cables open at {start.velocity_error:.2g} 1/s with the velocities at t = 0"
+        problems.append(Problem("velocities", what, "give velocities that they allow, or leave those of bodies out"))
+    elif start.velocity_error * duration > CONSISTENT:
         what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
         remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
         problems.append(Problem("motions", what, remedy))

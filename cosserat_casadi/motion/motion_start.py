@@ -44,6 +44,7 @@ class Start:
     Attributes:
         x: unknowns, shape (size,); multipliers and tensions are a guess.
         sentence: what the user is told; of a start that failed, why.
+        v: rates of the unknowns, shape (size,), 1/s; None at rest.
         found: whether there is a state to start from.
         phases: what touches; None where that is looked for.
         asks_for_modes: whether none is found on these modes, and other modes may have one.
@@ -51,6 +52,7 @@ class Start:
 
     x: FloatArray
     sentence: str
+    v: FloatArray | None = None
     found: bool = True
     phases: ContactPhase | None = None
     asks_for_modes: bool = False

@@ -22,6 +22,7 @@ from cosserat_casadi.motion.contact_checks import told_inside, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
@@ -252,13 +253,13 @@ class Simulator:
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
-        still = np.zeros(self.model.size)
+        rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
         history = integrated(
             self.model,
             pieces,
             self.start.x,
-            still,
+            rates,
             method,
             settings,
             self._after_step,
@@ -341,11 +342,14 @@ def moving_inputs(model: Model) -> MovingInputs:
 
 def started(model: Model, simulation: Simulation, solution: Solution | None) -> Start:
     """How the motion of a model begins."""
+    moving = moving_inputs(model)
     if solution is not None:
-        return given_start(model, solution)
-    if simulation.start == "unloaded":
-        return unloaded_start(model)
-    return equilibrium_start(model, moving_inputs(model).at(0.0).value)
+        start = given_start(model, solution)
+    elif simulation.start == "unloaded":
+        start = unloaded_start(model)
+    else:
+        start = equilibrium_start(model, moving.at(0.0).value)
+    return with_velocities(model, start, moving.pieces(simulation.duration)[0])
 
 
 def unresolved(history: History, duration: float) -> bool:
