@@ -19,6 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.checkpoint import KEY
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
@@ -109,6 +110,8 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
     if scene.obstacles:
         data["contact"] = _contact_entry(motion)
     data["energy"] = asdict(motion.energy)
+    if motion.end is not None:
+        data[KEY] = motion.end.to_data()
     return data
 
 
@@ -250,7 +253,11 @@ def _parquet_bytes(motion: Motion) -> bytes:
 
 def _npz_bytes(motion: Motion) -> bytes:
     content = io.BytesIO()
-    arrays: dict[str, Any] = dict(_dotted(_motion_data(motion)))
+    data = _motion_data(motion)
+    if KEY in data:
+        # Numbers, lists and words of it are no columns: they are one text.
+        data[KEY] = json.dumps(plain(data[KEY]))
+    arrays: dict[str, Any] = dict(_dotted(data))
     np.savez(content, **arrays)
     return content.getvalue()
 
