@@ -94,7 +94,7 @@ class Checkpoint:
 
     Attributes:
         time: s.
-        strands: the motion, then those that tell its error.
+        strands: the motion, then the motions that tell its error.
         error: estimated error of the paths so far, over the length; nan where none was made.
         energy: up to the time.
         tips: positions of the tips then, by rod, m: another scene has others.

@@ -25,7 +25,7 @@ Place = tuple[Leg, Instant]
 def energies_of(
     history: History, rows: FloatArray, moving: frozenset[str], before: EnergyAccount | None = None
 ) -> tuple[Energies, EnergyAccount]:
-    """Energies of a motion at given times, and those that a motion would go on with at its end.
+    """Energies of a motion at given times, and the account that it would go on with at its end.
 
     Args:
         history: the motion.

@@ -1,8 +1,7 @@
 """A motion that goes on from the end of another, with the very digits of one motion over all of the time.
 
 The motions that told the error of the first part go on beside it, so that they tell that of the whole. Modes and steps
-stay what they were. Where a step would have gone on across the end of the first part it does: only what the shorter
-duration cut off is another step.
+stay as they were.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
 StartOfMotion = Solution | Motion | Checkpoint | str | Path | None
-"""What a motion starts from: an equilibrium, or a motion or its file, which goes on."""
+"""The start of a motion: an equilibrium, or a motion or its file, which goes on."""
 
 AGREEMENT = 1e-6
 """Distance of tips, over the length, up to which a scene has the state of a checkpoint."""
