@@ -188,7 +188,7 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
 
 @dataclass(frozen=True)
 class StepMemory:
-    """What a step takes over from the steps before it, beside the state that they have reached.
+    """Data that a step takes over from the steps before it, beside the state that they have reached.
 
     Attributes:
         begun: time at which the stretch of equal equations began, s.
