@@ -27,6 +27,7 @@ from cosserat_casadi.scene.values import (
     NotEmpty,
     NotNegative,
     Positive,
+    Share,
     Vector,
     numbers_of,
 )
@@ -81,6 +82,10 @@ class ObstacleRecord(Entry):
     damping: NotNegative = Field(
         0.0, description="with width: share by which it pushes more in motion, per speed of approach, s/m"
     )
+    restitution: Share = Field(
+        0.0,
+        description="without width: speed after an impact in motion over the speed of approach, without unit",
+    )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
@@ -109,6 +114,9 @@ class ObstacleRecord(Entry):
         """Faults of a smooth contact's stiffness or damping without width, and of obstacles on bodies."""
         yield from _misplaced_on_body(given)
         if "width" in given:
+            if "restitution" in given:
+                problem = "is of impacts, which a contact that is smooth does not have"
+                yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
         for key in SMOOTH_KEYS[1:]:
             if key in given:

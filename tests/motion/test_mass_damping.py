@@ -34,7 +34,7 @@ def test_flight_decays_as_a_body_in_a_viscous_medium() -> None:
     t = motion.times[:, None]
     last = gravity / RATE
     moved = (velocity - last) * (1.0 - np.exp(-RATE * t)) / RATE + last * t
-    assert_allclose(motion.tip().position, moved + [0.0, 0.0, 0.8], rtol=0, atol=1e-9)
+    assert_allclose(motion.tip().position, moved + np.array([0.0, 0.0, 0.8]), rtol=0, atol=1e-9)
     assert np.abs(motion.energy.imbalance).max() < 1e-9
     lost = motion.energy.kinetic[0] - motion.energy.kinetic - (motion.energy.potential - motion.energy.potential[0])
     assert_allclose(motion.energy.dissipated, lost, rtol=1e-8, atol=1e-9)
