@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 
@@ -23,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, 
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.motion.slack_cables import SlackCables, sags_by_cable
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -375,7 +375,8 @@ def _switched(
             phases = restart.phases
             if not legs and resume is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
-                _check_start(restart.start, pieces[-1].end, touches=touches)
+                shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if coordinates is None else {}
+                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -419,16 +420,21 @@ def _chatters(legs: Sequence[Leg], duration: float) -> bool:
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
-def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> None:
+def _check_start(start: ConsistentStart, duration: float, *, touches: bool, sags: Mapping[str, float]) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
     """
     problems = []
+    short = {name: sag for name, sag in sags.items() if sag < -CONSISTENT}
     if start.position_error > CONSISTENT and touches:
         what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
         problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
+    elif short:
+        which = ", ".join(f"{name!r} by {-sag:.2g}" for name, sag in short.items())
+        what = f"cables are too short where the motion starts: {which} (of the rod's length)"
+        problems.append(Problem("simulation.start", what, "give them more length, or start from an equilibrium"))
     elif start.position_error > CONSISTENT:
         open_by = f"{start.position_error:.2g} (of the length, or rad)"
         what = f"supports or joints are open by {open_by} where the motion starts"

@@ -174,7 +174,7 @@ class Motion(Result):
         interpolant: the state at a time between the first and the last: the dense output of the steps.
         warnings: sentences on what limits the accuracy, such as a load that jumps.
         contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
-        events: impacts and other changes of contact, in their order.
+        events: impacts and other changes of contact, and of cables that go slack, in their order.
         end: how far it has come, for a motion that goes on; None where it was not started.
     """
 

@@ -109,6 +109,8 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
     if scene.obstacles:
         data["contact"] = _contact_entry(motion)
+    elif motion.events:
+        data["events"] = _events_entry(motion)
     data["energy"] = asdict(motion.energy)
     if motion.end is not None:
         data[KEY] = motion.end.to_data()
@@ -130,10 +132,13 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
         "lies": np.array([contact.lies for contact in contacts], dtype=bool),
-        "events": {
-            name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__
-        },
+        "events": _events_entry(motion),
     }
+
+
+def _events_entry(motion: Motion) -> dict[str, list[Any]]:
+    """Events of contact or cables, one list for each of their fields."""
+    return {name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__}
 
 
 def _head(motion: Motion) -> dict[str, Any]:

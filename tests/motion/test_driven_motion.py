@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Motion, MotionOutcome, build, simulate, solve
+from cosserat_casadi import Motion, MotionOutcome, SceneError, build, simulate, solve
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.tip_paths import path_distance
@@ -164,6 +164,17 @@ def test_cable_that_snaps_taut_takes_energy_and_holds(strain: str, amplitude: fl
     assert lost[0] == 0.0
     assert lost[-1] > 0.0
     assert np.all(np.diff(lost) >= 0.0)
+    assert_allclose(lost[-1], sum(event.energy for event in motion.events), rtol=1e-12, atol=0)
+    # At each event the cable has its length, and between them it is in turn taut and slack.
+    assert {event.kind for event in motion.events} == {"taut", "slack"}
+    assert {event.owner for event in motion.events} == {"cable"}
+
+
+def test_a_cable_that_is_too_short_where_a_motion_starts_is_told() -> None:
+    scene = pushed_cable("kirchhoff", 0.02, 3.0, 1.0)
+    scene["actuators"][0]["length"] = 0.72
+    with pytest.raises(SceneError, match=r"cables are too short where the motion starts: 'cable' by 0\.1 \("):
+        simulated(scene, 0.4, start="unloaded")
 
 
 def test_elastic_cable_that_becomes_taut_stretches() -> None:
