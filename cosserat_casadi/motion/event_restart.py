@@ -23,8 +23,8 @@ class ContactEvent:
     """A change of contact in a motion, or of a cable that may go slack.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable "taut"
-            or "slack".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable
+            "taut" or "slack".
         time: s.
         owner: name of the rod, or of the body, that touches; of a cable its own.
         obstacle: name of the obstacle; empty of a cable.

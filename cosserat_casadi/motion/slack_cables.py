@@ -128,22 +128,25 @@ class SlackCables:
         """
         v = at.v
         lost = 0.0
-        events: tuple[ContactEvent, ...] = ()
+        events: list[ContactEvent] = []
+        was_taut = phases
         if guard is not None:
             snaps = not phases[guard]
-            before = phases
             phases = _changed(phases, [guard])
             if snaps:
                 v, phases = self._after_impact(plain, piece, at, phases, interval)
                 inputs = piece.at(at.time)
                 lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
-            # Tensions pull: a cable that a blow has left slack became taut and slack at once.
-            events = (self._event(guard, "slack" if before[guard] else "taut", at.time, lost),)
+                events.append(self._event(guard, "taut", at.time, lost))
+                was_taut = _changed(was_taut, [guard])
         while True:
             start = consistent_start(self.equations(plain, piece, phases), at.time, at.x, v, interval)
             slack = [k for k in self._pushing(start.instant.x, phases) if phases[k]]
             if not slack:
-                return Restart(start, phases, lost, events=events)
+                if guard is not None:
+                    slackened = [k for k, taut in enumerate(was_taut) if taut and not phases[k]]
+                    events += [self._event(k, "slack", at.time, 0.0) for k in slackened]
+                return Restart(start, phases, lost, events=tuple(events))
             phases = _changed(phases, slack)
 
     def _event(self, number: int, kind: str, time: float, lost: float) -> ContactEvent:
