@@ -45,6 +45,9 @@ REMEMBERED_TIMES = 16
 MOST_AT_ONCE = 60
 """Changes between slack and taut, or of contact, in next to no time from which on they count as without end."""
 
+SHORTER = 0.25
+"""Factor of a step after one in which a cable changed where the step began."""
+
 AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
@@ -397,7 +400,11 @@ def _switched(
                 return History(model, tuple(legs), method, asked, coordinates)
             at = integration.end
             guard = integration.guard
-            settings = replace(settings, first=integration.next_size)
+            first = integration.next_size
+            if not integration.steps and not model.scene.touches_exactly:
+                # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
+                first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
+            settings = replace(settings, first=first)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
