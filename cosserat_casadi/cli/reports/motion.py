@@ -66,7 +66,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
-    if motion.model.scene.touches_exactly and motion.events:
+    if any(event.obstacle for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
     elif motion.events:
         snaps = [event for event in motion.events if event.kind == "taut"]
