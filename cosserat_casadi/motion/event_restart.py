@@ -26,7 +26,7 @@ class ContactEvent:
         kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable
             "taut" or "slack".
         time: s.
-        owner: name of the rod, or of the body, that touches; of a cable its own.
+        owner: name of the rod, or of the body, that touches; or of the cable.
         obstacle: name of the obstacle; empty of a cable.
         place: abscissa X of the section; 0 of a body or a cable.
         energy: kinetic energy that the impact took, or the cable that became taut, J; zero of the others.

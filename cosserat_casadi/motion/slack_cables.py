@@ -200,7 +200,7 @@ class SlackCables:
 
 
 def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, float]:
-    """What every cable of given length that does not stretch sags by, over the rod's length; negative if too short.
+    """Sags of every cable of given length that does not stretch, over the rod's length; negative if too short.
 
     Args:
         model: the model.
