@@ -25,12 +25,13 @@ def simulated(tables: dict[str, Any], duration: float) -> Any:
     return simulate(scene_from_dict({**tables, "simulation": simulation}))
 
 
-def test_flight_decays_as_a_body_in_a_viscous_medium() -> None:
+@pytest.mark.parametrize("loads", [[WEIGHT], []], ids=["weight", "none"])
+def test_flight_decays_as_a_body_in_a_viscous_medium(loads: list[dict[str, Any]]) -> None:
     """r̈ = g − α ṙ of each point that does not turn: v = (v₀ − g/α) e^(−αt) + g/α."""
     velocity = np.array([1.0, -2.0, 0.5])
-    tables = scene(arm(free=True), loads=[WEIGHT], velocities=[{"rod": "a", "linear": velocity.tolist()}])
+    tables = scene(arm(free=True), loads=loads, velocities=[{"rod": "a", "linear": velocity.tolist()}])
     motion = simulated(tables, 0.5)
-    gravity = np.array(WEIGHT["acceleration"])
+    gravity = np.array(WEIGHT["acceleration"] if loads else [0.0, 0.0, 0.0])
     t = motion.times[:, None]
     last = gravity / RATE
     moved = (velocity - last) * (1.0 - np.exp(-RATE * t)) / RATE + last * t
