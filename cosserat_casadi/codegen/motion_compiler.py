@@ -15,11 +15,11 @@ import casadi as ca
 
 from cosserat_casadi.codegen.cache import kept_texts, texts_in_cache
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
-from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.motion import motion_refinement
+from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import STAGES, Tell
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
@@ -141,7 +141,7 @@ def _equations(model: Model) -> list[Any]:
     levels: list[Any] = []
     discrete: DiscreteScene | None = model.discrete
     while discrete is not None:
-        scene = discrete.scene.model_copy(update={"title": "", "motions": (), "simulation": None})
+        scene = discrete.scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
         discretisation = {name: rod.discretisation for name, rod in discrete.rods.items()}
         levels.append((scene, discrete.layout, discretisation))
         discrete = discrete.scaling
@@ -168,7 +168,7 @@ WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}
 def simulate(
     subject: Scene | Model,
     *,
-    start: Solution | None = None,
+    start: StartOfMotion = None,
     simulation: Simulation | None = None,
     progress: Tell | None = None,
     compiled: bool | None = None,
@@ -182,7 +182,9 @@ def simulate(
     Args:
         subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
             ``build(scene.with_motion_inputs(), …, moving=True)``.
-        start: an equilibrium of the scene to start from at rest; by default the one that the simulation asks for.
+        start: an equilibrium of the scene to start from at rest; or a motion, or its file (JSON, NPZ), which goes on to
+            the duration with the digits of one motion, where ``compiled`` is the same. By default what the simulation
+            asks for.
         simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
         compiled: whether the equations run as machine code. By default they do where the cache has them, or where

@@ -80,9 +80,13 @@ class MotionEnergy:
 
     @cached_property
     def dissipated_power(self) -> Matrix:
-        """Power that viscous stress, dampers of joints, and damping and friction of contact turn into heat, 1×1, W."""
+        """Power that damping of rods, dampers of joints, and damping and friction of contact turn into heat, 1×1, W."""
         of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
         of_branches = [relaxation.dissipated_power for relaxation in self.system.relaxations.values()]
+        for inertia in self.system.inertias.values():
+            damping = inertia.motion.rod.properties.mass_damping
+            if damping is not None:
+                of_rods.append(2 * damping * inertia.kinetic_energy)
         # What contact presses with at rest is stored: what it takes beyond that is lost.
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)

@@ -59,6 +59,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         rotary_inertia=_rotary_inertia(rod),
         damping=_damping(rod, hooke),
         branches=_branches(rod),
+        mass_damping=None if rod.damping is None else rod.damping.mass_proportional,
         area=_area(rod),
         diameter=_diameter(rod),
         plane_sections=rod.rotary_inertia is None,
@@ -269,6 +270,8 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
         if rod.stiffness is not None:
             sizes = [getattr(rod.stiffness, name) for name in STRAINS]
         return _shared(lambda X: time * hooke(X), *sizes)
+    if all(getattr(rod.damping, name) is None for name in STRAINS):
+        return None
     return _direct(rod.damping, 0.0)
 
 

@@ -145,7 +145,7 @@ class System:
             return {}
         motions = {}
         for name, rod_shape in self.shapes.items():
-            motions[name] = RodMotion(rod_shape, self.strain_rates(name), self.base_motion(name))
+            motions[name] = RodMotion(rod_shape, self.strain_rates(name), self.base_motion(name)).damped
         return motions
 
     @cached_property

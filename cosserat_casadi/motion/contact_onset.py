@@ -48,7 +48,7 @@ class Struck:
     Attributes:
         v: velocities after it, shape (n,), 1/s.
         impulses: of the sections that touch, in EI/ℓ² s, shape (m,).
-        speeds: rates of their gaps before it, shape (m,), 1/s.
+        speeds: rates of their gaps before it and after it, summed, shape (m,), 1/s.
         staying: contacts that stay closed.
     """
 
@@ -128,13 +128,16 @@ class Onset:
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
         gradients = self._gradients(touching)
         answers = response(self.plain, self.before, gradients.T)
-        impulses = least_pushes(gradients @ answers, speeds, still)
+        # Newton's law: γ⁺ ≥ −e γ⁻ where gaps close. What has touched before closes by rounding alone.
+        shares = np.array([self.facings[touch.facing].obstacle.restitution for touch in touching])
+        rebound = np.where(speeds < -still, -shares * speeds, 0.0)
+        impulses = least_pushes(gradients @ answers, speeds - rebound, still)
         if impulses is None:
             return None
         v = self.before.v + answers @ impulses
-        rates = np.where(impulses > 0.0, 0.0, self.at(v).rates(touching))
+        rates = np.where(impulses > 0.0, rebound, self.at(v).rates(touching))
         staying = tuple(touch for touch, rate in zip(touching, rates, strict=True) if rate <= still)
-        return Struck(v, impulses, speeds, staying)
+        return Struck(v, impulses, speeds + rates, staying)
 
     def soon_back(self, leaving: Touches, staying: Touches) -> Touches:
         """Sections that leave, and would be back without having risen above the least bounce."""

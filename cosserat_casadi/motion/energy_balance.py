@@ -12,6 +12,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checkpoint import EnergyAccount
 from cosserat_casadi.motion.history import History, Leg
 from cosserat_casadi.motion.trajectory import Energies
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -21,38 +22,50 @@ Place = tuple[Leg, Instant]
 """An instant of a motion, and the piece of the inputs that it belongs to."""
 
 
-def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> Energies:
-    """Energies of a motion at given times.
+def energies_of(
+    history: History, rows: FloatArray, moving: frozenset[str], before: EnergyAccount | None = None
+) -> tuple[Energies, EnergyAccount]:
+    """Energies of a motion at given times, and the account that it would go on with at its end.
 
     Args:
         history: the motion.
-        times: those to tell, reached by the motion, ascending, shape (T,), s.
+        rows: times to tell, reached by the motion, ascending, shape (T,), s.
         moving: names of the inputs that move: a dead force that changes does work, and has no potential energy.
+        before: energies up to where the motion goes on; None for one that begins.
     """
     model = history.model
+    times = np.append(rows, history.end.time)
     # Work counts from the start of the motion, which need not be among the times.
-    places = [history.locate(float(time)) for time in (history.legs[0].piece.start, *times)]
+    places = [history.locate(float(time)) for time in (history.begin, *times)]
     kinetic, elastic, of_loads, dead = _called(model.energies, places, accelerations=False)
     conserved = dead[:, :1] * _still(model, moving)[:, None]
     potential = (conserved.T @ of_loads)[0]
-    dissipated, work = _integrals(history, times, 1.0 - conserved[:, 0])
-
     stored = kinetic[0] + elastic[0] + potential
-    gained = stored[1:] - stored[0]
-    impacts, pushed = _in_impacts(history, times)
+    before = before or EnergyAccount(float(stored[0]))
+    dissipated, work = _integrals(history, times, 1.0 - conserved[:, 0], before)
+    gained = stored[1:] - before.stored
+    impacts, pushed = _in_impacts(history, times, before.impacts)
     work = work + pushed
     left_over = gained + dissipated + impacts - work
     parts = np.stack([kinetic[0, 1:], elastic[0, 1:], potential[1:] - potential[0], dissipated, work, impacts])
-    largest = float(np.abs(parts).max(initial=0.0))
+    largest = float(np.abs(parts[:, :-1]).max(initial=0.0))
     # Nothing moves and nothing is stored: nothing is missing either.
     if largest > 0.0:
         left_over = left_over / largest
-    return Energies(kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, impacts, left_over)
+    told = (kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, impacts, left_over)
+    at_end = EnergyAccount(before.stored, float(dissipated[-1]), float(work[-1]), float(impacts[-1]))
+    return Energies(*(energy[:-1] for energy in told)), at_end
 
 
-def _in_impacts(history: History, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Energy that impacts have taken, and work done in them, up to each time, shape (T,) each, J; before one, at it."""
-    lost = np.zeros(len(times))
+def _in_impacts(history: History, times: FloatArray, before: float) -> tuple[FloatArray, FloatArray]:
+    """Energy that impacts have taken, and work done in them, up to each time, shape (T,) each, J; before one, at it.
+
+    Args:
+        history: the motion.
+        times: shape (T,), s.
+        before: energy that impacts have taken up to its begin, J.
+    """
+    lost = np.full(len(times), before)
     work = np.zeros(len(times))
     for leg in history.legs:
         later = times > leg.start.instant.time
@@ -71,17 +84,19 @@ def _still(model: Model, moving: frozenset[str]) -> FloatArray:
     return np.array([float(load.name not in owners) for load in model.discrete.loads])
 
 
-def _integrals(history: History, times: FloatArray, working: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _integrals(
+    history: History, times: FloatArray, working: FloatArray, account: EnergyAccount
+) -> tuple[FloatArray, FloatArray]:
     """Energy that was dissipated, and work that was done, up to each time, shape (T,) each, J.
 
     Args:
         history: the motion.
         times: shape (T,), s.
         working: one for each load whose work counts, shape (loads,).
+        account: of the energies up to the begin of the motion.
     """
     if not history.steps:
-        nothing = np.zeros(len(times))
-        return nothing, nothing
+        return np.full(len(times), account.dissipated), np.full(len(times), account.work)
     places = [place for leg, step in history.steps for place in _stage_places(leg, step)]
     of_model = [(leg, history.of_model(instant)) for leg, instant in places]
     dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, of_model, accelerations=True)
@@ -91,15 +106,22 @@ def _integrals(history: History, times: FloatArray, working: FloatArray) -> tupl
     powers = np.stack([dissipated[0], put_in])
     stages = history.steps[0][1].method.stages
     by_step = powers.reshape(2, len(history.steps), stages)
-    return _up_to(history, times, by_step)
+    return _up_to(history, times, by_step, np.array([account.dissipated, account.work]))
 
 
-def _up_to(history: History, times: FloatArray, powers: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Integrals of two powers, given at the stages of the steps, shape (2, steps, stages), up to each time."""
+def _up_to(history: History, times: FloatArray, powers: FloatArray, begin: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Integrals of two powers up to each time.
+
+    Args:
+        history: the motion.
+        times: shape (T,), s.
+        powers: at the stages of the steps, shape (2, steps, stages), W.
+        begin: values of the integrals at the begin of the motion, shape (2,), J.
+    """
     method = history.steps[0][1].method
     sizes = np.array([step.size for _, step in history.steps])
     of_steps = (powers @ method.weights) * sizes
-    before = np.cumsum(of_steps, axis=1) - of_steps
+    before = np.cumsum(np.column_stack([begin, of_steps]), axis=1)[:, :-1]
     results = np.zeros((2, len(times)))
     for row, time in enumerate(times):
         number = history.number_at(float(time))

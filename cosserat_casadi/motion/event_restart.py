@@ -20,15 +20,16 @@ HeldPhases = TypeVar("HeldPhases", covariant=True)
 
 @dataclass(frozen=True)
 class ContactEvent:
-    """A change of contact in a motion.
+    """A change of contact in a motion, or of a cable that may go slack.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable
+            "taut" or "slack".
         time: s.
-        owner: name of the rod, or of the body, that touches.
-        obstacle: name of the obstacle.
-        place: abscissa X of the section; 0 of a body.
-        energy: kinetic energy that the impact took, J; zero of the others.
+        owner: name of the rod, or of the body, that touches; or of the cable.
+        obstacle: name of the obstacle; empty of a cable.
+        place: abscissa X of the section; 0 of a body or a cable.
+        energy: kinetic energy that the impact took, or the cable that became taut, J; zero of the others.
         impulse: of the obstacle on the rod, along its normal there, N s; zero of the others.
         of_body: whether it is a body that touches.
     """

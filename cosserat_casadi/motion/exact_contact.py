@@ -1,7 +1,8 @@
 """Exact contact in motion, without friction: rods touch obstacles at sections for a while, and what happens between.
 
 Between events the sections that touch are the same, and the equations are smooth. Where a gap comes to zero there is an
-impact without rebound: impulses along the normals take the speed of approach, as little as keeps all that touch apart
+impact: impulses along the normals take the speed of approach, and give back the share of it that is the obstacle's
+coefficient of restitution, none by default; they are as small as keeps all that touch apart
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
 of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
@@ -251,7 +252,7 @@ class ExactContacts:
         return found
 
     def _energies(self, touching: Touches, struck: Struck) -> list[float]:
-        """Energy that the impulse at each section takes, J: half of it times the speed that it takes."""
+        """Energy that the impulse at each section takes, J: half of it times the speeds before and after."""
         energies = []
         for touch, impulse, speed in zip(touching, struck.impulses, struck.speeds, strict=True):
             unit = self.facings[touch.facing].energy_unit

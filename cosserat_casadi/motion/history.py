@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 
@@ -14,21 +14,23 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
+from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.constraint_projection import Closing
+from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.motion.slack_cables import SlackCables, sags_by_cable
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import TimeStep, positions_at
+from cosserat_casadi.numerics.step import StepMemory, TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -42,6 +44,9 @@ REMEMBERED_TIMES = 16
 
 MOST_AT_ONCE = 60
 """Changes between slack and taut, or of contact, in next to no time from which on they count as without end."""
+
+SHORTER = 0.25
+"""Factor of a step after one in which a cable changed where the step began."""
 
 AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
@@ -110,12 +115,34 @@ class History:
         model: the model.
         legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
             contact changes.
+        method: of its steps.
+        settings: how it steps.
         coordinates: coordinates of the steps; None for the unknowns of the model.
     """
 
     model: Model
     legs: tuple[Leg, ...]
+    method: Collocation
+    settings: StepSettings
     coordinates: CentredCoordinates | None = None
+
+    @property
+    def begin(self) -> float:
+        """Time at which it begins, s: zero, unless it goes on from another."""
+        return self.legs[0].start.instant.time
+
+    @property
+    def resume(self) -> Resume:
+        """Where it would go on."""
+        leg = self.legs[-1]
+        ended = leg.integration
+        phases = leg.restart.phases
+        assert isinstance(phases, ContactPhase | tuple), "cables or contacts"
+        places = tuple(phases.follower.places) if isinstance(phases, ContactPhase) else ()
+        # Behind a guard there are other equations.
+        memory = ended.memory if ended.guard is None else None
+        first = ended.next_size if memory is None else memory.wanted
+        return Resume(ended.end, phases, places, ended.guard, first, memory)
 
     @property
     def outcome(self) -> StepOutcome:
@@ -264,6 +291,7 @@ def integrated(
     p: FloatArray | None = None,
     phases: ContactPhase | None = None,
     kernels: StepKernels | None = None,
+    resume: Resume | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -278,17 +306,25 @@ def integrated(
         p: stacked parameters; those of a model that has some.
         phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
         kernels: as for :func:`equations_of`.
+        resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
 
     Raises:
         SceneError: the start contradicts the constraints.
     """
     inputs = pieces[0].at(pieces[0].start).value
     chosen = kernels or interpreted(model)
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen)
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume)
     if not model.scene.touches_exactly:
         cables = SlackCables(model)
-        return switched(cables, cables.first_phases(x, inputs))
+        first = cables.first_phases(x, inputs)
+        if resume is not None and not isinstance(resume.phases, ContactPhase):
+            first = resume.phases
+        return switched(cables, first)
     contacts = ExactContacts(model)
+    if resume is not None and isinstance(resume.phases, ContactPhase):
+        follower = Follower(contacts.facings, resume.phases.touches)
+        follower.places = list(resume.places)
+        phases = replace(resume.phases, follower=follower)
     return switched(contacts, contacts.first_phases(x, inputs) if phases is None else phases)
 
 
@@ -302,6 +338,7 @@ def _switched(
     after_step: AfterStep | None,
     p: FloatArray | None,
     kernels: StepKernels,
+    resume: Resume | None,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
@@ -314,8 +351,18 @@ def _switched(
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     if coordinates is not None:
         at = coordinates.from_model(at)
+    asked = settings
     guard: int | None = None
+    memory: StepMemory | None = None
+    if resume is not None:
+        at = resume.at
+        guard = resume.guard
+        memory = resume.memory
     for number, piece in enumerate(pieces, start=1):
+        if piece.end <= at.time:
+            continue
+        if resume is not None and not legs:
+            settings = replace(settings, first=min(resume.first, piece.end - piece.start))
         plain = equations_of(model, piece, p, kernels)
         if coordinates is not None:
             plain = coordinates.equations(plain)
@@ -323,11 +370,16 @@ def _switched(
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
             interval = DIFFERENTIATED * piece.smooth
-            restart = switching.restarted(plain, piece, at, phases, guard, interval)
+            if memory is not None and at.time > piece.start:
+                restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases)
+            else:
+                memory = None
+                restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
-            if not legs:
+            if not legs and resume is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
-                _check_start(restart.start, pieces[-1].end, touches=touches)
+                shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if coordinates is None else {}
+                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -335,24 +387,29 @@ def _switched(
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin)))
-                return History(model, tuple(legs), coordinates)
+                return History(model, tuple(legs), method, asked, coordinates)
             own = _with_forces(settings, equations.size)
-            integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled)
+            integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled, memory)
+            memory = None
             legs.append(Leg(piece, restart, integration))
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
-                return History(model, tuple(legs), coordinates)
+                return History(model, tuple(legs), method, asked, coordinates)
             if _chatters(legs, pieces[-1].end):
                 ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
-                return History(model, tuple(legs), coordinates)
+                return History(model, tuple(legs), method, asked, coordinates)
             at = integration.end
             guard = integration.guard
-            settings = replace(settings, first=integration.next_size)
+            first = integration.next_size
+            if not integration.steps and not model.scene.touches_exactly:
+                # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
+                first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
+            settings = replace(settings, first=first)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
-    return History(model, tuple(legs), coordinates)
+    return History(model, tuple(legs), method, asked, coordinates)
 
 
 def _with_forces(settings: StepSettings, size: int) -> StepSettings:
@@ -370,21 +427,29 @@ def _chatters(legs: Sequence[Leg], duration: float) -> bool:
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
-def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> None:
+def _check_start(start: ConsistentStart, duration: float, *, touches: bool, sags: Mapping[str, float]) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
     """
     problems = []
+    short = {name: sag for name, sag in sags.items() if sag < -CONSISTENT}
     if start.position_error > CONSISTENT and touches:
         what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
         problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
+    elif short:
+        which = ", ".join(f"{name!r} by {-sag:.2g}" for name, sag in short.items())
+        what = f"cables are too short where the motion starts: {which} (of the rod's length)"
+        problems.append(Problem("simulation.start", what, "give them more length, or start from an equilibrium"))
     elif start.position_error > CONSISTENT:
         open_by = f"{start.position_error:.2g} (of the length, or rad)"
         what = f"supports or joints are open by {open_by} where the motion starts"
         problems.append(Problem("simulation.start", what, "start from an equilibrium"))
-    if start.velocity_error * duration > CONSISTENT:
+    if start.velocity_error * duration > CONSISTENT and np.any(start.instant.v):
+        what = f"supports, joints or cables open at {start.velocity_error:.2g} 1/s with the velocities at t = 0"
+        problems.append(Problem("velocities", what, "give velocities that they allow, or leave those of bodies out"))
+    elif start.velocity_error * duration > CONSISTENT:
         what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
         remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
         problems.append(Problem("motions", what, remedy))

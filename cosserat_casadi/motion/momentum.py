@@ -73,7 +73,8 @@ class MomentumKeeper:
 
     def __init__(self, model: Model, to_model: Callable[[Instant], Instant] | None = None) -> None:
         self._to_model = to_model or _itself
-        self._loaded = bool(model.scene.loads)
+        damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
+        self._loaded = damped or bool(model.scene.loads)
         self._size = model.size
         self._frames = [
             (entries, frame)

@@ -9,24 +9,28 @@ checked on the last. See docs/theory.md, section 11.
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from cosserat_casadi.accuracy.levels import SPARE_NODES, seeing_modes
-from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
+from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.simulate import (
     MOST_TIGHTENINGS,
+    Companion,
     Simulator,
     Tell,
     TimedHistory,
+    bound_of,
     ended_early,
     judged,
     motion_of,
@@ -154,8 +158,13 @@ class _Search:
         """
         if len(self.levels) < 2:
             return float("inf")
+        return max(self.last.distance * self.left_over_distance, self.last.unseen)
+
+    @property
+    def left_over_distance(self) -> float:
+        """Error of the paths that the modes of the last level leave, over their distance from the level before."""
         left = self.ratio ** (self.last.rung - self.levels[-2].rung)
-        return max(SAFETY * self.last.distance * left / (1.0 - left), self.last.unseen)
+        return SAFETY * left / (1.0 - left)
 
     def climb(self, last: int) -> int | None:
         """The next rung: as far up as seems to be needed; None where the last one would not do.
@@ -180,7 +189,7 @@ class _Search:
 def simulate(
     subject: Scene | Model,
     *,
-    start: Solution | None = None,
+    start: StartOfMotion = None,
     simulation: Simulation | None = None,
     progress: Tell | None = None,
     source: KernelSource | None = None,
@@ -189,7 +198,8 @@ def simulate(
 
     Args:
         subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions.
-        start: an equilibrium of the scene to start from at rest; None for the start of the simulation.
+        start: an equilibrium of the scene to start from at rest, or a motion to go on with; None for the start of the
+            simulation.
         simulation: duration, frames, tolerance; None for those of the scene.
         progress: told of every step.
         source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
@@ -197,6 +207,10 @@ def simulate(
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
+    checkpoint = checkpoint_of(start)
+    if checkpoint is not None:
+        return go_on(subject, checkpoint, simulation, progress, source)
+    assert start is None or isinstance(start, Solution), "a motion has a checkpoint"
     if isinstance(subject, Model):
         return simulate_model(subject, start=start, simulation=simulation, progress=progress, source=source)
     refuse_tubes(subject)
@@ -241,7 +255,10 @@ def _with_fixed(search: _Search) -> Motion:
             raise KeyboardInterrupt
         if history.completed:
             space_error = SAFETY * path_distance(level.paths, witness.paths(history))
-    return _judged(search, level, space_error + timed.error)
+    companions = [timed.companion]
+    if witness.start.found:
+        companions.append(Companion(history, SAFETY))
+    return _judged(search, level, space_error + timed.error, companions)
 
 
 def _finer(discretisation: Discretisation) -> Discretisation:
@@ -289,7 +306,10 @@ def _with_tolerance(search: _Search) -> Motion:
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
-    return _judged(search, finest, search.space_error + timed.error)
+    companions = [timed.companion]
+    if len(search.levels) > 1:
+        companions.append(Companion(search.levels[-2].history, search.left_over_distance))
+    return _judged(search, finest, search.space_error + timed.error, companions)
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:
@@ -348,7 +368,7 @@ def _tighter(simulator: Simulator, told: TimedHistory) -> TimedHistory:
     tolerance = told.tolerance / COARSER
     history = simulator.controlled(tolerance)
     error = LEFT_BY_FINER * path_distance(simulator.paths(told.history), simulator.paths(history))
-    return TimedHistory(history, error, tolerance, tolerance)
+    return TimedHistory(history, error, tolerance, tolerance, Companion(told.history, LEFT_BY_FINER))
 
 
 def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistory:
@@ -365,7 +385,7 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
     error = float("inf")
     if coarse.completed:
         error = LEFT_BY_FINER * path_distance(simulator.paths(coarse), level.paths)
-    return TimedHistory(level.history, error, step_tolerance, step_tolerance)
+    return TimedHistory(level.history, error, step_tolerance, step_tolerance, Companion(coarse, LEFT_BY_FINER))
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
@@ -424,12 +444,10 @@ def _felt(level: ResolvedMotion, duration: float) -> dict[str, list[FloatArray]]
     return felt
 
 
-def _judged(search: _Search, level: ResolvedMotion, error: float) -> Motion:
+def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Sequence[Companion | None]) -> Motion:
     """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
-    bound = search.tolerance
-    if search.scene.accuracy.fixed or search.simulation.step is not None:
-        bound = LARGEST_SHAPE_ERROR
-    return judged(level.simulator, level.history, error, bound)
+    bound = bound_of(search.scene, search.simulation, search.tolerance)
+    return judged(level.simulator, level.history, error, bound, companions)
 
 
 def _interrupted(search: _Search) -> Motion:

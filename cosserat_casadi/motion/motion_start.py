@@ -13,6 +13,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.start_in_contact import resting
@@ -24,6 +25,7 @@ SWINGS = (
 )
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
+RESUMED = "From the end of the motion that was given, at t = {time:.6g} s."
 GIVEN = "At rest in the equilibrium that was given."
 TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain the "
@@ -48,16 +50,25 @@ class Start:
     Attributes:
         x: unknowns, shape (size,); multipliers and tensions are a guess.
         sentence: what the user is told; of a start that failed, why.
+        v: rates of the unknowns, shape (size,), 1/s; None at rest.
         found: whether there is a state to start from.
         phases: what touches; None where that is looked for.
         asks_for_modes: whether none is found on these modes, and other modes may have one.
+        resume: where a motion goes on; None for one that begins.
     """
 
     x: FloatArray
     sentence: str
+    v: FloatArray | None = None
     found: bool = True
     phases: ContactPhase | None = None
     asks_for_modes: bool = False
+    resume: Resume | None = None
+
+
+def resumed_start(model: Model, resume: Resume) -> Start:
+    """Where a motion goes on."""
+    return Start(model.unloaded(), RESUMED.format(time=resume.at.time), resume=resume)
 
 
 def unloaded_start(model: Model) -> Start:

@@ -7,7 +7,7 @@ distance of the paths of the tips estimates the error. See docs/theory.md, secti
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,15 +18,18 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.strain_limits import first_beyond
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import told_inside, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.pose_series import tip_poses
 from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
@@ -40,6 +43,7 @@ from cosserat_casadi.motion.trajectory import (
 )
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
 LOG = logging.getLogger(__name__)
@@ -98,6 +102,19 @@ CLOSED = 1e-10
 
 
 @dataclass(frozen=True)
+class Companion:
+    """A motion that tells the error of another.
+
+    Attributes:
+        history: the motion.
+        factor: error of the other one over the distance of their paths.
+    """
+
+    history: History
+    factor: float
+
+
+@dataclass(frozen=True)
 class TimedHistory:
     """A motion with the error of its steps.
 
@@ -106,12 +123,14 @@ class TimedHistory:
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
         sufficient: tolerance of a step that would do for motions on other modes; nan for steps of given size.
+        companion: the motion by which the error was told; None where none was made.
     """
 
     history: History
     error: float
     tolerance: float = float("nan")
     sufficient: float = float("nan")
+    companion: Companion | None = None
 
 
 @dataclass(frozen=True)
@@ -125,6 +144,7 @@ class Simulator:
         stage: what the user is told that is being done.
         tell: is told of every step.
         source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
+        begun: where the motion goes on from; None for one that begins.
     """
 
     model: Model
@@ -133,6 +153,7 @@ class Simulator:
     stage: str = "simulating"
     tell: Tell | None = None
     source: KernelSource | None = None
+    begun: Checkpoint | None = None
 
     @cached_property
     def moving(self) -> MovingInputs:
@@ -164,6 +185,11 @@ class Simulator:
             method = gauss(STAGES)
         tolerance = EXACT / self.displacements
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
+
+    def resumed(self, strand: Strand) -> History:
+        """The motion from where a strand has come to, with its steps."""
+        method = gauss(STAGES) if strand.gauss else radau(STAGES)
+        return self._integrated(method, strand.settings)
 
     def paths(self, history: History) -> Paths:
         """Paths of tips and bodies, by which two motions are compared."""
@@ -215,7 +241,8 @@ class Simulator:
             fine_paths = self.paths(fine)
             distance = path_distance(coarse_paths, fine_paths)
             error = LEFT_BY_TIGHTER * distance
-            timed = TimedHistory(fine, error, tighter, _sufficient(timed.tolerance, distance, wanted))
+            sufficient = _sufficient(timed.tolerance, distance, wanted)
+            timed = TimedHistory(fine, error, tighter, sufficient, Companion(timed.history, LEFT_BY_TIGHTER))
             coarse_paths = fine_paths
             if error <= max(tolerance, enough * wanted):
                 break
@@ -228,13 +255,14 @@ class Simulator:
         shorter = self.stepped(size / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
         error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error)
+        return TimedHistory(history, error, companion=Companion(shorter, HALVED))
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_GAUSS_STEPS
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = float("nan")
+        companion = None
         for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)
@@ -244,26 +272,28 @@ class Simulator:
             shorter_paths = self.paths(shorter)
             if history.completed and shorter.completed:
                 error = LEFT_BY_HALF * path_distance(history_paths, shorter_paths)
+            companion = Companion(history, LEFT_BY_HALF)
             history = shorter
             history_paths = shorter_paths
             if error <= tolerance:
                 break
-        return TimedHistory(history, error)
+        return TimedHistory(history, error, companion=companion)
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
-        still = np.zeros(self.model.size)
+        rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
         history = integrated(
             self.model,
             pieces,
             self.start.x,
-            still,
+            rates,
             method,
             settings,
             self._after_step,
             phases=self.start.phases,
             kernels=kernels,
+            resume=self.start.resume,
         )
         if self.source is not None:
             self.source.learn(history.statistics)
@@ -321,10 +351,13 @@ def simulate(
     timed = simulator.to_tolerance(tolerance, first=tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
-    bound = tolerance
-    if asked.step is not None:
-        bound = LARGEST_SHAPE_ERROR
-    return judged(simulator, timed.history, timed.error, bound)
+    bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
+    return judged(simulator, timed.history, timed.error, bound, [timed.companion])
+
+
+def bound_of(scene: Scene, simulation: Simulation, tolerance: float) -> float:
+    """Error up to which a motion of a scene is the one that was asked for: what the user fixed need but resolve it."""
+    return LARGEST_SHAPE_ERROR if scene.accuracy.fixed or simulation.step is not None else tolerance
 
 
 def tolerance_of(model: Model, simulation: Simulation) -> float:
@@ -341,11 +374,14 @@ def moving_inputs(model: Model) -> MovingInputs:
 
 def started(model: Model, simulation: Simulation, solution: Solution | None) -> Start:
     """How the motion of a model begins."""
+    moving = moving_inputs(model)
     if solution is not None:
-        return given_start(model, solution)
-    if model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
-        return unloaded_start(model)
-    return equilibrium_start(model, moving_inputs(model).at(0.0).value)
+        start = given_start(model, solution)
+    elif model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
+        start = unloaded_start(model)
+    else:
+        start = equilibrium_start(model, moving.at(0.0).value)
+    return with_velocities(model, start, moving.pieces(simulation.duration)[0])
 
 
 def unresolved(history: History, duration: float) -> bool:
@@ -368,7 +404,13 @@ def told_beyond(history: History, duration: float) -> tuple[MotionOutcome, str] 
     return outcome, f"{outcome.value} {beyond.whose}, from t = {times[beyond.state]:.6g} s on."
 
 
-def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
+def judged(
+    simulator: Simulator,
+    history: History,
+    error: float,
+    bound: float,
+    companions: Sequence[Companion | None] = (),
+) -> Motion:
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
     Args:
@@ -376,6 +418,7 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
         history: the motion.
         error: estimated error of the paths over the length; no finite number where none could be made.
         bound: error up to which it is the motion that was asked for.
+        companions: motions that told the error.
     """
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
@@ -396,7 +439,7 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
         if not np.isfinite(error):
             found = "The error of the paths could not be estimated."
         message = f"{outcome.value} {found}"
-    return motion_of(simulator, history, outcome, error, message)
+    return motion_of(simulator, history, outcome, error, message, companions)
 
 
 def ended_early(simulator: Simulator, history: History) -> Motion:
@@ -412,17 +455,29 @@ def ended_early(simulator: Simulator, history: History) -> Motion:
     return motion_of(simulator, history, outcome, float("nan"), message)
 
 
-def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:
+def motion_of(
+    simulator: Simulator,
+    history: History,
+    outcome: MotionOutcome,
+    error: float,
+    message: str,
+    companions: Sequence[Companion | None] = (),
+) -> Motion:
     """The record of a motion: its rows at the times asked for, as far as it reached them."""
     model = simulator.model
     wanted = simulator.simulation.frame_times
     for event in history.events:
         LOG.info("%s of %s on %s at %.6g s", event.kind, event.owner, event.obstacle, event.time)
-    times = wanted[wanted <= history.end.time]
+    times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
     states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
     begin = history.of_model(history.legs[0].start.instant)
     duration = simulator.simulation.duration
+    begun = simulator.begun
+    energy, account = energies_of(history, times, moving, None if begun is None else begun.energy)
+    strands = [_strand(history, 0.0)]
+    strands += [_strand(one.history, one.factor) for one in companions if one is not None and one.history.completed]
+    end = Checkpoint(history.end.time, tuple(strands), error, account, _tips(history, history.end.time))
     return Motion(
         model=model,
         outcome=outcome,
@@ -432,7 +487,7 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         v=_stacked([state.v for state in states], model.size),
         a=_stacked([state.a for state in states], model.size),
         inputs=_stacked([state.inputs for state in states], model.inputs.size),
-        energy=energies_of(history, times, moving),
+        energy=energy,
         error_estimate=error,
         statistics=history.statistics,
         start=simulator.start.sentence,
@@ -440,7 +495,21 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         warnings=tuple(warnings(model, simulator.start, simulator.moving, duration, begin.a)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=history.events,
+        end=end,
     )
+
+
+def _strand(history: History, factor: float) -> Strand:
+    """A motion as far as it has come."""
+    method = history.method.stiffly_accurate
+    return Strand(history.model.discretisation, history.settings, not method, factor, history.resume)
+
+
+def _tips(history: History, time: float) -> dict[str, list[float]]:
+    """Positions of the tips at a time, by rod, m."""
+    model = history.model
+    x, inputs = history.rough_positions(np.array([time]))
+    return {name: tip_poses(model, name, x, inputs).position[0].tolist() for name in model.discrete.rods}
 
 
 def _stacked(rows: list[FloatArray], size: int) -> FloatArray:

@@ -20,7 +20,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import CableOfLength
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.event_restart import Restart
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.consistent_start import consistent_start, impact
@@ -128,6 +128,8 @@ class SlackCables:
         """
         v = at.v
         lost = 0.0
+        events: list[ContactEvent] = []
+        was_taut = phases
         if guard is not None:
             snaps = not phases[guard]
             phases = _changed(phases, [guard])
@@ -135,12 +137,20 @@ class SlackCables:
                 v, phases = self._after_impact(plain, piece, at, phases, interval)
                 inputs = piece.at(at.time)
                 lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
+                events.append(self._event(guard, "taut", at.time, lost))
+                was_taut = _changed(was_taut, [guard])
         while True:
             start = consistent_start(self.equations(plain, piece, phases), at.time, at.x, v, interval)
             slack = [k for k in self._pushing(start.instant.x, phases) if phases[k]]
             if not slack:
-                return Restart(start, phases, lost)
+                if guard is not None:
+                    slackened = [k for k, taut in enumerate(was_taut) if taut and not phases[k]]
+                    events += [self._event(k, "slack", at.time, 0.0) for k in slackened]
+                return Restart(start, phases, lost, events=tuple(events))
             phases = _changed(phases, slack)
+
+    def _event(self, number: int, kind: str, time: float, lost: float) -> ContactEvent:
+        return ContactEvent(kind, time, self.cables[number].tendon.name, "", 0.0, lost)
 
     def _after_impact(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Tautness, interval: float
@@ -187,6 +197,21 @@ class SlackCables:
         x, inputs = self._symbols
         lengths = System(self.model.discrete, Arguments(x, inputs)).actuators.cable_lengths
         return ca.densify(ca.vertcat(*[lengths[cable.tendon.name].sag for cable in self.cables]))
+
+
+def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, float]:
+    """Sags of every cable of given length that does not stretch, over the rod's length; negative if too short.
+
+    Args:
+        model: the model.
+        x: unknowns, shape (size,).
+        inputs: stacked, shape (model.inputs.size,).
+    """
+    cables = [cable.tendon for cable in model.discrete.cables if getattr(cable.tendon, "axial_stiffness", None) is None]
+    if not cables:
+        return {}
+    lengths = System(model.discrete, Arguments(ca.DM(x), ca.DM(inputs))).actuators.cable_lengths
+    return {cable.name: float(ca.evalf(ca.MX(lengths[cable.name].sag))) for cable in cables}
 
 
 def _changed(phases: Tautness, cables: Sequence[int]) -> Tautness:

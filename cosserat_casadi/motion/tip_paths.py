@@ -34,7 +34,7 @@ class Paths:
 
 def watched_times(history: History, duration: float) -> FloatArray:
     """Times at which paths are compared, as far as a motion reaches them, shape (T,), s."""
-    times = np.linspace(0.0, duration, WATCHED)
+    times = np.linspace(history.begin, duration, WATCHED)
     return times[times <= history.end.time]
 
 

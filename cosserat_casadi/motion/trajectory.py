@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import (
@@ -173,7 +174,8 @@ class Motion(Result):
         interpolant: the state at a time between the first and the last: the dense output of the steps.
         warnings: sentences on what limits the accuracy, such as a load that jumps.
         contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
-        events: impacts and other changes of contact, in their order.
+        events: impacts and other changes of contact, and of cables that go slack, in their order.
+        end: how far it has come, for a motion that goes on; None where it was not started.
     """
 
     model: Model
@@ -192,6 +194,7 @@ class Motion(Result):
     warnings: tuple[str, ...] = ()
     contacts: tuple[tuple[MotionContact, ...], ...] = ()
     events: tuple[ContactEvent, ...] = ()
+    end: Checkpoint | None = None
 
     @property
     def converged(self) -> bool:

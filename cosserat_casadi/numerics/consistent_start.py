@@ -88,6 +88,36 @@ def consistent_start(
     )
 
 
+def following(
+    equations: MotionEquations,
+    time: float,
+    x: FloatArray,
+    v: FloatArray,
+    interval: float,
+    follows: npt.NDArray[np.bool_],
+) -> FloatArray:
+    """Velocities in which some entries go along with the others as constraints demand, no further, shape (n,).
+
+    Where the others leave no such velocities, constraints keep a rate: :func:`consistent_start` tells it.
+
+    Args:
+        equations: the equations of motion.
+        time: s.
+        x: positions, shape (n,).
+        v: velocities, shape (n,), 1/s.
+        interval: as for :func:`consistent_start`, s.
+        follows: which entries go along, shape (n,).
+    """
+    instant = Instant(time, x, v, np.zeros(equations.size))
+    linearisation = equations.linearised(instant)
+    constraints = _constraint_rows(linearisation, equations.differential)
+    _, rates, _ = _in_time(equations, instant, constraints, interval)
+    by_followers = linearisation.stiffness[np.ix_(constraints, follows)]
+    moved = v.copy()
+    moved[follows] -= np.linalg.pinv(by_followers, rcond=RANK) @ rates
+    return moved
+
+
 def response(equations: MotionEquations, instant: Instant, directions: FloatArray) -> FloatArray:
     """Accelerations that unit forces make, or velocities that unit impulses make, all constraints kept, shape (n, k).
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import TimeStep
+from cosserat_casadi.numerics.step import StepMemory, TimeStep
 
 
 class StepOutcome(Enum):
@@ -83,6 +83,7 @@ class Integration:
         next_size: step that would come next, or that failed, s.
         statistics: numbers of its steps, iterations and factorisations.
         guard: number of the guard that came to zero; None where none did.
+        memory: what a next step under the same equations would take over; None where there was no step.
     """
 
     start: Instant
@@ -91,6 +92,7 @@ class Integration:
     next_size: float
     statistics: IntegrationCost
     guard: int | None = None
+    memory: StepMemory | None = None
 
     @property
     def end(self) -> Instant:

@@ -186,10 +186,33 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
     return np.where(at_end[:, None], of_time["arrived"], x)
 
 
-def extrapolated(step: TimeStep, size: float) -> FloatArray:
+@dataclass(frozen=True)
+class StepMemory:
+    """Data that a step takes over from the steps before it, beside the state that they have reached.
+
+    Attributes:
+        begun: time at which the stretch of equal equations began, s.
+        size: of the step before, s.
+        unknowns: as in :class:`TimeStep`, of the step before, shape (s, n).
+        wanted: size that the next step is to have, s.
+        error: estimated error of the step before over its tolerance; nan where it was not controlled.
+        longest: longest step of the stretch, s.
+        linearised_at: where the Jacobian in use was evaluated; None where the next step evaluates one.
+    """
+
+    begun: float
+    size: float
+    unknowns: FloatArray
+    wanted: float
+    error: float
+    longest: float
+    linearised_at: Instant | None
+
+
+def extrapolated(method: Collocation, step: TimeStep | StepMemory, size: float) -> FloatArray:
     """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
-    shares = 1.0 + step.method.nodes * (size / step.size)
-    return step.method.values_at_stages(shares) @ step.unknowns
+    shares = 1.0 + method.nodes * (size / step.size)
+    return method.values_at_stages(shares) @ step.unknowns
 
 
 def restricted(step: TimeStep, time: float) -> TimeStep:

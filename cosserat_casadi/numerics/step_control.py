@@ -197,6 +197,10 @@ class StepControl:
             following = max(following, self.wanted)
         self.wanted = min(following, self.longest)
         self.refused = False
+        self.remember(size, error)
+
+    def remember(self, size: float, error: float) -> None:
+        """Take note of the last step: its size, s, and its error over tolerance."""
         self.last_size = size
         self.last_error = max(error, REMEMBERED_ERROR)
 

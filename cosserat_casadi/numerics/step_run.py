@@ -14,7 +14,7 @@ from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step import StepMemory, TimeStep, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error, overlooked_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -64,6 +64,9 @@ class StepRun:
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
         longest: step taken so far, s.
+        before: what the first step takes over from those up to the start; None where there are none.
+        memory: what a next step would take over after the last one taken.
+        linearised_at: where the Jacobian in use was evaluated.
         guards: values that have to stay at zero or above; None where there are none.
         settled: instant to go on from, in place of the end of the last step; None for the end of that step.
         guard: number of the guard that came to zero; None where none did.
@@ -87,6 +90,9 @@ class StepRun:
     jacobians: int = 0
     factorisations: int = 0
     longest: float = 0.0
+    before: StepMemory | None = None
+    memory: StepMemory | None = None
+    linearised_at: Instant | None = None
 
     def __post_init__(self) -> None:
         differential = self.equations.differential
@@ -94,6 +100,18 @@ class StepRun:
         weights[differential] = 1.0 / self.settings.tolerance[differential]
         iterations = MOST_ITERATIONS if self.settings.size is None else ITERATIONS_OF_GIVEN_STEP
         self.bounds = NewtonBounds(weights, self.settings.newton, iterations)
+        self.memory = self.before
+        if self.before is None:
+            return
+        self.longest = self.before.longest
+        self.linearised_at = self.before.linearised_at
+        if self.linearised_at is not None:
+            self.linearisation = self.equations.linearised(self.linearised_at)
+
+    @property
+    def begun(self) -> float:
+        """Time at which the stretch of equal equations began, s: the start, unless a motion goes on there."""
+        return self.start.time if self.before is None else self.before.begun
 
     @property
     def now(self) -> Instant:
@@ -111,7 +129,7 @@ class StepRun:
             jacobians=self.jacobians,
             factorisations=self.factorisations,
         )
-        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard)
+        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard, self.memory)
 
     def renew_jacobian(self) -> None:
         """Have the next step evaluate a new Jacobian."""
@@ -148,7 +166,8 @@ class StepRun:
         guess = self.guess()
         linearisation = self.linearisation
         if linearisation is None:
-            linearisation = self.equations.linearised(self._middle(guess))
+            self.linearised_at = self._middle(guess)
+            linearisation = self.equations.linearised(self.linearised_at)
             self.linearisation = linearisation
             self.jacobians += 1
             self.fresh = True
@@ -174,8 +193,9 @@ class StepRun:
 
     def guess(self) -> FloatArray:
         """First iterate of the stages: the polynomial of the step before, or the start."""
-        if self.steps:
-            return extrapolated(self.steps[-1], self.size)
+        last = self.steps[-1] if self.steps else self.before
+        if last is not None:
+            return extrapolated(self.method, last, self.size)
         unknowns = np.where(self.equations.differential, self.start.a, self.start.x)
         return np.tile(unknowns, (self.method.stages, 1))
 
@@ -202,8 +222,15 @@ class StepRun:
         pace = max(self.size, self.longest)
         return overlooked_error(self.equations, matrices, self.now.time, middle, inside, self.bounds, pace)
 
-    def accept(self, solution: StageSolution, end: float, error: float) -> None:
-        """Take a step, and decide whether its Jacobian serves the next one."""
+    def accept(self, solution: StageSolution, end: float, error: float, wanted: float) -> None:
+        """Take a step, and decide whether its Jacobian serves the next one.
+
+        Args:
+            solution: of its stages.
+            end: time at which it ends, s.
+            error: estimated error over its tolerance; nan where it is not controlled.
+            wanted: size that the next one is to have, s.
+        """
         differential = self.equations.differential
         now = self.now
         arrived = end_of(self.method, differential, now, self.size, solution.unknowns, end)
@@ -226,6 +253,9 @@ class StepRun:
         self.fresh = False
         if solution.iterations > FEW_ITERATIONS:
             self.renew_jacobian()
+        # A step that is tried after this one, and interrupted, leaves no trace.
+        linearised_at = None if self.linearisation is None else self.linearised_at
+        self.memory = StepMemory(self.begun, self.size, step.unknowns, wanted, error, self.longest, linearised_at)
 
     def stopped_by_guard(self) -> bool:
         """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""
@@ -266,7 +296,7 @@ class StepRun:
             solution = self.solve()
             if isinstance(solution, StepOutcome):
                 break
-            self.accept(solution, time, cut.error)
+            self.accept(solution, time, cut.error, self.size)
             step = self.steps[-1]
             value = self.guards(step.end)[guard]
             before = self.guards(step.at(time - NEARBY * step.size))[guard]

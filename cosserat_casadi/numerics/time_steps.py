@@ -16,6 +16,7 @@ from cosserat_casadi.numerics.given_step import solve_given_step
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.step import StepMemory
 from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import RESOLVED_TIME, StepRun
 
@@ -34,6 +35,9 @@ TRIES = 1000
 SLOWEST = 3e-6
 """Share of the piece that each of them has to bring on average: slower, the end is hundreds of thousands away."""
 
+WHOLE = 1e-9
+"""Distance of a quotient of times from a whole number that is put down to rounding."""
+
 FAILED_SHRINKAGE = 0.5
 """Factor of a step whose equations were not solved."""
 
@@ -47,6 +51,7 @@ def integrate(
     after_step: AfterStep | None = None,
     guards: Guards | None = None,
     settled: Settle | None = None,
+    memory: StepMemory | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
@@ -60,13 +65,14 @@ def integrate(
         after_step: told of every step.
         guards: values that have to stay at zero or above; where one does not, the motion ends.
         settled: what puts the end of each step right; None for ends as they are.
+        memory: of the steps up to the start, where a motion goes on in a piece: it takes the very steps of one motion.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
             positive.
     """
     _check(equations, start, end, method, settings)
-    run = StepRun(equations, method, settings, start, end, guards, settled)
+    run = StepRun(equations, method, settings, start, end, guards, settled, before=memory)
     outcome = StepOutcome.INTERRUPTED
     try:
         # Numbers that overflow are found where they are judged.
@@ -105,18 +111,20 @@ def _check(equations: MotionEquations, start: Instant, end: float, method: Collo
 
 def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> StepOutcome:
     """Take equal steps no longer than a given size."""
-    begin = run.start.time
-    # A quotient that is whole up to rounding is meant to be whole.
-    count = max(1, int(np.ceil((run.stop - begin) / size - 1e-9)))
-    run.size = (run.stop - begin) / count
-    for number in range(1, count + 1):
+    begin = run.begun
+    # A quotient that is whole up to rounding is meant to be whole: motions of other lengths have the same steps.
+    quotient = (run.stop - begin) / size
+    count = max(1, int(np.ceil(quotient - WHOLE)))
+    run.size = size if abs(count - quotient) <= WHOLE else (run.stop - begin) / count
+    taken = round((run.start.time - begin) / run.size)
+    for number in range(taken + 1, count + 1):
         end = begin + number * run.size
         if number == count:
             end = run.stop
         solution = solve_given_step(run)
         if isinstance(solution, StepOutcome):
             return solution
-        run.accept(solution, end, float("nan"))
+        run.accept(solution, end, float("nan"), run.size)
         if run.stopped_by_guard():
             return StepOutcome.GUARDED
         if after_step is not None:
@@ -141,11 +149,13 @@ def _crawls(reached: Sequence[float], length: float) -> bool:
 
 def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome:
     """Take steps as long as the tolerance allows."""
-    length = run.stop - run.start.time
+    length = run.stop - run.begun
     resolved = RESOLVED_TIME * max(abs(run.start.time), abs(run.stop))
     shortest = max(run.settings.shortest * length, resolved)
     first = run.settings.first or FIRST_SHARE * length
     control = StepControl(run.method.stages, run.settings.longest, min(first, run.settings.longest))
+    if run.before is not None:
+        control.remember(run.before.size, run.before.error)
     reason = StepOutcome.STEP_TOO_SMALL
     singular_steps = 0
     # Times reached before each of the last tries.
@@ -198,12 +208,12 @@ def _try_step(run: StepRun, control: StepControl, end: float) -> StepOutcome | N
             return StepOutcome.STEP_TOO_SMALL
         return solution
 
-    after_a_jump = control.refused or not run.steps
+    after_a_jump = control.refused or not (run.steps or run.before)
     error = run.error_of(solution, after_a_jump)
     # Not "error > 1": an error that is not a number must not be accepted.
     if not error <= 1.0:
         control.refuse_error(run.size, error, solution.iterations)
         return StepOutcome.STEP_TOO_SMALL
     control.accept(run.size, error, solution.iterations)
-    run.accept(solution, end, error)
+    run.accept(solution, end, error, control.wanted)
     return None

@@ -19,6 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.checkpoint import KEY
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
@@ -110,7 +111,11 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
         data["joints"] = {name: _joint_entry(motion, name) for name in model.joint}
     if scene.obstacles:
         data["contact"] = _contact_entry(motion)
+    elif motion.events:
+        data["events"] = _events_entry(motion)
     data["energy"] = asdict(motion.energy)
+    if motion.end is not None:
+        data[KEY] = motion.end.to_data()
     return data
 
 
@@ -129,10 +134,13 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
         "lies": np.array([contact.lies for contact in contacts], dtype=bool),
-        "events": {
-            name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__
-        },
+        "events": _events_entry(motion),
     }
+
+
+def _events_entry(motion: Motion) -> dict[str, list[Any]]:
+    """Events of contact or cables, one list for each of their fields."""
+    return {name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__}
 
 
 def _head(motion: Motion) -> dict[str, Any]:
@@ -263,7 +271,11 @@ def _parquet_bytes(motion: Motion) -> bytes:
 
 def _npz_bytes(motion: Motion) -> bytes:
     content = io.BytesIO()
-    arrays: dict[str, Any] = dict(_dotted(_motion_data(motion)))
+    data = _motion_data(motion)
+    if KEY in data:
+        # Numbers, lists and words of it are no columns: they are one text.
+        data[KEY] = json.dumps(plain(data[KEY]))
+    arrays: dict[str, Any] = dict(_dotted(data))
     np.savez(content, **arrays)
     return content.getvalue()
 

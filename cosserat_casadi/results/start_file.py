@@ -17,6 +17,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.element_ends import CLOSEST, element_ends
+from cosserat_casadi.motion.checkpoint import Checkpoint, read_checkpoint
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.accuracy import MOST_MODES, MOST_NODES
@@ -27,8 +28,8 @@ AGREEMENT = 1e-6
 """Distance of positions, relative to the length, up to which an equilibrium is the one of the file."""
 
 
-def read_start(path: str | Path, scene: Scene) -> Solution:
-    """The equilibrium of a result file, for a scene that has it.
+def read_start(path: str | Path, scene: Scene) -> Solution | Checkpoint:
+    """The equilibrium of a result file, for a scene that has it; of a file of a motion, where it goes on.
 
     A result file lists strains along the rods. They give the strain coordinates; multipliers and floating frames are
     found by solving once more, at the inputs of the file and on its discretisation. So are contacts that are exact.
@@ -40,6 +41,9 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
     Raises:
         SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.
     """
+    checkpoint = read_checkpoint(path)
+    if checkpoint is not None:
+        return checkpoint
     data = _read(Path(path))
     if data.get("converged") is not True:
         raise _refusal(path, "holds no equilibrium", "solve the scene first")

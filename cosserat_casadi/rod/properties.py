@@ -103,6 +103,7 @@ class RodProperties:
         damping: abscissae (k,) ↦ diagonal of the Kelvin–Voigt tensor Υ (k, 6), N m² s and N s, whose stress is Υ ξ̇;
             None where the rod has none. Rows of strains that are not admitted are not read.
         branches: what its stress relaxes by.
+        mass_damping: α of forces −α times the momentum of the sections, 1/s; None where there are none.
         area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
@@ -122,6 +123,7 @@ class RodProperties:
     rotary_inertia: Field | None = None
     damping: Field | None = None
     branches: tuple[MaxwellBranch, ...] = ()
+    mass_damping: Scalar | None = None
     area: Field | None = None
     diameter: Field | None = None
     plane_sections: bool = False

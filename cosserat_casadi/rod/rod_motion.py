@@ -8,12 +8,13 @@ beginning that turns at ω it adds ω × R b + R ḃ to the angular acceleration
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import casadi as ca
 
 from cosserat_casadi.maths.increment_rates import IncrementRates
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
@@ -50,6 +51,14 @@ class FrameMotion:
             angular_acceleration=axes_R_world @ self.angular_acceleration,
         )
 
+    def damped(self, rate: Scalar) -> FrameMotion:
+        """The motion with accelerations of which a share of the velocities is part: r̈ + α ṙ with α in 1/s."""
+        return replace(
+            self,
+            acceleration=self.acceleration + rate * self.velocity,
+            angular_acceleration=self.angular_acceleration + rate * self.angular_velocity,
+        )
+
 
 AT_REST = FrameMotion(ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1))
 """A frame that does not move: zeros that store nothing, and cost nothing."""
@@ -70,6 +79,13 @@ class StrainRates:
     acceleration: Matrix
     ratio_rate: Ratio = None
     ratio_acceleration: Ratio = None
+
+    def damped(self, rate: Scalar) -> StrainRates:
+        """The rates with q̈ + α q̇ in the place of q̈, and likewise of the length, with α in 1/s."""
+        by_ratio = self.ratio_acceleration
+        if self.ratio_rate is not None and by_ratio is not None:
+            by_ratio = by_ratio + rate * self.ratio_rate
+        return replace(self, acceleration=self.acceleration + rate * self.velocity, ratio_acceleration=by_ratio)
 
 
 NO_CHANGE = ca.DM(1, 1)
@@ -188,6 +204,18 @@ class RodMotion:
     def rod(self) -> DiscreteRod:
         """The rod."""
         return self.shape.rod
+
+    @property
+    def damped(self) -> RodMotion:
+        """The motion that inertia sees: with damping α proportional to mass, −ρA (r̈ + α ṙ) is one force of inertia.
+
+        Sections accelerate linearly in q̈ and in the acceleration of the base: with α times the rates added to these,
+        each r̈ becomes r̈ + α ṙ, and each d̈ becomes d̈ + α ḋ.
+        """
+        rate = self.rod.properties.mass_damping
+        if rate is None:
+            return self
+        return replace(self, rates=self.rates.damped(rate), base=self.base.damped(rate))
 
     @cached_property
     def turn_rates(self) -> tuple[Matrix, Matrix]:

@@ -27,6 +27,7 @@ from cosserat_casadi.scene.values import (
     NotEmpty,
     NotNegative,
     Positive,
+    Share,
     Vector,
     numbers_of,
 )
@@ -117,6 +118,10 @@ class ObstacleRecord(Entry):
     slip_speed: Positive = Field(
         1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"
     )
+    restitution: Share = Field(
+        0.0,
+        description="without width: speed after an impact in motion over the speed of approach, without unit",
+    )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
@@ -160,6 +165,9 @@ class ObstacleRecord(Entry):
         """Faults of what smooth contact alone has, without width, and of obstacles on bodies."""
         yield from _misplaced_on_body(given)
         if "width" in given:
+            if "restitution" in given:
+                problem = "is of impacts, which a contact that is smooth does not have"
+                yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
         for key in SMOOTH_KEYS[1:]:
             if key in given:

@@ -174,7 +174,10 @@ damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, time = 0.5 }] 
 
 
 class Damping(Record):
-    """Kelvin–Voigt damping, stress H (ξ − ξ⁰) + Υ ξ̇, and branches whose stress relaxes, in motion alone."""
+    """Damping in motion alone: Kelvin–Voigt, stress H (ξ − ξ⁰) + Υ ξ̇; branches whose stress relaxes; and by mass.
+
+    Damping proportional to mass is a force −α ρA ṙ per length.
+    """
 
     example: ClassVar[str] = """\
 damping = { retardation_time = 0.01 }
@@ -182,6 +185,11 @@ damping = { retardation_time = 0.01 }
 
     retardation_time: NotNegative | None = Field(
         None, description="τ in Υ = τ H with the Hooke tensor H, s; instead of coefficients"
+    )
+    mass_proportional: NotNegative | None = Field(
+        None,
+        description="α of a force −α ρA ṙ per length, and of couples likewise, on the rod and on disks fixed to it, "
+        "1/s; the damping ratio of a mode is α/(2ω) by it",
     )
     bending_x: SizeOrZero | None = Field(None, description="damping of bending about local x, N m² s; 0 when left out")
     bending_y: SizeOrZero | None = Field(None, description="damping of bending about local y, N m² s; 0 when left out")
@@ -200,12 +208,13 @@ damping = { retardation_time = 0.01 }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The retardation time or coefficients, one of the two, or branches; something is left at rest."""
+        """The retardation time or coefficients, one of the two, or branches, or a share of mass; something is left."""
         coefficients = [name for name in STRAINS if name in given]
         if "retardation_time" in given and coefficients:
             yield Fault((coefficients[0],), "stands beside retardation_time", "give one of the two")
-        if "retardation_time" not in given and not coefficients and not given.get("prony"):
-            remedy = "give retardation_time, s, coefficients by strain such as bending_x, or branches, prony"
+        others = coefficients or given.get("prony") or "mass_proportional" in given
+        if "retardation_time" not in given and not others:
+            remedy = "give retardation_time, s, coefficients by strain such as bending_x, prony, or mass_proportional"
             yield Fault(("retardation_time",), "missing", remedy)
         branches = given.get("prony", ())
         if isinstance(branches, list | tuple):

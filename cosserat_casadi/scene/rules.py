@@ -29,6 +29,7 @@ from cosserat_casadi.scene.rod_records import Rod, admitted_strains
 from cosserat_casadi.scene.target_records import TARGETS, Bound
 from cosserat_casadi.scene.tube_records import Tube, tube_faults
 from cosserat_casadi.scene.unknown_records import Unknown
+from cosserat_casadi.scene.velocity_record import InitialVelocity
 
 Rule = Callable[[SceneTables], Iterator[Fault]]
 
@@ -45,6 +46,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "targets": TARGETS,
     "bounds": Bound,
     "motions": InputMotion,
+    "velocities": InitialVelocity,
     "measurements": MEASUREMENTS,
     "unknowns": Unknown,
 }

@@ -29,6 +29,7 @@ from cosserat_casadi.scene.target_records import Bound, Target
 from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
 from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
+from cosserat_casadi.scene.velocity_record import InitialVelocity
 
 
 def _exactly_one(value: Any) -> Any:
@@ -119,6 +120,9 @@ inputs = ["push.force", "cable.tension"]
     )
     simulation: Simulation | None = Field(None, description="how a motion is computed; for `cosserat simulate` alone")
     motions: tuple[InputMotion, ...] = Field((), description="inputs over time; for `cosserat simulate` alone")
+    velocities: tuple[InitialVelocity, ...] = Field(
+        (), description="velocities at t = 0 of what does not begin at rest; for `cosserat simulate` alone"
+    )
 
     @property
     def causes(self) -> tuple[Load | Actuator, ...]:

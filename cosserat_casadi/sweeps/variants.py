@@ -32,7 +32,7 @@ from cosserat_casadi.sweeps.sampling import farthest_rows
 from cosserat_casadi.sweeps.table import Table
 from cosserat_casadi.tubes.robot import robot_of
 
-NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
+NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions", "velocities")
 """Tables of a scene that do not change the computed results."""
 
 STIFFNESS = ("material", "section", "stiffness", "linear_density")

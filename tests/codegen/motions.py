@@ -111,7 +111,7 @@ def python_steps(model: Model, state: StepState, driven: Drive) -> list[TimeStep
         system = equations(model, inputs, rate, acceleration)
         guess = np.tile(np.where(differential, now.a, now.x), (2, 1))
         if steps:
-            guess = extrapolated(steps[-1], driven.dt)
+            guess = extrapolated(steps[-1].method, steps[-1], driven.dt)
         middle = motion_at(method, differential, now, driven.dt, guess, 0.5, driven.dt / 2.0)
         matrices = step_matrices(method, driven.dt, system.linearised(middle), differential)
         assert matrices is not None

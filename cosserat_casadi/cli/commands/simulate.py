@@ -21,10 +21,10 @@ from cosserat_casadi.cli.progress import motion_display, share_display
 from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
 from cosserat_casadi.cli.signals import StoppedError
-from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.results.motion_file import check_motion_path
 from cosserat_casadi.results.start_file import read_start
@@ -47,7 +47,10 @@ def simulate(
         typer.Option(metavar="FACTOR", help="Of the animation: 1 is as fast as the motion, 0.1 ten times slower."),
     ] = 1.0,
     start: Annotated[
-        Path | None, typer.Option("--from", metavar="RESULT", help="Start at rest from this result file of solve.")
+        Path | None,
+        typer.Option(
+            "--from", metavar="RESULT", help="Start at rest from this result file of solve, or go on with this motion."
+        ),
     ] = None,
     step: Annotated[float | None, typer.Option(help="Fixed time step, s; by default the tolerance chooses it.")] = None,
     duration: Annotated[float | None, typer.Option(help="Time to simulate, s.")] = None,
@@ -126,14 +129,14 @@ def _check_files(
 
 def _check_scene(
     scene_file: Path, settings: tuple[str, ...], start: Path | None, problems: list[Problem]
-) -> tuple[Scene, Solution | None]:
+) -> tuple[Scene, StartOfMotion]:
     """The scene, and the solution that the motion starts from where a file names one.
 
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.
     """
     scene: Scene | None = None
-    solution: Solution | None = None
+    solution: StartOfMotion = None
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
         refuse_tubes(scene)
@@ -147,7 +150,7 @@ def _check_scene(
     return scene, solution
 
 
-def _simulate_with_progress(scene: Scene, start: Solution | None, compiled: bool | None) -> Motion:
+def _simulate_with_progress(scene: Scene, start: StartOfMotion, compiled: bool | None) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
     from cosserat_casadi.codegen.motion_compiler import simulate

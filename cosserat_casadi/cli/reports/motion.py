@@ -66,8 +66,12 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
-    if motion.events:
+    if any(event.obstacle for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
+    elif motion.events:
+        snaps = [event for event in motion.events if event.kind == "taut"]
+        taken = sum(event.energy for event in snaps)
+        yield f"cables: taut {counted(len(snaps), 'time')}, which took {taken:.3g} J"
     yield "; ".join(discretisation_sentences(motion.model))
 
 

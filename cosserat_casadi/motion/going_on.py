@@ -1,0 +1,151 @@
+"""A motion that goes on from the end of another, with the very digits of one motion over all of the time.
+
+The motions that told the error of the first part go on beside it, so that they tell that of the whole. Modes and steps
+stay as they were.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
+from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_start import resumed_start
+from cosserat_casadi.motion.simulate import (
+    Companion,
+    Simulator,
+    Tell,
+    bound_of,
+    ended_early,
+    judged,
+    moving_inputs,
+    tolerance_of,
+)
+from cosserat_casadi.motion.step_kernels import KernelSource
+from cosserat_casadi.motion.tip_paths import path_distance
+from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.simulation import Simulation
+
+StartOfMotion = Solution | Motion | Checkpoint | str | Path | None
+"""The start of a motion: an equilibrium, or a motion or its file, which goes on."""
+
+AGREEMENT = 1e-6
+"""Distance of tips, over the length, up to which a scene has the state of a checkpoint."""
+
+
+def checkpoint_of(start: StartOfMotion) -> Checkpoint | None:
+    """Where a motion goes on from; None where it begins at rest.
+
+    Raises:
+        SceneError: the motion or the file holds no state to go on from.
+    """
+    if isinstance(start, str | Path):
+        found = read_checkpoint(start)
+        if found is None:
+            problem = f"{start} is no file of a motion, JSON or NPZ"
+            raise SceneError(Problem("start", problem, "write one with motion.write, or pass an equilibrium"))
+        return found
+    if isinstance(start, Motion):
+        if start.end is None:
+            raise SceneError(Problem("start", "the motion was not started: nothing goes on from it", ""))
+        return start.end
+    return start if isinstance(start, Checkpoint) else None
+
+
+def go_on(
+    subject: Scene | Model,
+    checkpoint: Checkpoint,
+    simulation: Simulation | None,
+    tell: Tell | None,
+    source: KernelSource | None,
+) -> Motion:
+    """The motion of a scene from a checkpoint to its duration.
+
+    Args:
+        subject: the scene, or a model of it on the modes of the checkpoint.
+        checkpoint: where the motion goes on from.
+        simulation: duration, frames, tolerance; None for those of the scene.
+        tell: is told of every step.
+        source: chooses the kernels.
+
+    Raises:
+        SceneError: the scene does not have the state of the checkpoint, or its duration does not reach beyond it.
+    """
+    given = subject.at() if isinstance(subject, Model) else None
+    scene = given.scene if given is not None else _moving(subject, simulation)
+    asked = simulation or scene.simulation
+    first = checkpoint.strands[0]
+    model = _model_of(scene, given, first, checkpoint)
+    check_simulation(model, asked)
+    assert asked is not None, "checked"
+    if not asked.duration > checkpoint.time:
+        problem = f"{asked.duration:g} s is not beyond t = {checkpoint.time:g} s, where the motion goes on"
+        raise SceneError(Problem("simulation.duration", problem, "times go on: give the end of the whole motion"))
+
+    def gone_on(strand: Strand, model: Model, stage: str) -> tuple[Simulator, History]:
+        begun = checkpoint if strand is first else None
+        simulator = Simulator(model, asked, resumed_start(model, strand.resume), stage, tell, source, begun)
+        return simulator, simulator.resumed(strand)
+
+    simulator, history = gone_on(first, model, "going on")
+    if not history.completed:
+        return ended_early(simulator, history)
+    paths = simulator.paths(history)
+    error = 0.0 if len(checkpoint.strands) > 1 else float("nan")
+    companions = []
+    for strand in checkpoint.strands[1:]:
+        other = model
+        if strand.discretisation != first.discretisation:
+            other = build(scene, strand.discretisation, moving=True)
+        beside, told = gone_on(strand, other, "going on, for the error")
+        error += strand.factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
+        companions.append(Companion(told, strand.factor))
+    # An error that is not known makes that of the whole unknown.
+    total = float(np.maximum(error, checkpoint.error))
+    bound = bound_of(scene, asked, tolerance_of(model, asked))
+    return judged(simulator, history, total, bound, companions)
+
+
+def _moving(subject: Scene | Model, simulation: Simulation | None) -> Scene:
+    assert isinstance(subject, Scene), "a model has its scene"
+    refuse_tubes(subject)
+    scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
+    return scene.baked().with_motion_inputs()
+
+
+def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Checkpoint) -> Model:
+    """The model of a strand.
+
+    Raises:
+        SceneError: the scene does not have its state.
+    """
+    refused = SceneError(
+        Problem(WHERE, "the motion that it would go on from is of another scene", "give the scene of that motion")
+    )
+    if {rod.name for rod in scene.rods} != set(strand.discretisation):
+        raise refused
+    try:
+        model = build(scene, strand.discretisation, moving=True) if given is None else given
+    except ValueError as error:
+        raise refused from error
+    at = strand.resume.at
+    if model.discretisation != strand.discretisation or len(strand.settings.tolerance) != model.size:
+        raise refused
+    inputs = moving_inputs(model).at(at.time).value
+    if can_be_centred(model):
+        at = CentredCoordinates(model).to_model(at)
+    x = at.x[: model.size]
+    for name, rod in model.discrete.rods.items():
+        position = np.asarray(model.tip[name](x, inputs)[0]).ravel()
+        if not np.abs(position - checkpoint.tips[name]).max() <= AGREEMENT * rod.properties.length:
+            raise refused
+    return model

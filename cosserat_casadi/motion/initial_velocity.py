@@ -1,0 +1,69 @@
+"""The velocities that a scene begins to move with, as rates of the unknowns of its model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.rotation import quaternion_product
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.history import DIFFERENTIATED, equations_of
+from cosserat_casadi.motion.motion_start import Start
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.numerics.consistent_start import following
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.velocity_record import InitialVelocity
+
+POINTS = 200
+"""Abscissae at which the rates of strains are fitted by those of the modes."""
+
+
+def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
+    """A start with the velocities of the scene, in which bodies and carried bases go along as joints demand.
+
+    Args:
+        model: of the scene in motion.
+        start: at rest.
+        piece: of the inputs, which the motion begins with.
+    """
+    if not model.scene.velocities or not start.found:
+        return start
+    unknowns = model.discrete.unknowns
+    v = np.zeros(model.size)
+    follows = np.zeros(model.size, dtype=bool)
+    for _, entries in unknowns.of_kind(BlockKind.POSE):
+        follows[entries] = True
+    inputs = piece.at(piece.start).value
+    for velocity in model.scene.velocities:
+        name = FrameName("body" if velocity.rod is None else "rod", velocity.owner)
+        if velocity.rod is not None:
+            rod = model.discrete.rods[velocity.rod]
+            ratio = model.length_ratio(velocity.rod, inputs)
+            v[unknowns.strain(velocity.rod)] = ratio * _strain_rates(rod, velocity)
+        if velocity.rod is None or model.discrete.unloaded.records[velocity.rod].base.free:
+            entries = model.discrete.deviation(name)
+            frame = model.discrete.frames[name]
+            turn = np.array([0.0, *velocity.angular])
+            quaternion = frame.start.quaternion + start.x[entries][3:]
+            spin = np.asarray(quaternion_product(turn[:, None], quaternion[:, None]))[:, 0] / 2.0
+            v[entries] = np.concatenate([np.asarray(velocity.linear) / frame.length, spin])
+            follows[entries] = False
+    interval = DIFFERENTIATED * piece.smooth
+    rates = following(equations_of(model, piece), piece.start, start.x, v, interval, follows)
+    sentence = start.sentence.replace("At rest in", "With the velocities of the scene, in", 1)
+    return replace(start, v=rates, sentence=sentence)
+
+
+def _strain_rates(rod: DiscreteRod, velocity: InitialVelocity) -> FloatArray:
+    """Rates of the strain coordinates of a rod that fit those of its strains, shape (n,), for its own length."""
+    X = np.polynomial.legendre.leggauss(POINTS)[0] / 2.0 + 0.5
+    rates = velocity.strain_rates(X)
+    q = np.zeros(rod.size)
+    for component, columns in rod.columns.items():
+        q[columns] = np.linalg.lstsq(known(rod.strain_of(component, X)), rates[:, component], rcond=None)[0]
+    return q

@@ -1,0 +1,121 @@
+"""Motions in two parts have the digits of one motion; their error is that of the whole; other scenes are refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numpy.testing import assert_array_equal
+
+from cosserat_casadi import SceneError, scene_from_dict, simulate
+from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume, Strand
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.motion_start import resumed_start
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.trajectory import Motion, MotionProgress
+from cosserat_casadi.numerics.integration import StepOutcome
+from tests.motion.stepping import moving_model
+from tests.motion.test_exact_contact_in_motion import BALL, moving, rod
+
+STEP = 1.0 / 64.0
+
+
+def swing(duration: float, *, step: float | None = STEP, free: bool = False, **more: Any) -> dict[str, Any]:
+    """A soft rod under its weight and a push that has a kink at 0.125 s."""
+    arm = {
+        "name": "arm",
+        "length": 0.5,
+        "strain": "planar",
+        "stiffness": {"bending_y": 0.016},
+        "linear_density": 0.2,
+        "rotary_inertia": [1e-7, 1e-7, 2e-7],
+        "base": {"tangent": [1, 0, 0], "free": free},
+        "damping": {"retardation_time": 5e-3},
+    }
+    simulation: dict[str, Any] = {"duration": duration, "frames": round(64 * duration) + 1, "start": "unloaded"}
+    if step is not None:
+        simulation["step"] = step
+    push = {"name": "push", "kind": "tip_wrench", "rod": "arm", "force": [0, 0, 0]}
+    kinked = {"input": "push.force", "times": [0.0, 0.125, 0.5], "values": [[0, 0, 0], [0, 0, 0.2], [0, 0, 0]]}
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    tables = {"schema": 1, "rods": [arm], "loads": [weight, push], "motions": [kinked], "simulation": simulation}
+    return {**tables, "accuracy": {"modes": 2, "nodes": 6, "tolerance": 1e-2}, **more}
+
+
+def moved(tables: dict[str, Any], start: Any = None) -> Motion:
+    return simulate(scene_from_dict(tables), start=start, compiled=False)
+
+
+@pytest.mark.parametrize(("split", "suffix"), [(0.0625, ".json"), (0.125, ".npz")], ids=["step", "kink"])
+def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_path: Path) -> None:
+    file = tmp_path / f"first{suffix}"
+    moved(swing(split)).write(file)
+    second = moved(swing(0.1875), file)
+    whole = moved(swing(0.1875))
+    rows = whole.times >= split
+    assert_array_equal(second.times, whole.times[rows])
+    for name in ("x", "v", "a", "inputs"):
+        assert_array_equal(getattr(second, name)[1:], getattr(whole, name)[rows][1:])
+    for name in ("kinetic", "elastic", "potential", "dissipated", "work"):
+        assert_array_equal(getattr(second.energy, name), getattr(whole.energy, name)[rows])
+    # A motion of half the step and one on more modes go on beside it, and tell the error of the whole.
+    assert second.end is not None and len(second.end.strands) == 3
+    assert 0.8 * whole.error_estimate < second.error_estimate < 1.25 * whole.error_estimate
+
+
+@pytest.mark.parametrize("subject", ["held", "free", "touches"])
+def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> None:
+    """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over."""
+    if subject == "touches":
+        model = moving(rod(BALL, duration=0.4, damping=0.03))
+    else:
+        model = moving_model(swing(0.25, step=None, free=subject == "free"))
+    assert model.scene.simulation is not None
+    simulator = Simulator(model, model.scene.simulation, started(model, model.scene.simulation, None))
+    whole = simulator.controlled(1e-2)
+    assert whole.completed
+    for steps in (1, len(whole.steps) // 2):
+        first = replace(simulator, tell=Interruption(steps)).controlled(1e-2)
+        assert first.outcome is StepOutcome.INTERRUPTED
+        second = replace(simulator, start=resumed_start(model, through_data(first))).resumed(strand(first))
+        assert len(second.steps) == len(whole.steps) - len(first.steps)
+        assert_array_equal(second.end.x, whole.end.x)
+        assert_array_equal(second.end.v, whole.end.v)
+    assert bool(whole.events) == (subject == "touches")
+
+
+class Interruption:
+    """Stops a motion as Ctrl-C does, after so many steps and one more."""
+
+    def __init__(self, steps: int) -> None:
+        self.left = steps
+
+    def __call__(self, _: MotionProgress) -> None:
+        if self.left == 0:
+            raise KeyboardInterrupt
+        self.left -= 1
+
+
+def strand(history: History) -> Strand:
+    return Strand(history.model.discretisation, history.settings, False, 0.0, history.resume)
+
+
+def through_data(history: History) -> Resume:
+    kept = Checkpoint(0.1, (strand(history),), 0.0, EnergyAccount(0.0), {})
+    return Checkpoint.from_data(kept.to_data()).strands[0].resume
+
+
+def test_what_does_not_fit_is_refused(tmp_path: Path) -> None:
+    first = moved(swing(0.0625))
+    with pytest.raises(SceneError, match="is not beyond"):
+        moved(swing(0.0625), first)
+    longer = swing(0.25)
+    longer["rods"][0]["length"] = 0.6
+    with pytest.raises(SceneError, match="of another scene"):
+        moved(longer, first)
+    file = tmp_path / "none.json"
+    file.write_text("{}")
+    with pytest.raises(SceneError, match="no file of a motion"):
+        moved(swing(0.1875), file)
