@@ -22,7 +22,7 @@ from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.slack_cables import Tautness
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import StepMemory
+from cosserat_casadi.numerics.step import CarriedStep
 from cosserat_casadi.rod.discretisation import Discretisation
 
 WHERE = "--from"
@@ -49,7 +49,7 @@ class Resume:
     places: tuple[float, ...]
     guard: int | None
     first: float
-    memory: StepMemory | None
+    memory: CarriedStep | None
 
 
 @dataclass(frozen=True)
@@ -192,9 +192,9 @@ def _strand(data: Mapping[str, Any]) -> Strand:
     return Strand(discretisation, settings, bool(data["gauss"]), float(data["factor"]), resume)
 
 
-def _memory(data: Mapping[str, Any]) -> StepMemory:
+def _memory(data: Mapping[str, Any]) -> CarriedStep:
     at = data["linearised_at"]
-    return StepMemory(
+    return CarriedStep(
         begun=float(data["begun"]),
         size=float(data["size"]),
         unknowns=_array(data["unknowns"]),

@@ -30,7 +30,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import StepMemory, TimeStep, positions_at
+from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
@@ -353,7 +353,7 @@ def _switched(
         at = coordinates.from_model(at)
     asked = settings
     guard: int | None = None
-    memory: StepMemory | None = None
+    memory: CarriedStep | None = None
     if resume is not None:
         at = resume.at
         guard = resume.guard

@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import StepMemory, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, TimeStep
 
 
 class StepOutcome(Enum):
@@ -92,7 +92,7 @@ class Integration:
     next_size: float
     statistics: IntegrationCost
     guard: int | None = None
-    memory: StepMemory | None = None
+    memory: CarriedStep | None = None
 
     @property
     def end(self) -> Instant:

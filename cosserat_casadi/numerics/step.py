@@ -187,7 +187,7 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
 
 
 @dataclass(frozen=True)
-class StepMemory:
+class CarriedStep:
     """Data that a step takes over from the steps before it, beside the state that they have reached.
 
     Attributes:
@@ -209,7 +209,7 @@ class StepMemory:
     linearised_at: Instant | None
 
 
-def extrapolated(method: Collocation, step: TimeStep | StepMemory, size: float) -> FloatArray:
+def extrapolated(method: Collocation, step: TimeStep | CarriedStep, size: float) -> FloatArray:
     """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
     shares = 1.0 + method.nodes * (size / step.size)
     return method.values_at_stages(shares) @ step.unknowns

@@ -14,7 +14,7 @@ from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import StepMemory, TimeStep, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step import CarriedStep, TimeStep, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error, overlooked_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -90,8 +90,8 @@ class StepRun:
     jacobians: int = 0
     factorisations: int = 0
     longest: float = 0.0
-    before: StepMemory | None = None
-    memory: StepMemory | None = None
+    before: CarriedStep | None = None
+    memory: CarriedStep | None = None
     linearised_at: Instant | None = None
 
     def __post_init__(self) -> None:
@@ -255,7 +255,7 @@ class StepRun:
             self.renew_jacobian()
         # A step that is tried after this one, and interrupted, leaves no trace.
         linearised_at = None if self.linearisation is None else self.linearised_at
-        self.memory = StepMemory(self.begun, self.size, step.unknowns, wanted, error, self.longest, linearised_at)
+        self.memory = CarriedStep(self.begun, self.size, step.unknowns, wanted, error, self.longest, linearised_at)
 
     def stopped_by_guard(self) -> bool:
         """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""

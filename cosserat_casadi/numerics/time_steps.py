@@ -16,7 +16,7 @@ from cosserat_casadi.numerics.given_step import solve_given_step
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import StepMemory
+from cosserat_casadi.numerics.step import CarriedStep
 from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import RESOLVED_TIME, StepRun
 
@@ -51,7 +51,7 @@ def integrate(
     after_step: AfterStep | None = None,
     guards: Guards | None = None,
     settled: Settle | None = None,
-    memory: StepMemory | None = None,
+    memory: CarriedStep | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
