@@ -152,6 +152,7 @@ def test_it_is_no_dearer_than_twice_the_cheapest(chosen: Choice) -> None:
             assert not coarse.converged or pose_distance(coarse, fine) > 1e-3
 
 
+@pytest.mark.slow
 def test_ranges_of_parameters_are_taken_as_those_of_inputs() -> None:
     """A rod that may be three times as soft, and loaded by an input: right at the corners, against finer modes."""
     bending = "rod.stiffness.bending_y"

@@ -406,6 +406,7 @@ def test_rows_of_a_sweep_tell_the_contact(touching: Solution) -> None:
     assert_allclose(force, touching.contacts[0].force, rtol=1e-8, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_example_presses(tmp_path: Path) -> None:
     solution = solve(build(read_scene(ROOT / "examples" / "finger_on_finger.toml", ["accuracy.modes=4"])))
     assert solution.converged and solution.stable

@@ -45,6 +45,7 @@ def test_tensions_go_round_the_square() -> None:
     assert_allclose(tensions_around(8)[1::2] / LARGEST, [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]])
 
 
+@pytest.mark.slow
 def test_gradients_vs_differences_of_solves() -> None:
     """Through the equilibria, dA/dp = ∂A/∂p − ∂A/∂x (∂R/∂x)⁻¹ ∂R/∂p; so the room that the design leaves."""
     model = finger(modes=2)

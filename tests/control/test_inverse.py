@@ -70,6 +70,7 @@ def reachable(tensions: list[float]) -> Model:
     return build(changed(robot, targets=[target], bounds=bounds))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "tensions", [pytest.param([9.81, 12.326, 0.0, 1.52], marks=pytest.mark.slow), [0.0, 17.306, 15.885, 0.0]]
 )
@@ -101,6 +102,7 @@ def test_slack_tendons_are_found_slack(tensions: list[float]) -> None:
         assert_allclose(found.values[name].item(), tension, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
     """Four tensions for three coordinates: no solution on the line of solutions is nearer by more than the damping."""
     base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
@@ -170,6 +172,7 @@ def test_out_of_reach_gives_the_closest_and_says_so() -> None:
     assert found.gaps[0].angle is None
 
 
+@pytest.mark.slow
 def test_bounds_are_kept_and_reached() -> None:
     """The nearest that a force of at most 0.3 N brings the tip: at the bound, and against a scan over the range."""
     target = {"kind": "position", "rod": "rod", "position": [0.4, 0.0, 0.6]}

@@ -78,6 +78,7 @@ def test_it_is_made_by_name():
     assert made.action_space.shape == (2,)
 
 
+@pytest.mark.slow
 def test_modes_are_chosen_for_where_the_actions_go():
     """The abductor, which rests at the scene's own inputs, bends the finger out of its plane."""
     text = SCENE.replace("modes = 1\nnodes = 4\n", "tolerance = 1e-5\n").replace("tension = 0.1", "tension = 0.0")
@@ -259,6 +260,7 @@ def test_a_base_moves_with_a_rate_that_does_not_jump(on_slide):
         assert_allclose(observation[6:9], [(before + aim) / 2, 0.0, aim], rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_base_that_slides_vs_simulator(on_slide):
     """The rod lags behind the base by its inertia: the same motion as by the method of order five in Python."""
     on_slide.reset(seed=0)

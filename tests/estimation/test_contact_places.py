@@ -99,6 +99,7 @@ def assert_consistent(count: int, strain: str) -> None:
     assert low <= squares.mean() <= high
 
 
+@pytest.mark.slow
 def test_places_are_consistent() -> None:
     assert_consistent(25, "planar")
 

@@ -137,6 +137,7 @@ def test_two_links_with_a_spring_a_damper_and_a_motor_vs_scipy() -> None:
     assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_work_of_a_drive() -> None:
     move = {"input": "hinge.angle", "amplitude": 1.0, "frequency": 1.0, "wave": "one_minus_cosine"}
     tables = scene(

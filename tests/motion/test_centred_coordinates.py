@@ -173,6 +173,7 @@ def soft() -> Model:
     return build(scene.with_motion_inputs(), moving=True)
 
 
+@pytest.mark.slow
 def test_motion_is_that_in_coordinates_of_the_base_in_fewer_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     model = soft()
     simulation = model.scene.simulation

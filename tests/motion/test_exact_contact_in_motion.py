@@ -336,6 +336,7 @@ def test_where_no_level_has_a_start_in_contact_the_last_one_says_so(monkeypatch:
     assert "on at most 16 modes of a strain" in motion.message
 
 
+@pytest.mark.slow
 def test_what_fewer_modes_have_moved_is_kept_where_more_have_no_start(monkeypatch: pytest.MonkeyPatch) -> None:
     found = starts.resting
 

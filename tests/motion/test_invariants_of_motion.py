@@ -182,6 +182,7 @@ def test_free_fall_is_a_parabola_without_strain() -> None:
 # Energy
 
 
+@pytest.mark.slow
 def test_imbalance_of_energy_falls_with_the_tolerance() -> None:
     """Loads of all kinds, damping, a base that moves and a tendon that is pulled: all enter the balance."""
     scene = moving_scenes.FAMILIES["all driven"]()

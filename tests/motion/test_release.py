@@ -124,6 +124,7 @@ def test_an_arch_snaps_through_to_the_far_equilibrium_of_its_path() -> None:
     assert_allclose(reached[-1], crown_of_far, rtol=0, atol=1e-3 * length)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interpolation", mostly_slow(["linear", "cubic"], quick=["cubic"]))
 def test_an_arch_below_its_limit_load_stays_on_its_side(interpolation: str) -> None:
     start = below_the_limit(arch_path())

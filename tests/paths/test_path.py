@@ -122,6 +122,7 @@ def arch(modes: int) -> Model:
     return build(pinned, discretise(pinned, modes, 2 * modes + 6, "magnus8"))
 
 
+@pytest.mark.slow
 def test_deep_arch_vs_published_limit_load() -> None:
     """D. A. DaDeppo, R. Schmidt, J. Appl. Mech. 42 (1975) 305: the limit load is 8.97 EI/R², 8.97309 with more digits.
 

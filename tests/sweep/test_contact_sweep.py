@@ -26,6 +26,7 @@ SCENE = BAR.replace('inputs = ["rod.base.position"]\n', "").replace("tolerance =
 PUSHES = np.array([-0.02, -0.5, -2.0, -1.0])
 
 
+@pytest.mark.slow
 def test_rows_hold_their_contacts(tmp_path: Path) -> None:
     scene = parse_scene(SCENE)
     file = tmp_path / "pushes.csv"

@@ -312,6 +312,7 @@ def test_refused_values_of_loads(values: dict[str, object], problem: str) -> Non
         solve(parse_scene(TWO), values)
 
 
+@pytest.mark.slow
 def test_commands_take_loads(tmp_path: Path) -> None:
     (tmp_path / "tubes.toml").write_text(TWO.replace("1e-6", "1e-3"))
     (tmp_path / "following.toml").write_text(FOLLOWING.replace("1e-6", "1e-3"))

@@ -66,6 +66,7 @@ def session(first: Solution) -> ContactSession:
     return made
 
 
+@pytest.mark.slow
 def test_every_move_finds_contacts_and_draws_them(session: ContactSession, first: Solution) -> None:
     answer = session.move([1.3, 0.0, 0.0])
     assert answer["found"]
