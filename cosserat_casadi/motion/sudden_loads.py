@@ -35,7 +35,9 @@ def warnings(model: Model, start: Start, moving: MovingInputs, duration: float, 
         accelerations: of the unknowns at the start, shape (size,), 1/s².
     """
     at_start = []
-    if _loaded_at_once(model, start, moving) and _deforms(model, accelerations):
+    # What a motion that goes on sets out with has been under way already.
+    begins = start.resume is None
+    if begins and _loaded_at_once(model, start, moving) and _deforms(model, accelerations):
         at_start.append(AT_ONCE)
     jumps: dict[str, list[float]] = {}
     for jump in moving.jumps(duration):

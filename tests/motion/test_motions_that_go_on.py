@@ -60,6 +60,8 @@ def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_
         assert_array_equal(getattr(second, name)[1:], getattr(whole, name)[rows][1:])
     for name in ("kinetic", "elastic", "potential", "dissipated", "work"):
         assert_array_equal(getattr(second.energy, name), getattr(whole.energy, name)[rows])
+    # The weight comes suddenly at t = 0, not where the motion goes on.
+    assert whole.warnings and not second.warnings
     # A motion of half the step and one on more modes go on beside it, and tell the error of the whole.
     assert second.end is not None and len(second.end.strands) == 3
     assert 0.8 * whole.error_estimate < second.error_estimate < 1.25 * whole.error_estimate
