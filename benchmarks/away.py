@@ -225,7 +225,7 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
     tolerance = model.scene.accuracy.tolerance
     told = not estimate <= tolerance
     cost = np.nan if model.scene.touches_exactly else (estimated - solved) / (solved - began)
-    in_c = None if here.in_c is None else _estimate_in_c(here, here.in_c, answer)
+    in_c = None if here.in_c is None else _estimate_in_c(here, here.in_c, answer, inputs)
     case = Case(inside, tolerance, true, float(estimate), told, cost, inputs.tolist(), in_c)
     wanted = case.ratio is None or LEAST <= case.ratio <= MOST
     if wanted and not (case.is_silent or case.is_silent_in_c):
@@ -236,16 +236,18 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
     return replace(case, decided=decided)
 
 
-def _estimate_in_c(here: Subject, compiled: Compiled | CompiledContact, answer: Solution) -> float | None:
+def _estimate_in_c(
+    here: Subject, compiled: Compiled | CompiledContact, answer: Solution, inputs: FloatArray
+) -> float | None:
     """What the C says of the error where it finds the same equilibrium: from the unloaded rods, or the own contacts."""
     if isinstance(compiled, CompiledContact):
-        touching = compiled.solve(answer.inputs)
+        touching = compiled.solve(inputs)
         if not touching.converged:
             return None
         ways = [np.linalg.norm(tip[:3] - answer.tip(rod).position[0]) for rod, tip in touching.tips.items()]
         return touching.error_estimate if max(ways) <= SAME * min(rod.length for rod in here.model.scene.rods) else None
     parameters = here.parameters if here.parameters.size else None
-    solved = compiled.solve(answer.inputs, parameters=parameters)
+    solved = compiled.solve(inputs, parameters=parameters)
     same = np.linalg.norm(solved.x - answer.x) <= SAME * (1 + np.linalg.norm(answer.x))
     return solved.error_estimate if solved.converged and same else None
 
