@@ -48,6 +48,12 @@ STROKES = ("-", "--", ":")
 LEGEND_ROWS = 8
 """Entries of a legend beside a panel, in one column."""
 
+MOST_NAMED = 2 * LEGEND_ROWS
+"""Curves of a panel that are all named; of more, such as coefficients of a wave, those of one column that vary most."""
+
+REST = "0.6"
+"""Grey of curves that are not named."""
+
 NOTHING = 1e-12
 """Share of the largest value below which a curve counts as zero."""
 
@@ -272,14 +278,22 @@ def _energy_curves(energy: Energies) -> dict[str, FloatArray]:
 def _draw_curves(panel: Any, times: FloatArray, curves: dict[str, FloatArray]) -> None:
     """Draw curves over time with a legend beside the panel."""
     panel.grid(alpha=0.3)
-    for index, (name, values) in enumerate(curves.items()):
+    named = set(curves)
+    if len(curves) > MOST_NAMED:
+        by_change = sorted(curves, key=lambda name: float(np.ptp(curves[name])), reverse=True)
+        named = set(by_change[: LEGEND_ROWS - 1])
+        rest = [curves[name] for name in by_change[LEGEND_ROWS - 1 :]]
+        panel.plot(times, rest[0], color=REST, linewidth=0.8, label=f"{len(rest)} more")
+        for values in rest[1:]:
+            panel.plot(times, values, color=REST, linewidth=0.8)
+    for index, name in enumerate(name for name in curves if name in named):
         stroke = STROKES[index // len(CATEGORIES) % len(STROKES)]
         colour = CATEGORIES[index % len(CATEGORIES)]
-        panel.plot(times, values, color=colour, linestyle=stroke, linewidth=1.6, label=name)
+        panel.plot(times, curves[name], color=colour, linestyle=stroke, linewidth=1.6, label=name)
     if not curves:
         _say(panel, "zero")
         return
-    columns = -(-len(curves) // LEGEND_ROWS)
+    columns = -(-len(named) // LEGEND_ROWS)
     # Beside the panel: inside it would cover a curve sooner or later.
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns, fontsize=9, frameon=False)
 

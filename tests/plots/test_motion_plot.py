@@ -205,6 +205,19 @@ def test_colours_and_strokes_tell_many_curves_apart() -> None:
     assert len(lines) == len(styles) == 12
 
 
+def test_of_very_many_curves_those_that_vary_most_are_named() -> None:
+    """Coefficients of a wave: a legend of all would be wider than the panel, and the small ones are one entry."""
+    many = [push(name=f"push_{k}", force=[0.1, 0.1, 0.1]) for k in range(7)]
+    moving = {f"push_{k}.force": [0.1 + 1e-3 * k, 0.1 + 2e-3 * k, 0.1 + 3e-3 * k] for k in range(1, 7)}
+    moving["push_0.force"] = [0.2, 0.3, 0.4]
+    lines = panels(plot_motion(motion_of(scene(*many, rods=[rod()]), moving, frames=3)))["force, N"].get_lines()
+    assert len(lines) == 21
+    names = [line.get_label() for line in lines if not line.get_label().startswith("_")]
+    assert len(names) == 8
+    assert "14 more" in names
+    assert {"push_0.force.x", "push_0.force.y", "push_0.force.z"} <= set(names)
+
+
 @pytest.mark.parametrize("suffix", mostly_slow(["png", "pdf", "svg"], quick=["svg"]))
 def test_files_are_the_same_every_time(platform: Motion, tmp_path: Path, suffix: str) -> None:
     first = tmp_path / f"a.{suffix}"
