@@ -53,8 +53,12 @@ friction = { along = 0.1, back = 0.4, across = 0.2 }
 """
 
     along: NotNegative = Field(description="coefficient where a section slides along its tangent, without unit")
-    back: NotNegative | None = Field(None, description="coefficient against its tangent; along when left out")
-    across: NotNegative | None = Field(None, description="coefficient across the rod; along when left out")
+    back: NotNegative | None = Field(
+        None, description="coefficient against its tangent, without unit; along when left out"
+    )
+    across: NotNegative | None = Field(
+        None, description="coefficient across the rod, without unit; along when left out"
+    )
 
 
 TABLE = Tag("⟨table⟩")

@@ -72,6 +72,9 @@ def completed(example: str) -> dict[str, Any]:
         elif key == "wall":
             chamber = {"name": "bellows", "kind": "chamber", "rod": "finger", "pressure": 1e4, key: value}
             tables["actuators"].append(chamber)
+        elif key == "friction":
+            ground = {"name": "ground", "kind": "plane", "point": [0, 0, -1.0], "normal": [0, 0, 1], "width": 1e-3}
+            tables.setdefault("obstacles", []).append({**ground, key: value})
         elif key not in scene_reference.contents_by_key(Scene):
             rod = tables["rods"][0]
             if key == "stiffness":

@@ -60,6 +60,8 @@ WATER = {"name": "load", "kind": "flow", "density": 1000.0, "diameter": 1.0}
 
 WAVE = {"input": "bender.profile", "amplitude": 1.0, "frequency": 1.0, "wave": "travelling", "wavelength": 0.7}
 
+SPEED = {"rod": "rod", "curvature_rate": [0, 0, 0], "tangent_rate": [0, 0, 0]}
+
 
 def with_load(load: dict[str, Any]) -> dict[str, Any]:
     return {**tables(), "loads": [load]}
@@ -98,6 +100,8 @@ PLACES: list[tuple[str, dict[str, Any], tuple[Any, ...], Notation]] = [
     ("diameter", with_load(WATER), ("loads", 0, "diameter"), Notation.ENDS),
     *(("offset", tables(), ("actuators", k, "offset", i), Notation.POWERS) for k in range(3) for i in range(2)),
     ("profile", tables(), ("actuators", 2, "profile"), Notation.LEGENDRE),
+    *((key, {**tables(), "velocities": [SPEED]}, ("velocities", 0, key, i), Notation.LEGENDRE)
+      for key in ("curvature_rate", "tangent_rate") for i in range(3)),
     ("envelope", {**tables(), "motions": [WAVE]}, ("motions", 0, "envelope"), Notation.LEGENDRE),
 ]  # fmt: skip
 
