@@ -67,11 +67,10 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         normal = ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
         pressing = load.stiffness / (3 * width**2) * _depth(load, section) ** 3
         # At rest the velocity stores nothing, and nothing is added.
-        if not (load.takes_energy and section.velocity.nnz()):
-            return pressing * normal, ca.DM(3, 1)
-        if load.obstacle.damping > 0.0:
+        moves = load.takes_energy and bool(section.velocity.nnz())
+        if moves and load.obstacle.damping > 0.0:
             pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
-        if not load.obstacle.rubs:
+        if not (moves and load.obstacle.rubs):
             return pressing * normal, ca.DM(3, 1)
         touching = -section.data[0] * normal
         rubbing = _friction(load, section, normal, ca.fmax(pressing, 0.0), touching)
@@ -97,17 +96,17 @@ def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Ma
     velocity = section.velocity + ca.cross(section.angular_velocity, touching)
     sliding = velocity - ca.dot(normal, velocity) * normal
     speed = ca.sqrt(ca.sumsqr(sliding) + slip**2)
-    of_all = across * sliding
-    if along is not across or back is not across:
+    weighted = across * sliding
+    if not along == back == across:
         tangent = section.rotation[:, 2]
         direction = tangent - ca.dot(normal, tangent) * normal
         # A rod that stands on the surface slides in no direction of its own.
         direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
         forward = ca.dot(direction, sliding)
         share = forward / ca.sqrt(forward**2 + slip**2)
-        own = (along * (1 + share) + back * (1 - share)) / 2
-        of_all = of_all + (own - across) * forward * direction
-    friction: Matrix = -pressing / speed * of_all
+        coefficient = (along * (1 + share) + back * (1 - share)) / 2
+        weighted = weighted + (coefficient - across) * forward * direction
+    friction: Matrix = -pressing / speed * weighted
     return friction
 
 

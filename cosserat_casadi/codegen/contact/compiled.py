@@ -173,7 +173,11 @@ class CompiledContact(LoadedLibrary):
         return None if status != 0 else by_tip(self.rods, columns)
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
-        """Estimated error of a solution, such as one of a turn; None where it is none."""
+        """Estimated error of a solution, such as one of a turn; None where it is none.
+
+        Raises:
+            AttributeError: the folder was exported without the estimate.
+        """
         estimate = ctypes.c_double()
         status = self._function("error_estimate")(self._state(solution), ctypes.byref(estimate), self._workspace())
         return estimate.value if CONTACT_OUTCOMES[status] is Outcome.CONVERGED else None
