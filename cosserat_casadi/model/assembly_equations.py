@@ -165,8 +165,7 @@ class Assembly:
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
-        ends = [entries.stop for entries in self.unknowns.slices.values()]
-        blocks = BlockMatrix(ends)
+        blocks = self._empty_blocks()
         for rod, tangent in self.system.tangents.items():
             strains = self.unknowns.strain(rod)
             blocks.add(strains, strains, tangent.jacobian)
@@ -185,6 +184,19 @@ class Assembly:
             self._add_cable(blocks, cable)
         self._add_springs(blocks)
         return blocks.matrix()
+
+    @cached_property
+    def constraint_jacobian(self) -> Matrix:
+        """∂ residual / ∂x with the rows of the constraints alone; the other rows are empty."""
+        blocks = self._empty_blocks()
+        for placed in self.constraints:
+            self._add_constraint(blocks, placed)
+        return blocks.matrix()
+
+    def _empty_blocks(self) -> BlockMatrix:
+        """A matrix of the unknowns' size without blocks."""
+        ends = [entries.stop for entries in self.unknowns.slices.values()]
+        return BlockMatrix(ends)
 
     def _section_motion(self, placed: PlacedConstraint) -> Matrix:
         """δ: motion [δθ; δr] of a held section with the strains of its rod, 6×n, base axes."""

@@ -251,7 +251,7 @@ class System:
         """Motion of a rod's base in the world, in the axes of the base."""
         frame = self.discrete.unloaded.floating_base(rod)
         world_motion = self._still_base_motion(rod) if frame is None else self.frame_motions[frame].motion
-        return world_motion.in_axes(self._base_R_world(rod))
+        return world_motion.in_axes(self._base_R_world[rod])
 
     def section(self, rod: str, node: int) -> Pose:
         """Pose of a node's section in the base of its rod."""
@@ -266,7 +266,7 @@ class System:
         """World pose of a rod's base."""
         frame = self.discrete.unloaded.floating_base(rod)
         if frame is None:
-            return self._still_base(rod)
+            return self._still_bases[rod]
         return self.frame(frame)
 
     def frame(self, name: FrameName) -> Pose:
@@ -299,7 +299,7 @@ class System:
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
         if placed.at_base:
-            return self._still_base(placed.rod)
+            return self._still_bases[placed.rod]
         if placed.frame is None:
             return IDENTITY.pose
         return self.frame(placed.frame)
@@ -340,6 +340,11 @@ class System:
     def deviation(self, name: FrameName) -> Matrix:
         """Unknowns of a floating frame, 7×1."""
         return self.arguments.x[self.discrete.deviation(name)]
+
+    @cached_property
+    def _still_bases(self) -> dict[str, Pose]:
+        """Poses of the bases as the scene and the inputs say them, by the names of their rods."""
+        return {rod: self._still_base(rod) for rod in self.discrete.rods}
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
@@ -446,7 +451,7 @@ class System:
         return replace(self._rod_loads(rod), motion=None).of(load)
 
     def _rod_loads(self, rod: str) -> RodLoads:
-        base = RodBase(self.base(rod).position, self._base_R_world(rod))
+        base = RodBase(self.base(rod).position, self._base_R_world[rod])
         ratio = ratio_of(self.discrete, rod, self.arguments)
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
@@ -476,13 +481,17 @@ class System:
         """
         return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed), self.coordinate(placed))
 
-    def _base_R_world(self, rod: str) -> Matrix:
-        """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""
-        rotation = quaternion_to_matrix(self.base(rod).quaternion)
-        # Zeros of a constant base, an upright rod's above all, cost no product.
-        if isinstance(rotation, ca.DM):
-            rotation = ca.sparsify(rotation, ROUNDING)
-        return rotation.T
+    @cached_property
+    def _base_R_world(self) -> dict[str, Matrix]:
+        """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
+        rotations = {}
+        for rod in self.discrete.rods:
+            rotation = quaternion_to_matrix(self.base(rod).quaternion)
+            # Zeros of a constant base, an upright rod's above all, cost no product.
+            if isinstance(rotation, ca.DM):
+                rotation = ca.sparsify(rotation, ROUNDING)
+            rotations[rod] = rotation.T
+        return rotations
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:

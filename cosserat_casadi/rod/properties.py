@@ -21,7 +21,7 @@ from cosserat_casadi.maths.numbers import (
     known,
     side_by_side,
 )
-from cosserat_casadi.maths.polynomials import legendre_table
+from cosserat_casadi.maths.polynomials import gauss_legendre, legendre_table
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]
@@ -159,7 +159,7 @@ class RodProperties:
         """Mean of the Hooke tensor's diagonal along the rod that scales the equations, shape (6,)."""
         if self.nominal is not None:
             return self.nominal.mean_hooke
-        points, weights = legendre.leggauss(8)
+        points, weights = gauss_legendre(8)
         X = (points + 1) / 2
         return np.asarray((weights / 2) @ known(self.hooke(X)))
 
