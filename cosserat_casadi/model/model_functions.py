@@ -292,6 +292,17 @@ class ModelFunctions:
             rotation @ rod.statics.held_moment,
         ]
 
+    @owned_functions(Owner.ROD, (Output("quaternion"), Output("by_position"), Output("by_quaternion")))
+    def field_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ quaternions at the nodes, and derivatives of positions and quaternions with x, node after node.
+
+        World frame.
+        """
+        position, quaternion = self.fields[written.owner].call(list(written.symbols.values()))[:2]
+        by_position = ca.jacobian(ca.vec(position), written["x"])
+        by_quaternion = ca.jacobian(ca.vec(quaternion), written["x"])
+        return [quaternion, by_position, by_quaternion]
+
     @owned_functions(
         Owner.ACTUATOR,
         _actuator_outputs,
