@@ -378,7 +378,7 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
-    for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION):
+    for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION, BlockKind.STOP):
         change = _relative_change(solution.x[entries], correction.known[entries])
         changes.append(change)
     for rod in discrete.rods.values():

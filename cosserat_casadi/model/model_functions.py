@@ -76,7 +76,10 @@ def _joint_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     (joint,) = [joint for joint in discrete.scene.joints_with_coordinate if joint.name == name]
     assert isinstance(joint, AxisJoint), "joints with a coordinate have an axis"
     keys = (joint.effort_key, joint.coordinate_key)
-    return tuple(Output(key, joint.inputs[key].unit) for key in keys)
+    outputs = [Output(key, joint.inputs[key].unit) for key in keys]
+    if joint.has_stops:
+        outputs.append(Output("stop", outputs[0].unit))
+    return tuple(outputs)
 
 
 class ModelFunctions:
@@ -327,11 +330,17 @@ class ModelFunctions:
         differentiable=True,
     )
     def joint(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each."""
+        """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each.
+
+        A joint with stops has their push as a third output; the first one counts it too.
+        """
         (index,) = [i for i, joint in enumerate(written.discrete.scene.joints) if joint.name == written.owner]
         (placed,) = [placed for placed in written.discrete.constraints if placed.joint == index]
         value, effort = written.system.joint_state(placed)
-        return [ca.densify(ca.MX(effort)), ca.densify(ca.MX(value))]
+        outputs = [effort, value]
+        if written.discrete.joint_record(placed).has_stops:
+            outputs.append(written.system.stop_effort(placed))
+        return [ca.densify(ca.MX(output)) for output in outputs]
 
     @owned_functions(
         Owner.BODY,

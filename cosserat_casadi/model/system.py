@@ -23,7 +23,7 @@ from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
@@ -325,6 +325,28 @@ class System:
         motor = input_value(self.discrete.layout, record, record.effort_key, self.arguments.inputs)
         effort: JointEffort = JOINT_KINDS[record.kind].effort(record, ca.DM(1, 1) if motor is None else motor)
         return effort
+
+    def way_to_stop(self, stop: JointStop) -> Matrix:
+        """Way of a joint to its stop, which may have given way, 1×1, in the unit of its coordinate as an unknown."""
+        value = self.arguments.x[self.discrete.coordinate(stop.placed)]
+        way = stop.side * (value - as_matrix(as_vector([stop.bound])) / stop.placed.coordinate_scale)
+        if stop.stiffness is None:
+            return way
+        return way + stop.softness * self.arguments.x[self.discrete.stop(stop)]
+
+    def stop_energy(self, stop: JointStop) -> Matrix:
+        """Energy that an elastic stop holds, 1×1, J."""
+        push = self.arguments.x[self.discrete.stop(stop)]
+        return stop.placed.constraint.unit * stop.softness / 2 * push**2
+
+    def stop_effort(self, placed: PlacedConstraint) -> Matrix:
+        """Push of the stops of a joint on its section along the coordinate, N m or N, 1×1."""
+        pushes = [
+            stop.side * self.arguments.x[self.discrete.stop(stop)]
+            for stop in self.discrete.stops
+            if stop.placed is placed
+        ]
+        return placed.constraint.unit / placed.coordinate_scale * sum(pushes[1:], pushes[0])
 
     def joint_state(self, placed: PlacedConstraint) -> tuple[Matrix, Matrix]:
         """Coordinate of a joint, rad or m, and the effort along it on the section, N m or N, 1×1 each."""

@@ -23,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, 
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.slack_cables import SlackCables, sags_by_cable
+from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -84,7 +84,7 @@ def equations_of(
 
 @dataclass(frozen=True)
 class Leg:
-    """The steps over one piece, or over a part of it in which no cable becomes slack or taut, and the same touches.
+    """The steps over one piece, or over a part of it in which cables, stops and contacts do not change.
 
     Attributes:
         piece: the inputs.
@@ -113,8 +113,8 @@ class History:
 
     Attributes:
         model: the model.
-        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
-            contact changes.
+        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, a
+            joint hits a stop or leaves it, or contact changes.
         method: of its steps.
         settings: how it steps.
         coordinates: coordinates of the steps; None for the unknowns of the model.
@@ -315,11 +315,11 @@ def integrated(
     chosen = kernels or interpreted(model)
     switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume)
     if not model.scene.touches_exactly:
-        cables = SlackCables(model)
-        first = cables.first_phases(x, inputs)
+        pairs = OneSided(model)
+        first = pairs.first_phases(x, inputs)
         if resume is not None and not isinstance(resume.phases, ContactPhase):
             first = resume.phases
-        return switched(cables, first)
+        return switched(pairs, first)
     contacts = ExactContacts(model)
     if resume is not None and isinstance(resume.phases, ContactPhase):
         follower = Follower(contacts.facings, resume.phases.touches)

@@ -66,12 +66,12 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
-    if any(event.obstacle for event in motion.events):
+    for kind, words in (("taut", "cables: taut"), ("stop_hit", "joints: at a stop")):
+        hits = [event for event in motion.events if event.kind == kind]
+        if hits:
+            yield f"{words} {counted(len(hits), 'time')}, which took {sum(event.energy for event in hits):.3g} J"
+    if motion.model.scene.touches_exactly and motion.events:
         yield f"contact: {_contact_words(motion)}"
-    elif motion.events:
-        snaps = [event for event in motion.events if event.kind == "taut"]
-        taken = sum(event.energy for event in snaps)
-        yield f"cables: taut {counted(len(snaps), 'time')}, which took {taken:.3g} J"
     yield "; ".join(discretisation_sentences(motion.model))
 
 
