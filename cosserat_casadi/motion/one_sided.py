@@ -2,9 +2,9 @@
 
 A slack cable and a stop off its joint are open and have no push. A taut cable and a stop at its joint are closed and
 leave no gap: between these the equations are smooth, and the corner that statics rounds is never passed. A pair whose
-push comes to zero opens. A gap that comes to zero closes: an impact takes the velocity that would go on, and the energy that
-goes with it. A cable does not rebound; a stop gives back its coefficient of restitution, until a bounce is as low as
-those of exact contact that are not followed. An elastic cable takes nothing: its tension grows from zero.
+push comes to zero opens. A gap that comes to zero closes: an impact takes the velocity that would go on, and the
+energy that goes with it. A cable does not rebound; a stop gives back its coefficient of restitution, until a bounce is
+as low as those of exact contact that are not followed. An elastic pair takes nothing: its push grows from zero.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ from cosserat_casadi import (
     export,
     follow,
     load,
+    modes_of,
     scene_from_dict,
     simulate,
     solve,
@@ -81,6 +82,14 @@ def test_lever_rests_on_its_stop(stiffness: float | None) -> None:
     beyond = 0.0 if stiffness is None else state["stop"] / stiffness
     assert_allclose(state["angle"], -BOUND - beyond, rtol=0, atol=1e-9)
     assert_allclose(state["stop"], WEIGHT * np.cos(state["angle"]), rtol=1e-9, atol=0)
+
+
+def test_frequency_on_an_elastic_stop() -> None:
+    modes = modes_of(scene_from_dict(lever(stop_stiffness=20.0)))
+    angle = modes.solution.joint("hinge")["angle"]
+    wanted = np.sqrt((20.0 - WEIGHT * np.sin(angle)) / INERTIA)
+    # The post twists more slowly than that.
+    assert_allclose(2 * np.pi * modes.modes[1].frequency, wanted, rtol=1e-9, atol=0)
 
 
 @pytest.mark.parametrize(("force", "wanted"), [(0.3, 0.0), (0.6, 0.2), (-0.9, -0.6)])
