@@ -40,8 +40,13 @@ from cosserat_casadi.scene.values import (
 
 
 class SupportRecord(Entry):
-    """A support, which holds the tip of a rod in the world."""
+    """A support, which holds the tip of a rod in the world.
 
+    Attributes:
+        turns_freely: whether the tip may turn about every axis through it.
+    """
+
+    turns_freely: ClassVar[bool] = False
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
     name: Name | None = Field(None, description="name of the support, a letter, then letters, digits and underscores")
@@ -111,6 +116,7 @@ kind = "pinned"
 position = [0.1, 0, 0.1]
 """
 
+    turns_freely: ClassVar[bool] = True
     kind: Literal["pinned"] = Field(description="position of the tip prescribed, moment free")
 
 
@@ -220,9 +226,15 @@ between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 
 
 
 class JointRecord(Oriented, Entry):
-    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names."""
+    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names.
 
+    Attributes:
+        turns_freely: whether the section may turn about every axis through it.
+    """
+
+    turns_freely: ClassVar[bool] = False
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
+    instead: ClassVar[Mapping[str, str]] = {"rod": "between"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
     between: tuple[JointEnd, JointEnd] | None = Field(
@@ -347,6 +359,7 @@ kind = "spherical"
 position = [0.02, 0, 0]
 """
 
+    turns_freely: ClassVar[bool] = True
     kind: Literal["spherical"] = Field(description="the section stays at a point of the body and turns freely")
 
 
