@@ -280,6 +280,28 @@ class History:
         return [step.end.time for _, step in self.steps]
 
 
+@dataclass(frozen=True)
+class FreeFlight:
+    """Helpers of steps of what nothing holds; they take time to be made, and are those of all motions of a model.
+
+    Attributes:
+        coordinates: coordinates of the steps; None for the unknowns of the model.
+        keeper: puts the momentum right; None where something is held.
+    """
+
+    coordinates: CentredCoordinates | None
+    keeper: MomentumKeeper | None
+
+
+def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
+    """The helpers for a model; arguments as of :func:`integrated`."""
+    # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
+    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
+    to_model = None if coordinates is None else coordinates.to_model
+    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    return FreeFlight(coordinates, keeper)
+
+
 def integrated(
     model: Model,
     pieces: Sequence[Piece],
@@ -292,6 +314,7 @@ def integrated(
     phases: ContactPhase | None = None,
     kernels: StepKernels | None = None,
     resume: Resume | None = None,
+    flight: FreeFlight | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -307,13 +330,15 @@ def integrated(
         phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
         kernels: as for :func:`equations_of`.
         resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
+        flight: that of the model; None for a new one.
 
     Raises:
         SceneError: the start contradicts the constraints.
     """
     inputs = pieces[0].at(pieces[0].start).value
     chosen = kernels or interpreted(model)
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume)
+    flight = flight or free_flight(model, p)
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight)
     if not model.scene.touches_exactly:
         pairs = OneSided(model)
         first = pairs.first_phases(x, inputs)
@@ -339,14 +364,12 @@ def _switched(
     p: FloatArray | None,
     kernels: StepKernels,
     resume: Resume | None,
+    flight: FreeFlight,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
     """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
-    # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
-    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
-    to_model = None if coordinates is None else coordinates.to_model
-    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    coordinates, keeper = flight.coordinates, flight.keeper
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     if coordinates is not None:
