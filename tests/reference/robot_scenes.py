@@ -1,7 +1,7 @@
 """Seeded robots of one rod: a base on a hinge or a slide with spring, motor and stops, disks, a straight tendon.
 
-In equilibrium each is a clamped rod under point loads: the base is where the joint has come to, disks are their weights,
-and a tendon is a force at each hole. So what holds for rods of a scene holds for them.
+In equilibrium each is a clamped rod under point loads: the base is where the joint has come to, disks are their
+weights, and a tendon is a force at each hole. So what holds for rods of a scene holds for them.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def _moved(rod: RodData, joint: Table, solution: Solution) -> RodData:
 
 
 def joint_faults(tables: Table, solution: Solution, tolerance: float) -> list[str]:
-    """Why the joint of a robot is out of balance, or its stops pull or are passed; tolerance over its largest effort."""
+    """Why the joint of a robot is out of balance, or its stops pull or are passed; tolerance over its efforts."""
     faults = []
     wrench = solution.base_wrench()
     for joint in tables.get("joints", []):
