@@ -54,6 +54,10 @@ def _end_table(motion: Motion) -> Table:
     return table
 
 
+OF_PAIRS = {"cables: taut": ("taut", "slack"), "joints: at a stop": ("stop_hit", "stop_left")}
+"""Words for changes of cables and stops, and their kinds, the one that takes energy first."""
+
+
 def _merit_sentences(motion: Motion) -> Iterator[str]:
     """The steps of the motion, its accuracy, and its discretisation."""
     if motion.start:
@@ -66,11 +70,12 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
-    for kind, words in (("taut", "cables: taut"), ("stop_hit", "joints: at a stop")):
-        hits = [event for event in motion.events if event.kind == kind]
-        if hits:
+    for words, kinds in OF_PAIRS.items():
+        changes = [event for event in motion.events if event.kind in kinds]
+        hits = [event for event in changes if event.kind == kinds[0]]
+        if changes:
             yield f"{words} {counted(len(hits), 'time')}, which took {sum(event.energy for event in hits):.3g} J"
-    if motion.model.scene.touches_exactly and motion.events:
+    if any(all(event.kind not in kinds for kinds in OF_PAIRS.values()) for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
     yield "; ".join(discretisation_sentences(motion.model))
 
