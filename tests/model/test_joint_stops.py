@@ -24,6 +24,7 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from tests.model.test_base_joints import GRAVITY, link, scene
 from tests.model.test_joint_coordinates import ALONG, CARRIED, HINGE, OBLIQUE, SLIDE, TURN, built
 
@@ -90,6 +91,22 @@ def test_frequency_on_an_elastic_stop() -> None:
     wanted = np.sqrt((20.0 - WEIGHT * np.sin(angle)) / INERTIA)
     # The post twists more slowly than that.
     assert_allclose(2 * np.pi * modes.modes[1].frequency, wanted, rtol=1e-9, atol=0)
+
+
+@pytest.mark.parametrize("stiffness", [0.3, 2.0])
+def test_second_variation_of_a_lever_that_leans_on_an_elastic_stop(stiffness: float) -> None:
+    """Its centre of mass is above the hinge: W cos θ of the moment of the stop is lost."""
+    tables = lever(stop_stiffness=stiffness, upper_stop=0.05, moment=0.02)
+    tables["joints"][0]["lower_stop"] = -0.05
+    tables["bodies"][0]["centre_of_mass"] = [0, 0, ARM]
+    leans = solve(build(scene_from_dict(tables)))
+    angle = leans.joint("hinge")["angle"]
+    eigenvalues = admissible_eigenvalues(
+        leans.model.jacobian(leans.x, leans.inputs)[0].full(), variations(leans.model)
+    ) * max(leans.model.discrete.unknowns.units)
+    # The unit variation moves angle and quaternion together, by 1 and ½.
+    wanted = 0.8 * (stiffness - WEIGHT * np.cos(angle))
+    assert np.abs(eigenvalues - wanted).min() < 1e-9
 
 
 @pytest.mark.parametrize(("force", "wanted"), [(0.3, 0.0), (0.6, 0.2), (-0.9, -0.6)])
