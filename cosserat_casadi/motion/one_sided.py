@@ -26,7 +26,7 @@ from cosserat_casadi.motion.contact_onset import LOW
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
+from cosserat_casadi.numerics.consistent_start import consistent_start, impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -183,33 +183,38 @@ class OneSided:
             interval: time after it in which the equations are smooth, s.
         """
         v = at.v
-        lost = 0.0
-        events: list[ContactEvent] = []
-        was_closed = phases
+        impulse = 0.0
+        before = phases
+        closes = guard is not None and not phases[guard]
         if guard is not None:
-            closes = not phases[guard]
             phases = _changed(phases, [guard])
-            if closes:
-                v, phases, impulse = self._after_impact(plain, piece, at, phases, guard, interval)
-                inputs = piece.at(at.time)
-                lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
-                events.append(self._event(guard, at.time, closes=True, lost=lost, impulse=impulse))
-                # A joint that rebounds has left its stop with the blow: that is no event more.
-                was_closed = _changed(was_closed, [guard]) if phases[guard] else was_closed
+        if guard is not None and closes:
+            v, phases, impulse = self._after_impact(plain, piece, at, phases, guard, interval)
+        tried = {phases}
         while True:
-            start = self._start(plain, piece, phases, at, v, interval)
-            opens = [k for k in self._pulling(start.instant.x, phases) if phases[k]]
-            if not opens:
-                if guard is not None:
-                    opened = [k for k, closed in enumerate(was_closed) if closed and not phases[k]]
-                    events += [self._event(k, at.time, closes=False) for k in opened]
-                return Restart(start, phases, lost, events=tuple(events))
-            phases = _changed(phases, opens)
-
-    def _start(
-        self, plain: MotionEquations, piece: Piece, phases: Closed, at: Instant, v: FloatArray, interval: float
-    ) -> ConsistentStart:
-        return consistent_start(self.equations(plain, piece, phases), at.time, at.x, v, interval)
+            equations = self.equations(plain, piece, phases)
+            start = consistent_start(equations, at.time, at.x, v, interval)
+            opens = self._pulling(start.instant.x, phases)
+            back = [] if opens else self._soon_back(start.instant, phases, piece)
+            others = _changed(phases, opens or back)
+            # What rounding decides stays as it is.
+            if others in tried:
+                break
+            tried.add(others)
+            phases = others
+            if back:
+                v, _ = impact(self.equations(plain, piece, phases), at.time, at.x, v, interval)
+        if guard is None:
+            return Restart(start, phases)
+        events: list[ContactEvent] = []
+        lost = 0.0
+        if closes:
+            inputs = piece.at(at.time)
+            lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
+            events.append(self._event(guard, at.time, closes=True, lost=lost, impulse=impulse))
+        left = [k for k, closed in enumerate(before) if closed and not phases[k]]
+        events += [self._event(k, at.time, closes=False) for k in left]
+        return Restart(start, phases, lost, events=tuple(events))
 
     def _event(
         self, number: int, time: float, *, closes: bool, lost: float = 0.0, impulse: float = 0.0
@@ -224,9 +229,14 @@ class OneSided:
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Closed, guard: int, interval: float
     ) -> tuple[FloatArray, Closed, float]:
         """Velocities after a pair has closed, which are closed then, and the impulse of it: impulses only push."""
+        # What the smallest push that counts does in that time is rounding.
+        rounding = THROUGH * interval
         while True:
             v, impulses = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
-            pulling = [k for k, pair in enumerate(self.pairs) if phases[k] and pair.rigid and impulses[pair.row] < 0.0]
+            pushes = self._softness * impulses[self.rows]
+            # The pair that closes is the one that is run into.
+            held = [k for k, pair in enumerate(self.pairs) if phases[k] and pair.rigid and k != guard]
+            pulling = [k for k in held if pushes[k] < -rounding]
             if not pulling:
                 break
             phases = _changed(phases, pulling)
@@ -236,13 +246,22 @@ class OneSided:
             return v, phases, impulse
         # Newton's law: what the impact without rebound takes from the velocities is taken once more, in part.
         rebounding = v + pair.restitution * (v - at.v)
-        opened = _changed(phases, [guard])
-        after = self._start(plain, piece, opened, at, rebounding, interval).instant
-        speed, acceleration = pair.sign * after.v[pair.coordinate], pair.sign * after.a[pair.coordinate]
-        # A joint that leaves with the speed v and comes back with the acceleration a is v²/(2a) off its stop at most.
-        if acceleration < 0.0 and speed**2 < -2.0 * acceleration * LOW:
+        if pair.sign * rebounding[pair.coordinate] * interval <= THROUGH:
             return v, phases, impulse
-        return rebounding, opened, (1.0 + pair.restitution) * impulse
+        return rebounding, _changed(phases, [guard]), (1.0 + pair.restitution) * impulse
+
+    def _soon_back(self, instant: Instant, phases: Closed, piece: Piece) -> list[int]:
+        """Stops that joints leave and would be back at without having been off them by more than the least bounce."""
+        back = []
+        gaps = self.gaps(instant.x, piece.at(instant.time).value) if self.pairs else ()
+        for k, (pair, gap) in enumerate(zip(self.pairs, gaps, strict=True)):
+            speed = pair.sign * instant.v[pair.coordinate]
+            acceleration = pair.sign * instant.a[pair.coordinate]
+            rises = pair.rigid and pair.side and not phases[k] and gap <= TOUCHING and speed > 0.0
+            # What leaves with the speed v and comes back with the acceleration a is v²/(2a) off its stop at most.
+            if rises and speed**2 < -2.0 * acceleration * LOW:
+                back.append(k)
+        return back
 
     def _pulling(self, x: FloatArray, phases: Closed) -> list[int]:
         """Closed pairs that pull."""

@@ -163,6 +163,25 @@ def test_bounces_vs_scipy() -> None:
     assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-5)
 
 
+def test_two_links_bounce_until_both_rest_on_their_stops() -> None:
+    """Blows of one joint throw the other off its stop again: all of the energy is lost in the end."""
+    stiff = {"strain": ["torsion"], "damping": {"retardation_time": 1e-3}}
+    hinge = {**HINGE, "upper_stop": 0.5, "restitution": 0.4}
+    elbow = {**hinge, "name": "elbow", "rod": "b", "upper_stop": 0.3}
+    tables = scene(
+        [link("a", base=ALONG, **stiff), link("b", base={"rod": "a"}, **stiff)],
+        [hinge, elbow],
+        simulation={"duration": 0.4, "frames": 3, "start": "unloaded", "tolerance": 1e-3},
+    )
+    tables["accuracy"] = {"modes": 1, "nodes": 4}
+    motion = simulate(scene_from_dict(tables))
+    assert motion.converged, motion.message
+    assert_allclose(motion.joint("hinge").conjugate[-1], 0.5, rtol=0, atol=1e-9)
+    assert_allclose(motion.joint("elbow").conjugate[-1], 0.3, rtol=0, atol=1e-9)
+    fallen = motion.energy.potential[0] - motion.energy.potential[-1]
+    assert_allclose(motion.energy.impacts[-1], fallen, rtol=1e-4, atol=0)
+
+
 def test_motor_lifts_a_lever_off_its_stop() -> None:
     pull = {"input": "hinge.moment", "times": [0.0, 0.2, 0.4], "values": [0.0, 0.0, 0.4]}
     motion = simulate(scene_from_dict(lever(motions=[pull], moment=0.0)))

@@ -16,7 +16,8 @@ def test_eigenvalues_over_the_admissible_variations(tmp_path: Path) -> None:
     random = np.random.default_rng(7)
     cases = []
     expected = []
-    # Without constraints; with three; with two that repeat each other; with a slack cable; with an elastic one; rods of two energy units.
+    # Without constraints; with three; with two that repeat each other; with a cable that is slack; with one that
+    # stretches; rods of two energy units.
     for free, held, spoil in (
         (1, 0, ""),
         (9, 0, ""),
