@@ -11,7 +11,7 @@ from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, 
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
-from cosserat_casadi.maths.polynomials import gauss_legendre
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 

@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import casadi as ca
 import numpy as np
 from numpy.polynomial import legendre, polynomial
 
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
-from cosserat_casadi.maths.typing import FloatArray, Matrix
-
-
-@cache
-def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
-    """Points and weights of Gauss–Legendre quadrature on [−1, 1], shape (count,) each; neither may be written to."""
-    points, weights = legendre.leggauss(count)
-    points.flags.writeable = False
-    weights.flags.writeable = False
-    return points, weights
+from cosserat_casadi.maths.typing import Matrix
 
 
 def legendre_table(count: int, X: Numbers) -> Numbers:

@@ -12,8 +12,8 @@ from typing import Any, ClassVar, Generic, TypeVar, final
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, repeated
-from cosserat_casadi.maths.polynomials import gauss_legendre
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod import section
 from cosserat_casadi.rod.properties import Field

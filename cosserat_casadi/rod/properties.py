@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import (
     Numbers,
     Scalar,
@@ -21,7 +22,7 @@ from cosserat_casadi.maths.numbers import (
     known,
     side_by_side,
 )
-from cosserat_casadi.maths.polynomials import gauss_legendre, legendre_table
+from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]

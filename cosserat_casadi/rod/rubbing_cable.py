@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.block_operators import cumulative_sum
-from cosserat_casadi.maths.polynomials import gauss_legendre
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
 from cosserat_casadi.rod.kinematics import Shape

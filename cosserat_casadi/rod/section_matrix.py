@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import (
     Numbers,
     any_symbolic,
@@ -25,7 +26,6 @@ from cosserat_casadi.maths.numbers import (
     repeated,
     without_rounding,
 )
-from cosserat_casadi.maths.polynomials import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import Field
 
