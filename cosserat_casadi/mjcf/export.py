@@ -232,7 +232,7 @@ class _Robot:
                 self._body(self.world, frame, body, (("freejoint", {}),))
 
     def _carried(self, rod: scenes.Rod) -> tuple[_Carrier | None, int | None]:
-        """What carries the base of a rod, None where it is not there yet, and the place of the joint between them."""
+        """Carrier of the base of a rod, None where it is missing yet, and the place of the joint between them."""
         for index, joint in enumerate(self.scene.joints):
             if joint.rod == rod.name and joint.holds_base:
                 if joint.body is not None:
@@ -384,7 +384,7 @@ class _Robot:
             index: place of the joint in the scene's list.
             frame: of what hangs on it, world axes.
             place: of the joint, world axes, shape (3,), m.
-            axes: in which the axis of the joint is given, world axes.
+            axes: of the joint's axis, world axes.
             sense: 1 where the section hangs on what holds it, −1 where that hangs on the section.
         """
         joint: Any = self.scene.joints[index]
@@ -667,7 +667,7 @@ OBSTACLES: dict[str, Callable[[Any, float], dict[str, str]]] = {
     "sphere": _sphere,
     "capsule": _capsule,
 }
-"""Shape of the geom of an obstacle by its kind; of those without an entry a sentence is told."""
+"""Shape of the geom of an obstacle by its kind; a kind without an entry is told in a sentence."""
 
 WRITERS: dict[str, Callable[[_Robot, Any], None]] = {
     "gravity": lambda robot, load: None,
@@ -677,4 +677,4 @@ WRITERS: dict[str, Callable[[_Robot, Any], None]] = {
     "tendon": _Robot.put_tendon,
     "chamber": _Robot.put_chamber,
 }
-"""What writes a load or an actuator, by its kind; of those without an entry a sentence is told."""
+"""Writer of a load or an actuator by its kind; a kind without an entry is told in a sentence."""

@@ -48,7 +48,7 @@ class Inertia:
 
 
 @dataclass(frozen=True)
-class Piece:
+class RodPiece:
     """The piece of a rod between two nodes, whose strains are those of a joint in its middle.
 
     Attributes:
@@ -79,7 +79,7 @@ class Link:
 
     at: float
     frame: NumericPose
-    piece: Piece | None
+    piece: RodPiece | None
     ends: FloatArray
     half_widths: tuple[float, float]
     inertia: Inertia
@@ -119,7 +119,7 @@ def links_of(unloaded: UnloadedScene, rod: scenes.Rod, nodes: FloatArray) -> lis
     damping = np.zeros_like(stiffness)
     if properties.damping is not None:
         damping = known(properties.damping(middles)) / lengths[:, None]
-    pieces = [None, *map(Piece, in_middles, lengths.tolist(), stiffness, damping)]
+    pieces = [None, *map(RodPiece, in_middles, lengths.tolist(), stiffness, damping)]
     widths = _half_widths(rod, nodes)
     disks = fixed_masses(unloaded.scene, rod.name)
     links = []

@@ -10,7 +10,7 @@ strain = "{strain}"
 material = {{ youngs_modulus = 2e9, poisson_ratio = 0.4, density = 1100.0 }}
 section = {{ shape = "circle", radius = [4e-3, 3e-3] }}
 """
-FINGER = "schema = 1\n[accuracy]\nmodes = 8\nnodes = 12\n" + ROD.format(name="finger", strain="kirchhoff")
+FINGER = "schema = 1\n[accuracy]\nmodes = 6\nnodes = 10\n" + ROD.format(name="finger", strain="kirchhoff")
 WEIGHT = '[[loads]]\nname = "weight"\nkind = "gravity"\nacceleration = [1.0, 2.0, -9.81]\n'
 WRENCH = """
 [[loads]]
@@ -26,7 +26,12 @@ SCENES = {
     "in space": FINGER + "base = { tangent = [1, 0, 0] }\n" + WEIGHT + WRENCH.format(kind="tip_wrench", frame="world"),
     "sheared and curved": FINGER.replace("kirchhoff", "reissner").replace("2e9", "2e6")
     + "intrinsic = { curvature = [2.0, [0, 1.0], 3.0] }\n"
-    + WRENCH.format(kind='point_wrench"\nat = 0.6 # "', frame="body").replace("0.5", "2e-4").replace("0.3,", "1e-4,").replace("-0.2", "-1e-4").replace("0.02", "2e-5").replace("0.03", "2e-5"),
+    + WRENCH.format(kind='point_wrench"\nat = 0.6 # "', frame="body")
+    .replace("0.5", "2e-4")
+    .replace("0.3,", "1e-4,")
+    .replace("-0.2", "-1e-4")
+    .replace("0.02", "2e-5")
+    .replace("0.03", "2e-5"),
     "pulled": FINGER
     + WEIGHT
     + """

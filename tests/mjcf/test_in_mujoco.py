@@ -17,9 +17,10 @@ from tests.mjcf.chains import Chain, settled
 @pytest.mark.parametrize("case", SCENES)
 def test_shape_and_frequencies_have_the_second_order(case: str) -> None:
     scene = parse_scene(SCENES[case])
-    solution = solve(build(scene))
+    model = build(scene)
+    solution = solve(model)
     assert solution.converged
-    expected = np.array([mode.frequency for mode in modes_of(build(scene), count=2).modes])
+    expected = np.array([mode.frequency for mode in modes_of(model, count=2).modes])
     of_tip = []
     of_frequency = []
     for links in (8, 16):
@@ -75,7 +76,7 @@ offset = [-8e-3, 0.0]
     # The second is slack, and does not push.
     assert_allclose(data.ten_length[1], solution.actuator("west")["length"], rtol=0, atol=4e-4)
     assert data.ten_length[1] < 0.3115 and data.actuator_force[1] == 0.0
-    assert_allclose(data.site("finger/tip").xpos, solution.tip().position[0], rtol=0, atol=1e-3)
+    assert_allclose(data.site("finger/tip").xpos, solution.tip().position[0], rtol=0, atol=3e-3)
 
 
 def test_rods_stay_out_of_the_obstacles_that_name_them() -> None:
