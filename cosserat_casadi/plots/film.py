@@ -25,7 +25,7 @@ from cosserat_casadi.model.sections import SHAPES, sizes_along
 from cosserat_casadi.motion.pose_series import Poses, body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.obstacles.registry import SURFACES
-from cosserat_casadi.plots.colours import BODIES, OBSTACLES, actuator_colour, rod_colour
+from cosserat_casadi.plots.colours import BODIES, OBSTACLES, actuator_colour, disk_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners
 
 FORMATS = (".glb", ".usda")
@@ -142,9 +142,9 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
     for index, rod in enumerate(scene.rods):
         outline = _outlines(rod, THIN * size)
         yield _tube(rod.name, _colour(rod_colour(index)), outline, centre_lines[rod.name])
-    for row in scene.disks:
+    for index, row in enumerate(scene.disks):
         poses = section_poses(model, row.rod, np.array(row.places), x, inputs)
-        yield _disks(row.name or "disks", row.radius, row.thickness, poses)
+        yield _disks(row.name or "disks", disk_colour(index), row.radius, row.thickness, poses)
     for index, actuator in enumerate(scene.actuators):
         if hasattr(actuator, "offset"):
             X = drawn_places(actuator, SECTIONS)
@@ -216,7 +216,7 @@ def _tube(name: str, colour: tuple[float, float, float, float], outline: FloatAr
     return FilmPart(name, colour, points, np.repeat(np.arange(count), sides), _rings(count, sides), poses)
 
 
-def _disks(name: str, radius: float, thickness: float, poses: Poses) -> FilmPart:
+def _disks(name: str, colour: str, radius: float, thickness: float, poses: Poses) -> FilmPart:
     """Cylinders about the frames of a row of disks."""
     count = poses.position.shape[1]
     ring = _ring(radius)
@@ -224,7 +224,7 @@ def _disks(name: str, radius: float, thickness: float, poses: Poses) -> FilmPart
     disk = np.column_stack([np.tile(ring, (2, 1)), heights])
     faces = np.concatenate([_rings(2, SIDES, 2 * SIDES * number) for number in range(count)])
     frame = np.repeat(np.arange(count), 2 * SIDES)
-    return FilmPart(name, _colour(BODIES, 0.5), np.tile(disk, (count, 1)), frame, faces, poses)
+    return FilmPart(name, _colour(colour, 0.5), np.tile(disk, (count, 1)), frame, faces, poses)
 
 
 def _body(name: str, corners: FloatArray, radius: float | None, least: float, poses: Poses) -> FilmPart:
