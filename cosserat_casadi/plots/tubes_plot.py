@@ -89,7 +89,7 @@ def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
 
 
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
-    """The centre line: of one equilibrium each tube in its colour, of several each equilibrium in its own.
+    """The centre line: of one equilibrium each tube has its colour, of several each equilibrium.
 
     The line is as thick as there are tubes in it.
     """
@@ -110,7 +110,7 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
 
 
 def _draw_nested(canvas: Canvas, solution: TubeSolution) -> None:
-    """The tubes of an equilibrium, each over those that enclose it and thinner than they are."""
+    """The tubes of an equilibrium, each over the tubes that enclose it and thinner."""
     reaches = solution.robot.translations(solution.inputs)
     stroke = STROKES[solution.stable]
     # A tube that encloses another one ends before it.
