@@ -565,7 +565,7 @@ def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: Fl
 
 def _units(scene: Scene, columns: Sequence[str]) -> dict[str, str]:
     """Units of the columns that set inputs; a number without unit has "1"."""
-    units = {}
+    units: dict[str, str] = {}
     for entry in scene.free_inputs():
         of_entry = [column for column in columns if column == entry.name or column.startswith(f"{entry.name}.")]
         units |= dict.fromkeys(of_entry, entry.declared.unit)
