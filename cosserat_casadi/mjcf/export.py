@@ -60,6 +60,9 @@ CLOSING_TIME = 2 * STEP
 HARD = "0.9999 0.9999 0.001 0.5 2"
 """Impedance of constraints: the largest that MuJoCo takes."""
 
+NO_STOP = 1e6
+"""Coordinate of the stop on the side that has none, rad or m."""
+
 MOST_OBSTACLES = 31
 """Obstacles that MuJoCo can tell apart, which numbers them by bits."""
 
@@ -403,6 +406,11 @@ class _Robot:
         for key, value in (("stiffness", joint.stiffness), ("springref", joint.rest), ("damping", joint.damping)):
             if value:
                 attributes[key] = _numbers(value)
+        if joint.has_stops:
+            lower = -NO_STOP if joint.lower_stop is None else joint.lower_stop
+            upper = NO_STOP if joint.upper_stop is None else joint.upper_stop
+            attributes["range"] = _numbers([lower, upper])
+            self._leave_out(name, "its stops are as soft as constraints of MuJoCo are, and without restitution")
         effort = getattr(joint, joint.effort_key)
         if effort is not None:
             self._control(f"{name}.{joint.effort_key}", effort, "motor", joint=name)

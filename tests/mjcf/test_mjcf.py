@@ -88,6 +88,13 @@ def test_inputs_are_controls_with_the_values_of_the_scene() -> None:
     }
 
 
+def test_stops_are_ranges() -> None:
+    model = mjcf_of(parse_scene(SCENES["jointed"].replace("rest = 0.3\n", "rest = 0.3\nupper_stop = 0.8\n")), 4)
+    (joint,) = [joint for joint in ET.fromstring(model.text).iter("joint") if joint.get("name") == "shoulder"]
+    assert [float(end) for end in joint.get("range", "").split()] == [-1e6, 0.8]
+    assert [sentence for sentence in model.left_out if sentence.startswith("shoulder: its stops")]
+
+
 def test_refusals() -> None:
     with pytest.raises(SceneError, match="finger: has no mass"):
         mjcf_of(parse_scene(FINGER.replace(", density = 1100.0", "")))
