@@ -235,7 +235,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     before = None
     for _ in range(MOST_SWEEPS):
         if before is None:
-            step, missing_step = _first_steps(solution)
+            step, missing_step = first_steps(solution)
         else:
             lacking = richer_balance(solution, known, missing)
             step, missing_step = lacking.step, lacking.missing_step
@@ -252,7 +252,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         before = missing_step
 
 
-def _first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
+def first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
     """Elastic steps of the unknowns and of the missing coordinates at the answer itself."""
     model = solution.model
     steps = column(model.richer_lack(solution.x, solution.inputs))

@@ -22,7 +22,7 @@ from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
-from cosserat_casadi.model.discretise import enriched
+from cosserat_casadi.model.discretise import enriched, for_first_step
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -440,10 +440,23 @@ class DiscreteScene:
             name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles))
             for name, rod in self.rods.items()
         }
-        discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
+        return Richer(self, self._on(discretisation))
+
+    @cached_property
+    def richer_for_first_step(self) -> Richer:
+        """The same with rotations of a lower order: what the first step of the missing modes is taken with."""
+        richer = self.richer.discrete.rods
+        discretisation = {
+            name: for_first_step(richer[name].discretisation, rod.discretisation) for name, rod in self.rods.items()
+        }
+        return Richer(self, self._on(discretisation))
+
+    def _on(self, discretisation: Mapping[str, Discretisation]) -> DiscreteScene:
+        """The same scene on another discretisation of its rods."""
+        discrete = discrete_scene(self.nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return Richer(self, discrete)
+        return discrete
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

@@ -177,7 +177,8 @@ class ModelFunctions:
         Elastic steps of the unknowns and of the coordinates of the missing modes, one below the other.
         """
         none = ca.DM.zeros(written.discrete.richer.missing_size, 1)
-        richer, system = _enriched(written, written["x"], none)
+        richer = written.discrete.richer_for_first_step
+        system = _enriched(written, richer, written["x"], none)
         return [ca.densify(ca.vertcat(*_elastic_steps(richer, system)))]
 
     @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
@@ -187,7 +188,9 @@ class ModelFunctions:
         One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
         unknowns, and the watched poses and lengths, as the next function gives them.
         """
-        richer, system = _enriched(written, written["x"] + written["correction"], written["missing"])
+        richer = written.discrete.richer
+        known = written["x"] + written["correction"]
+        system = _enriched(written, richer, known, written["missing"])
         residual, _ = richer.split(SceneEquations(system).residual)
         return [ca.densify(ca.vertcat(*_elastic_steps(richer, system), residual, watched(system).column))]
 
@@ -382,10 +385,9 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _enriched(written: Expressions, known: Matrix, missing: Matrix) -> tuple[Richer, System]:
-    """The scene with modes and intervals added, and its equations at these unknowns and missing coordinates."""
-    richer = written.discrete.richer
-    return richer, System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
+def _enriched(written: Expressions, richer: Richer, known: Matrix, missing: Matrix) -> System:
+    """The equations with modes and intervals added, at these unknowns and missing coordinates."""
+    return System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
 
 
 def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:
