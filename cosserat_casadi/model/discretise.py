@@ -137,7 +137,7 @@ def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacl
 def for_first_step(rich: Discretisation, own: Discretisation) -> Discretisation:
     """A discretisation on which the first step of missing modes is known to a few per cent, at less cost.
 
-    What it leaves is in the balance on the richer discretisation, which comes after it.
+    The rest is in the balance on the richer discretisation, which comes after it.
 
     Args:
         rich: the richer discretisation of a rod.
