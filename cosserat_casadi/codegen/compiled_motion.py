@@ -297,8 +297,8 @@ class CompiledMotion(ABC):
             dt: length of the step, s.
             inputs: at the start, by name or stacked, shape (inputs,).
             inputs_rate: at the start, shape (inputs,), per s; none by default.
-            inputs_acceleration: in the step, shape (inputs,), per s²; none by default. A base or a length whose rate
-                changes from step to step needs it, for its inertia forces.
+            inputs_acceleration: in the step, shape (inputs,), per s²; none by default. The step is refused without it
+                where a base, a length or a joint has a rate: its inertia forces would be missing.
             parameters: by name or stacked.
             memory: of the steps before, :meth:`step_memory`; it is written to.
             options: when Newton's method is done.

@@ -67,7 +67,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "units": numbers(model.discrete.unknowns.units.tolist()),
         "motion_part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
         "motion_part_tables": "".join(part_tables("motion_part", word, parted) for word, parted in parteds.items()),
-        "entry_tables": _entry_tables(motion),
+        "entry_tables": _entry_tables(motion) + _acceleration_table(model),
         "elimination_tables": _elimination_tables(fronts, whole),
     }
     return {
@@ -160,6 +160,14 @@ def _entry_tables(motion: MotionInC) -> str:
     starts = motion.blocks.pattern.colind()
     tables = {"ENTRY_ROWS": rows, "ENTRY_COLUMNS": columns, "ENTRY_STARTS": starts}
     return "".join(table(name, list(values)) for name, values in tables.items())
+
+
+def _acceleration_table(model: Model) -> str:
+    """Of each input, and then each parameter, whether the equations of motion have its acceleration."""
+    function = model.inverse_dynamics
+    felt = np.zeros(max(model.inputs.size + model.parameters.size, 1), dtype=int)
+    felt[function.jac_sparsity(0, function.index_in("inputs_acceleration")).get_col()] = 1
+    return table("FEELS_ACCELERATION", felt.tolist())
 
 
 def _elimination_tables(fronts: Elimination, whole: Elimination) -> str:

@@ -35,6 +35,7 @@ class MotionStatus(Enum):
     SINGULAR = "The equations of the step are singular; constraints may contradict or repeat each other."
     BAD_STEP = "The length of the step is no positive number of seconds."
     INCONSISTENT = "Supports, joints or cables are not closed: start from an equilibrium."
+    NO_ACCELERATION = "A base, a length or a joint is moved, and its acceleration was not given: give it, zeros too."
 
     @property
     def label(self) -> str:

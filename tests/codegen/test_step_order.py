@@ -13,6 +13,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise, read_scene
+from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.moving_inputs import InputState
 from cosserat_casadi.motion.simulate import moving_inputs, started
@@ -198,6 +199,18 @@ def errors_of_shaken(made: Exported, paths: Callable[[Course, float], Iterable[S
             state = step.state
         errors.append(float(np.abs(state.x - exact).max()))
     return errors
+
+
+def test_a_base_that_moves_without_an_acceleration_is_refused(shaken: Exported) -> None:
+    """Its step would be wrong without a word; zeros are an acceleration, and a base at rest needs none."""
+    begin = moving_inputs(shaken.model).at(0.0)
+    state = shaken.compiled.rest(begin.value, shaken.model.unloaded())
+    assert state is not None
+    refused = shaken.compiled.step(state, 1e-3, begin.value, begin.rate)
+    assert refused.status is MotionStatus.NO_ACCELERATION
+    assert_allclose(refused.state.x, state.x, rtol=0, atol=0)
+    assert shaken.compiled.step(state, 1e-3, begin.value, begin.rate, 0.0 * begin.rate).done
+    assert shaken.compiled.step(state, 1e-3, begin.value).done
 
 
 @pytest.mark.parametrize("accelerations", list(ORDERS), ids=lambda function: function.__name__)

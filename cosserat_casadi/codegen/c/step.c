@@ -377,6 +377,15 @@ static int state_is_finite(const solver_state *state) {
   return all_finite(state->x, N) && all_finite(state->v, N) && all_finite(state->a, N);
 }
 
+/* Whether no accelerations are given while an input changes whose acceleration the rods feel. */
+static int misses_acceleration(const step_start *start) {
+  if (!start->inputs_rate || start->inputs_acceleration) return 0;
+  for (int i = 0; i < INPUTS; i++) {
+    if (FEELS_ACCELERATION[i] && start->inputs_rate[i] != 0) return 1;
+  }
+  return 0;
+}
+
 /* A step, whole or in parts; the state is moved on where it is done, and else as it was. */
 static solver_motion_status take_step(const step_start *whole, solver_state *state, solver_step_memory *memory,
                                       const solver_step_options *chosen, workspace *work, solver_step_info *info) {
@@ -384,6 +393,7 @@ static solver_motion_status take_step(const step_start *whole, solver_state *sta
   if (!all_finite(whole->inputs, INPUTS) || !state_is_finite(state)) return SOLVER_MOTION_NOT_FINITE;
   if (whole->inputs_rate && !all_finite(whole->inputs_rate, INPUTS)) return SOLVER_MOTION_NOT_FINITE;
   if (whole->inputs_acceleration && !all_finite(whole->inputs_acceleration, INPUTS)) return SOLVER_MOTION_NOT_FINITE;
+  if (misses_acceleration(whole)) return SOLVER_MOTION_NO_ACCELERATION;
   solver_motion_status status = SOLVER_MOTION_NOT_SOLVED;
   for (int count = 1; count <= chosen->max_parts && status != SOLVER_MOTION_DONE; count *= 2) {
     info->parts = count;
