@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_layers import thinnest
+from cosserat_casadi.model.contact_pairs import thinnest_pair
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
@@ -27,7 +28,8 @@ def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
     A step as long as one radian of bending moves a section by half the length of the rod at most.
     """
     limits = ContinuationSettings()
-    through = 2 * thinnest(model.scene)
+    pairs = model.discrete.pairs if isinstance(model, Model) else ()
+    through = 2 * min(thinnest(model.scene), thinnest_pair(pairs, model.scene))
     return replace(limits, longest=min(limits.longest, through))
 
 

@@ -1,7 +1,7 @@
-"""Bars and balls with a width that no step may take a rod through.
+"""Bars, balls and other rods that no step may take a rod through, where contact is smooth.
 
 A smooth obstacle pushes where a rod is in it: a step that ends behind it has not felt it. The ends of a step are judged
-by their depth; here the straight way between them is.
+by their depth; here the straight way between them is. So it is with rods that push each other.
 """
 
 from __future__ import annotations
@@ -10,10 +10,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_pairs import ContactPair
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,11 @@ class SmoothBarriers:
         scene = self.model.scene
         smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]
+
+    @property
+    def any(self) -> bool:
+        """Whether there is anything to watch."""
+        return bool(self.watched or self.model.discrete.pairs)
 
     def are_between(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
         """Whether a rod is deep inside one on the straight way between two shapes, and at neither of its ends.
@@ -45,7 +54,20 @@ class SmoothBarriers:
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
-        return False
+        return any(self._pass_each_other(pair, before, after, inputs) for pair in self.model.discrete.pairs)
+
+    def _pass_each_other(
+        self, pair: ContactPair, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
+    ) -> bool:
+        """Whether the axes of two rods come nearer than half their thickness on the way."""
+        starts = section_positions(self.model, pair, before, inputs[0])
+        ends = section_positions(self.model, pair, after, inputs[1])
+        apart = starts[0][:, None] - starts[1]
+        way = ends[0][:, None] - ends[1] - apart
+        squares = np.sum(way**2, axis=2)
+        share = np.clip(-np.sum(apart * way, axis=2) / np.where(squares > 0, squares, 1.0), 0.0, 1.0)
+        nearest = np.sum((apart + share[..., None] * way) ** 2, axis=2)
+        return bool(np.any(nearest[pair.meets] < (pair.thickness / 2) ** 2))
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

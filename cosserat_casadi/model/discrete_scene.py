@@ -22,6 +22,7 @@ from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
@@ -150,6 +151,11 @@ class DiscreteScene:
     def loads(self) -> tuple[scenes.LoadRecord, ...]:
         """The loads of the scene, then what its obstacles with a width press with."""
         return (*self.scene.loads, *contact_layers(self.scene, self.nominal.rods))
+
+    @cached_property
+    def pairs(self) -> tuple[ContactPair, ...]:
+        """Pairs of rods that push each other."""
+        return tuple(contact_pairs(self.scene, self.nominal.rods, self.rods))
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:
@@ -363,7 +369,7 @@ class DiscreteScene:
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
         discretisation = {
-            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles))
+            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
             for name, rod in self.rods.items()
         }
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)

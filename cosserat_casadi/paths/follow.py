@@ -186,7 +186,7 @@ def follow_path(
 def _smooth_guard(followed: _Followed) -> Guard | None:
     """Refuses steps that take a rod through a smooth bar or ball; None in a scene that has none."""
     barriers = SmoothBarriers(followed.model)
-    if not barriers.watched:
+    if not barriers.any:
         return None
 
     def guard(arc: Arc, end: ArcPoint) -> ArcPoint | None:

@@ -1,0 +1,202 @@
+"""What two rods that push each other add to the equations: forces on both, and the second variation of their energy.
+
+The centres of the sections of both are known, and so are the forces, minus the derivatives of one energy. On each rod
+they are a dead force per length: what follows from that, statics and tangents have already. What is left of the
+derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections with
+the strains of their rod and with its base, where that floats.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rod_contact import SectionPairs, SectionsInContact
+from cosserat_casadi.maths.numbers import as_matrix, known, repeated
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.wrenches import LineWrench
+
+if TYPE_CHECKING:
+    from cosserat_casadi.model.system import System
+
+
+@dataclass(frozen=True)
+class ContactSide:
+    """The sections of one rod of a pair.
+
+    Attributes:
+        system: the scene.
+        rod: name of the rod.
+        count: number of sections S.
+    """
+
+    system: System
+    rod: str
+    count: int
+
+    @property
+    def discrete(self) -> DiscreteRod:
+        """The constant matrices of the rod."""
+        return self.system.discrete.rods[self.rod]
+
+    @cached_property
+    def interpolation(self) -> FloatArray:
+        """Matrix from values at the nodes to values at the sections, shape (S, M)."""
+        # Sections stay where they are in their elements: none is moved into another.
+        return replace(self.discrete.grid, ends=None).interpolation_matrix(self._coordinates)
+
+    @cached_property
+    def sections(self) -> SectionsInContact:
+        """The sections at their places, each for an equal part of the rod between element ends."""
+        rod = self.discrete
+        elements = replace(rod.grid, ends=None).element_of(self._coordinates)
+        X = rod.grid.on_rod(self._coordinates, elements)
+        rates = rod.grid.rates_in(elements)
+        ratio = self.system.shapes[self.rod].ratio
+        lengths = as_matrix(np.full(self.count, rod.properties.length / self.count))
+        if rates is not None:
+            lengths = lengths * as_matrix(rates)
+        if ratio is not None:
+            lengths = ratio * lengths
+        radii = as_matrix(repeated(section_radii(rod.properties, X), self.count))
+        along = rod.properties.length * as_matrix(X)
+        data = ca.horzcat(lengths, radii, along).T
+        return SectionsInContact(self._origin + self._arms, data)
+
+    def wrench(self, gradient: Matrix, factor: Matrix | float) -> LineWrench:
+        """Forces on the nodes that do the work of those on the sections, as a force per length, base axes.
+
+        Args:
+            gradient: derivative of the energy with the positions, 3×S, N, world axes.
+            factor: what it is multiplied by.
+        """
+        at_nodes = -factor * gradient @ ca.DM(self.interpolation)
+        lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
+        return LineWrench(self._rotation.T @ at_nodes / lengths, None, None, follower=False)
+
+    @cached_property
+    def base_frame(self) -> FrameName | None:
+        """The frame that the base of the rod is; None where it rests in the world."""
+        return self.system.discrete.unloaded.floating_base(self.rod)
+
+    @cached_property
+    def motion(self) -> Matrix:
+        """Motion of the sections, world axes, 3n×S: three components, each with a row for each coordinate.
+
+        The coordinates are the strains of the rod, then the motion [δθ; δr] of its base where that floats.
+        """
+        tangent = self.system.tangents[self.rod]
+        to_sections = ca.DM(self.interpolation @ self.discrete.grid.integration_matrix).T
+        local = [component.T @ to_sections for component in ca.vertsplit(tangent.tangent, self.discrete.grid.size)]
+        rotation = self._rotation
+        components = [sum(rotation[i, j] * local[j] for j in range(3)) for i in range(3)]
+        if self.base_frame is None:
+            return ca.vertcat(*components)
+        x, y, z = ca.vertsplit(self._arms)
+        none = ca.DM(1, self.count)
+        # δθ × arm, one row for each component of δθ, and δr.
+        turned = [(none, z, -y), (-z, none, x), (y, -x, none)]
+        shifted = [[ca.DM.ones(1, self.count) if i == j else none for j in range(3)] for i in range(3)]
+        parts = zip(components, turned, shifted, strict=True)
+        return ca.vertcat(*[ca.vertcat(own, *turn, *shift) for own, turn, shift in parts])
+
+    @property
+    def _coordinates(self) -> FloatArray:
+        """Places of the sections in the coordinate of the grid, shape (S,)."""
+        return (np.arange(self.count) + 0.5) / self.count
+
+    @property
+    def _rotation(self) -> Matrix:
+        """world_R_base, 3×3."""
+        return self.system.base(self.rod).rotation
+
+    @property
+    def _origin(self) -> Matrix:
+        """Position of the base at every section, 3×S, m."""
+        return ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.count)
+
+    @cached_property
+    def _arms(self) -> Matrix:
+        """Sections from the base, world axes, 3×S, m."""
+        return self._rotation @ self.system.shapes[self.rod].mean_positions(ca.DM(self.interpolation).T)
+
+
+@dataclass(frozen=True)
+class PairTerms:
+    """The terms of one pair in given arguments.
+
+    Attributes:
+        system: the scene.
+        pair: the pair.
+    """
+
+    system: System
+    pair: ContactPair
+
+    @cached_property
+    def sides(self) -> tuple[ContactSide, ...]:
+        """The sections of both rods; of a rod that touches itself once."""
+        names = dict(zip(self.pair.rods, self.pair.sections, strict=True))
+        return tuple(ContactSide(self.system, name, count) for name, count in names.items())
+
+    @cached_property
+    def section_pairs(self) -> SectionPairs:
+        """All pairs of sections."""
+        sections = [side.sections for side in self.sides]
+        return SectionPairs(sections[0], sections[-1], self.pair.law)
+
+    @cached_property
+    def energy(self) -> Matrix:
+        """Energy that the pair stores, 1×1, J."""
+        return self._factor * self.section_pairs.energy
+
+    def wrenches(self, rod: str) -> list[LineWrench]:
+        """The push on a rod, base axes; none on a rod that is not of the pair."""
+        first, second = self.section_pairs.gradient
+        gradients = [first + second] if self.pair.itself else [first, second]
+        factor = self._factor
+        return [
+            side.wrench(gradient, factor)
+            for side, gradient in zip(self.sides, gradients, strict=True)
+            if side.rod == rod
+        ]
+
+    @cached_property
+    def stiffness(self) -> dict[tuple[str, str], Matrix]:
+        """Gᵀ H G by rods, in the coordinates of each side, J."""
+        motions = [side.motion for side in self.sides]
+        by_first, mixed, by_second = self.section_pairs.stiffness(motions[0], motions[-1])
+        first, second = self.pair.rods
+        own = _product(motions[0], by_first)
+        coupled = _product(motions[0], mixed)
+        other = _product(motions[-1], by_second)
+        factor = self._factor
+        if self.pair.itself:
+            return {(first, first): factor * (own + coupled + coupled.T + other)}
+        return {
+            (first, first): factor * own,
+            (first, second): factor * coupled,
+            (second, first): factor * coupled.T,
+            (second, second): factor * other,
+        }
+
+    @property
+    def _factor(self) -> Matrix | float:
+        """What the push is multiplied by on the way from the unloaded scene: it grows as the loads do."""
+        load_factor = self.system.arguments.load_factor
+        return 1.0 if load_factor is None else load_factor
+
+
+def _product(motion: Matrix, field: Matrix) -> Matrix:
+    """Sum over the sections and the components of a motion, 3n×S, times a field, 3m×S: n×m."""
+    components = zip(ca.vertsplit(motion, motion.shape[0] // 3), ca.vertsplit(field, field.shape[0] // 3), strict=True)
+    parts = [own @ other.T for own, other in components]
+    return parts[0] + parts[1] + parts[2]
