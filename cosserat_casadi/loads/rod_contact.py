@@ -17,12 +17,13 @@ the third derivative of u is bounded: half as far apart, the ripple along a rod 
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of
-both rods meet. So rods that are apart cost the sums over their sections, and others one comparison for each pair of
-panels.
+both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for each
+pair of panels.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -30,7 +31,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 
-PANEL = 4
+PANEL = 32
 """Sections of a panel."""
 
 DATA = 3
@@ -56,93 +57,134 @@ def coefficient(width: Matrix | float, stiffness: Matrix | float, touching: Matr
 
 
 @dataclass(frozen=True)
-class PanelPair:
-    """Functions of two panels of sections and the law: (positions, data, positions, data, law), 3×PANEL, DATA×PANEL.
+class PairKernels:
+    """Functions of two sections: (position, data, position, data, law), 3×1, DATA×1 each, LAW×1.
 
     Attributes:
         energy: 1×1, J.
-        gradient: derivatives of the energy with the positions of both panels, 3×PANEL each, N.
-        hessian: second derivative with the positions of both, those of a section one below the other, 6 PANEL square.
-        depth: largest D − d over the width, counted from FAR, 1×1; zero where no two sections meet.
-        ball: (positions, data) ↦ centre of a ball about the surface of one panel, and its radius, 4×1, m.
+        depth: D − d over the width, counted from FAR, 1×1; zero where the sections do not meet.
+        gradient: derivative of the energy with the first position, 3×1, N; with the second it is the opposite.
+        hessian: second derivative with one position, 3×3, N/m; with both it is the opposite.
     """
 
     energy: ca.Function
+    depth: ca.Function
     gradient: ca.Function
     hessian: ca.Function
-    depth: ca.Function
-    ball: ca.Function
 
 
 @cache
-def panel_pair() -> PanelPair:
-    """The functions of two panels, which all rods share."""
-    places = [ca.SX.sym(name, 3, PANEL) for name in ("first", "second")]
-    data = [ca.SX.sym(name, DATA, PANEL) for name in ("first_data", "second_data")]
+def pair_kernels() -> PairKernels:
+    """The functions of two sections, which all rods share."""
+    places = [ca.SX.sym(name, 3) for name in ("first", "second")]
+    data = [ca.SX.sym(name, DATA) for name in ("first_data", "second_data")]
     law = ca.SX.sym("law", LAW)
-    width, stiffness, apart = ca.vertsplit(law)
-    energy = ca.SX(0)
-    depth = ca.SX(0)
-    for i in range(PANEL):
-        for j in range(PANEL):
-            first_length, first_radius, first_along = ca.vertsplit(data[0][:, i])
-            second_length, second_radius, second_along = ca.vertsplit(data[1][:, j])
-            touching = first_radius + second_radius
-            square = ca.sumsqr(places[0][:, i] - places[1][:, j])
-            meets = ca.fabs(first_along - second_along) >= apart
-            inside = ca.fmax((touching + width) ** 2 - square, 0.0)
-            lengths = first_length * second_length
-            energy += meets * lengths * coefficient(width, stiffness, touching) * inside**3
-            depth = ca.fmax(depth, meets * ((touching - ca.sqrt(square)) / width - FAR))
-    gradients = [ca.gradient(energy, place) for place in places]
-    stacked = ca.veccat(*gradients)
-    hessian = ca.horzcat(*[ca.jacobian(stacked, place) for place in places])
+    width, stiffness, nearest = ca.vertsplit(law)
+    (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own) for own in data)
+    touching = radius + other_radius
+    square = ca.sumsqr(places[0] - places[1])
+    meets = ca.fabs(along - other_along) >= nearest
+    inside = ca.fmax((touching + width) ** 2 - square, 0.0)
+    energy = meets * length * other_length * coefficient(width, stiffness, touching) * inside**3
+    depth = ca.fmax(meets * ((touching - ca.sqrt(square)) / width - FAR), 0.0)
+    hessian, gradient = ca.hessian(energy, places[0])
     arguments = [places[0], data[0], places[1], data[1], law]
-    centre = ca.sum2(places[0]) / PANEL
-    reach = ca.sqrt(ca.sum1((places[0] - ca.repmat(centre, 1, PANEL)) ** 2)) + data[0][1, :]
-    return PanelPair(
-        energy=ca.Function("contact_energy", arguments, [energy]),
-        gradient=ca.Function("contact_gradient", arguments, ca.cse(gradients)),
-        hessian=ca.Function("contact_hessian", arguments, ca.cse([ca.densify(hessian)])),
-        depth=ca.Function("contact_depth", arguments, [depth]),
-        ball=ca.Function("ball", [places[0], data[0]], [ca.vertcat(centre, ca.mmax(reach))]),
+
+    def function(name: str, result: ca.SX) -> ca.Function:
+        return ca.Function(f"contact_{name}", arguments, ca.cse([ca.densify(result)]))
+
+    return PairKernels(
+        function("energy", energy), function("depth", depth), function("gradient", gradient), function("hessian", hessian)
     )
 
 
+def _panels() -> list[ca.MX]:
+    """Symbols of the positions and the data of two panels, and of the law."""
+    sizes = {"positions": 3, "data": DATA}
+    symbols = [
+        ca.MX.sym(f"{name}_{kind}", rows, PANEL) for name in ("first", "second") for kind, rows in sizes.items()
+    ]
+    return [*symbols, ca.MX.sym("law", LAW)]
+
+
+def _by_pair(kernel: ca.Function, arguments: Sequence[Matrix]) -> Matrix:
+    """Results of a kernel for every pair of sections of two panels, side by side, the first running faster."""
+    owners = ("first", "first", "second", "second", "law")
+    arranged = [_arranged(field, owner, PANEL, PANEL) for field, owner in zip(arguments, owners, strict=True)]
+    result: Matrix = kernel.map(PANEL**2)(*arranged)
+    return result
+
+
+def _over_second(results: Matrix) -> Matrix:
+    """Sum over the sections of the second panel of results of all pairs, side by side for the first."""
+    rows, columns = results.shape
+    summed = ca.sum2(ca.reshape(results, rows * columns // PANEL, PANEL))
+    return ca.reshape(summed, rows, columns // PANEL)
+
+
+def _over_first(results: Matrix) -> Matrix:
+    """Sum over the sections of the first panel, side by side for the second."""
+    rows, columns = results.shape
+    summed = ca.repsum(ca.reshape(results, rows * columns // PANEL, PANEL), PANEL, 1)
+    return ca.reshape(summed, rows, columns // PANEL)
+
+
 @cache
-def panel_stiffness(first: int, second: int) -> ca.Function:
-    """(positions, data, positions, data, law, moved, moved) ↦ what a motion of each panel adds to both gradients.
+def panel_energy() -> ca.Function:
+    """(positions, data, positions, data, law) of two panels ↦ their energy, 1×1, J."""
+    arguments = _panels()
+    return ca.Function("energy", arguments, [ca.sum2(_by_pair(pair_kernels().energy, arguments))])
+
+
+@cache
+def panel_depth() -> ca.Function:
+    """The same ↦ largest depth, counted from FAR."""
+    arguments = _panels()
+    return ca.Function("depth", arguments, [ca.mmax(_by_pair(pair_kernels().depth, arguments))])
+
+
+@cache
+def panel_gradient() -> ca.Function:
+    """The same ↦ derivatives of the energy with the positions of both panels, 3×PANEL each, N."""
+    arguments = _panels()
+    gradients = _by_pair(pair_kernels().gradient, arguments)
+    return ca.Function("gradient", arguments, [_over_second(gradients), -_over_first(gradients)])
+
+
+@cache
+def panel_stiffness(count: int) -> ca.Function:
+    """The same, and a motion of the second panel ↦ second derivatives of the energy.
 
     Args:
-        first: number of coordinates that move the first panel.
-        second: the same of the second.
+        count: coordinates n of the motion: three components, one row for each coordinate, 3n×PANEL.
 
     Returns:
-        Function, whose fields have three components of one row for each coordinate, one below the other, and a column
-        for each section: of the first panel as the first moves, and as the second does; of the second as the second
-        moves.
+        function whose results are the derivatives with each section of the first panel twice, and of the second, 9×PANEL
+        each, and with the coordinates and the positions of the first, n×(3 PANEL).
     """
-    pair = panel_pair()
-    arguments = [pair.hessian.mx_in(i) for i in range(pair.hessian.n_in())]
-    counts = (first, second)
-    moved = [ca.MX.sym(name, 3 * count, PANEL) for name, count in zip(("moved", "by"), counts, strict=True)]
-    half = 3 * PANEL
-    hessian = pair.hessian(*arguments)
-    fields = []
-    # The derivative of the second gradient with the first motion is the transpose of what is given.
-    for row, column in ((0, 0), (0, 1), (1, 1)):
-        block = hessian[half * row : half * (row + 1), half * column : half * (column + 1)]
-        count = counts[column]
-        # As a matrix with a row for each coordinate the field has a column for each component of each section.
-        turned = ca.reshape(moved[column], count, half) @ block.T
-        fields.append(ca.reshape(turned, 3 * count, PANEL))
-    return ca.Function("contact_stiffness", [*arguments, *moved], fields)
+    arguments = _panels()
+    motion = ca.MX.sym("motion", 3 * count, PANEL)
+    blocks = _by_pair(pair_kernels().hessian, arguments)
+    # Below each other for the sections of the second panel, whose motion has its components side by side.
+    mixed = -ca.vertcat(*ca.horzsplit(blocks, 3 * PANEL))
+    by_coordinates = ca.reshape(motion, count, 3 * PANEL) @ mixed
+    entries = ca.reshape(blocks, 9, PANEL**2)
+    return ca.Function("stiffness", [*arguments, motion], [_over_second(entries), _over_first(entries), by_coordinates])
+
+
+@cache
+def _ball() -> ca.Function:
+    """(positions, data) of a panel ↦ centre of a ball about it, and its radius, 4×1, m."""
+    places, data = ca.SX.sym("places", 3, PANEL), ca.SX.sym("data", DATA, PANEL)
+    centre = ca.sum2(places) / PANEL
+    reach = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2)) + data[1, :]
+    return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach))])
 
 
 def called_near(function: ca.Function) -> ca.Function:
     """(near, arguments…) ↦ results of a function; zeros, without a call, where near is zero."""
     symbols = [ca.MX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    nothing = [ca.MX(function.sparsity_out(i)) * 0 for i in range(function.n_out())]
+    nothing = [ca.MX.zeros(function.sparsity_out(i)) for i in range(function.n_out())]
     far = ca.Function(f"no_{function.name()}", symbols, nothing)
     return ca.Function.if_else(f"near_{function.name()}", function, far)
 
@@ -168,7 +210,7 @@ class SectionsInContact:
     @cached_property
     def balls(self) -> Matrix:
         """Centre and radius of a ball about each panel, 4×panels, m."""
-        return panel_pair().ball.map(self.panels)(self.positions, self.data)
+        return _ball().map(self.panels)(self.positions, self.data)
 
     @cached_property
     def ball(self) -> Matrix:
@@ -205,104 +247,118 @@ class SectionPairs:
     @cached_property
     def energy(self) -> Matrix:
         """Energy, 1×1, J."""
-        (energies,) = self._called(_over_pairs(panel_pair().energy, *self._panels))
+        (energies,) = self._over_pairs(panel_energy())
         return self._share * ca.sum2(energies)
-
-    @cached_property
-    def gradient(self) -> tuple[Matrix, Matrix]:
-        """Derivatives of the energy with the positions of both, 3×S each, N."""
-        first, second = self._called(_over_pairs(panel_pair().gradient, *self._panels))
-        return self._share * self._of_first(first), self._share * self._of_second(second)
 
     @cached_property
     def depth(self) -> Matrix:
         """Depth where it is largest, in widths, 1×1; FAR where nothing touches."""
-        (depths,) = self._called(_over_pairs(panel_pair().depth, *self._panels))
-        return ca.mmax(ca.horzcat(depths, 0)) + FAR
+        (depths,) = self._over_pairs(panel_depth())
+        return ca.mmax(depths) + FAR
+
+    @cached_property
+    def gradient(self) -> tuple[Matrix, Matrix]:
+        """Derivatives of the energy with the positions of both, 3×S each, N."""
+        first, second = self._over_pairs(panel_gradient())
+        return self._share * self._of_first(first), self._share * self._of_second(second)
 
     def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """Changes of the gradients: of the first by the first and by the second, of the second by the second.
+        """Second derivatives of the energy with coordinates: of the first twice, second and first, of the second twice.
 
         Args:
-            first: motion of the sections of the first rod with its coordinates, 3n×S: three components, one row for
+            first: motion of the sections of the first rod with its n coordinates, 3n×S: three components, one row for
                 each coordinate.
-            second: the same of the second.
+            second: the same of the second, 3m×S.
 
         Returns:
-            fields of that form.
+            n×n, m×n and m×m.
         """
-        counts = (first.shape[0] // 3, second.shape[0] // 3)
-        function = _over_pairs(panel_stiffness(*counts), *self._panels, *counts)
-        by_first, mixed, by_second = [self._share * field for field in self._called(function, first, second)]
-        return self._of_first(by_first), self._of_first(mixed), self._of_second(by_second)
-
-    @property
-    def _panels(self) -> tuple[int, int]:
-        return self.first.panels, self.second.panels
+        by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), second)
+        sections = self.first.positions.shape[1]
+        across = self._of_first(mixed, width=3) @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
+        own = _with_coordinates(self._of_first(by_first), first)
+        other = _with_coordinates(self._of_second(by_second), second)
+        return self._share * own, self._share * across, self._share * other
 
     @property
     def _share(self) -> float:
         """Of pairs that appear twice one half counts."""
         return 0.5 if self.itself else 1.0
 
-    def _called(self, function: ca.Function, *moved: Matrix) -> list[Matrix]:
-        """Results of a function of all pairs; it is not called where the rods are apart."""
+    def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
+        """Results of a function of two panels for all pairs, the first running faster; not called where rods are apart."""
+        of_all = _all_pairs(function, self.first.panels, self.second.panels)
         sections = [self.first.positions, self.first.data, self.second.positions, self.second.data]
-        arguments = [*sections, self.law, self.first.balls, self.second.balls, *moved]
+        arguments = [*sections, self.law, *motion, self.first.balls, self.second.balls]
         if self.itself:
-            return list(function.call(arguments))
+            return list(of_all.call(arguments))
         near = _meet(self.first.ball, self.second.ball, self.law[0])
-        return list(called_near(function).call([near, *arguments]))
+        return list(called_near(of_all).call([near, *arguments]))
 
-    def _of_first(self, field: Matrix) -> Matrix:
-        """Sum over the panels of the second of what each pair gives to the first, as many rows × S."""
-        rows = field.shape[0]
-        by_panel = ca.reshape(field, rows * self.first.positions.shape[1], self.second.panels)
-        return ca.reshape(ca.sum2(by_panel), rows, self.first.positions.shape[1])
+    def _of_first(self, field: Matrix, width: int = 1) -> Matrix:
+        """Sum over the panels of the second of what each pair gives to the first, width columns for each section."""
+        rows, columns = field.shape[0], width * self.first.positions.shape[1]
+        return ca.reshape(ca.sum2(ca.reshape(field, rows * columns, self.second.panels)), rows, columns)
 
     def _of_second(self, field: Matrix) -> Matrix:
-        """The same for the second."""
-        rows = field.shape[0]
-        by_panel = ca.reshape(field, rows * self.first.positions.shape[1], self.second.panels)
+        """Sum over the panels of the first of what each pair gives to the second, one column for each section."""
+        rows, columns = field.shape[0], self.first.positions.shape[1]
+        by_panel = ca.reshape(field, rows * columns, self.second.panels)
         return ca.reshape(ca.repsum(by_panel, self.first.panels, 1), rows, self.second.positions.shape[1])
 
 
 @cache
-def _over_pairs(function: ca.Function, first: int, second: int, *counts: int) -> ca.Function:
-    """A function of two panels over all pairs of so many panels, the first running faster.
+def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
+    """A function of two panels for all pairs of so many panels, the first running faster.
 
     Args:
-        function: of two panels, the law, and of motions of both where there are any.
+        function: of two panels, the law, and a motion of the second where there is one.
         first: panels of the first rod.
         second: panels of the second.
-        counts: coordinates that move them.
 
     Returns:
-        (positions, data, positions, data, law, balls, balls, motions…) ↦ its results side by side.
+        the arguments for all panels, and their balls ↦ its results side by side.
     """
-    sizes = (PANEL * first, PANEL * second)
-    symbols = [
-        ca.MX.sym("first", 3, sizes[0]),
-        ca.MX.sym("first_data", DATA, sizes[0]),
-        ca.MX.sym("second", 3, sizes[1]),
-        ca.MX.sym("second_data", DATA, sizes[1]),
-        ca.MX.sym("law", LAW),
-        ca.MX.sym("first_balls", 4, first),
-        ca.MX.sym("second_balls", 4, second),
-    ]
-    moved = [ca.MX.sym(name, 3 * count, size) for name, count, size in zip(("moved", "by"), counts, sizes, strict=False)]
+    counts = {"first": first, "second": second, "motion": second, "law": 1}
+    symbols = []
+    arguments = []
+    for i in range(function.n_in()):
+        rows, columns = function.size_in(i)
+        owner = ARGUMENTS[min(i, len(ARGUMENTS) - 1)]
+        symbol = ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
+        symbols.append(symbol)
+        arguments.append(_arranged(symbol, owner, first, second))
+    balls = [ca.MX.sym(name, 4, counts[name]) for name in ("first", "second")]
+    first_balls, second_balls = (_arranged(ball, name, first, second) for ball, name in zip(balls, counts, strict=False))
+    near = _meet(first_balls, second_balls, symbols[LAW_ARGUMENT][0])
+    results = called_near(function).map(first * second).call([near, *arguments])
+    return ca.Function(f"{function.name()}_of_pairs", [*symbols, *balls], results)
 
-    def alongside(field: Matrix) -> Matrix:
+
+ARGUMENTS = ("first", "first", "second", "second", "law", "motion")
+"""What the arguments of a function of two panels belong to."""
+
+LAW_ARGUMENT = ARGUMENTS.index("law")
+"""Place of the law among them."""
+
+
+def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
+    """What belongs to the panels of one rod, or to none, for all pairs of panels, the first running faster."""
+    if owner == "first":
         return ca.repmat(field, 1, second)
+    if owner == "law":
+        return ca.repmat(field, 1, first * second)
+    rows, columns = field.shape
+    panels = ca.reshape(field, rows * columns // second, second)
+    return ca.reshape(ca.repmat(panels, first, 1), rows, columns * first)
 
-    def repeated(field: Matrix) -> Matrix:
-        rows, columns = field.shape
-        panels = ca.reshape(field, rows * columns // second, second)
-        return ca.reshape(ca.repmat(panels, first, 1), rows, columns * first)
 
-    near = _meet(alongside(symbols[5]), repeated(symbols[6]), symbols[4][0])
-    sections = [alongside(symbols[0]), alongside(symbols[1]), repeated(symbols[2]), repeated(symbols[3])]
-    arguments = [near, *sections, ca.repmat(symbols[4], 1, first * second)]
-    arguments += [arrange(field) for arrange, field in zip((alongside, repeated), moved, strict=False)]
-    results = called_near(function).map(first * second).call(arguments)
-    return ca.Function(f"{function.name()}_of_pairs", [*symbols, *moved], results)
+def _with_coordinates(hessian: Matrix, motion: Matrix) -> Matrix:
+    """Second derivative with n coordinates, n×n, from those with each section, 9×S, and their motion, 3n×S."""
+    components = ca.vertsplit(motion, motion.shape[0] // 3)
+    entries = ca.vertsplit(hessian)
+    rows = []
+    for i in range(3):
+        terms = [components[j] @ ca.diag(entries[3 * i + j]) for j in range(3)]
+        rows.append(components[i] @ (terms[0] + terms[1] + terms[2]).T)
+    return rows[0] + rows[1] + rows[2]

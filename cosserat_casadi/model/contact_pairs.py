@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import ceil, inf, sqrt
@@ -14,8 +14,8 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.penetration import section_radius
-from cosserat_casadi.loads.rod_contact import PANEL
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.rod_contact_record import RodContact, are_tied
 
@@ -25,7 +25,7 @@ WIDTH_OF_RADIUS = 0.2
 SURFACE_STIFFNESS = 30.0
 """Stiffness relative to EI/(L² width²) of the stiffer rod, of a contact that is given none."""
 
-SPACING = 0.5
+SPACING = 0.25
 """Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
 
 FROM_ITSELF = 2.0
@@ -121,9 +121,7 @@ def contact_pairs(
     """
     for contact, pair in named_pairs(scene):
         radii = [section_radius(nominal[name].properties, LOOKED_AT) for name in pair]
-        width = contact.width
-        if width is None:
-            width = WIDTH_OF_RADIUS * min(float(own.min()) for own in radii)
+        width = _width(contact, radii)
         stiffness = contact.stiffness
         if stiffness is None:
             bending = max(nominal[name].energy_unit / nominal[name].properties.length for name in pair)
@@ -145,6 +143,23 @@ def contact_pairs(
         )
 
 
+def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:
+    """Widths of the contacts of a rod, m."""
+    records = {record.name: record for record in scene.rods}
+    pairs = [(contact, pair) for contact, pair in named_pairs(scene) if rod in pair]
+    return [
+        _width(contact, [section_radius(rod_properties(records[name]), LOOKED_AT) for name in pair])
+        for contact, pair in pairs
+    ]
+
+
+def _width(contact: RodContact, radii: Sequence[FloatArray]) -> float:
+    """Width of a contact of rods with these radii, m."""
+    if contact.width is not None:
+        return contact.width
+    return WIDTH_OF_RADIUS * min(float(own.min()) for own in radii)
+
+
 def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
     """Sections of a rod that are no farther apart, m; on another grid they stand elsewhere, so that their error shows."""
     wanted = rod.properties.length / spacing
@@ -152,7 +167,7 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
         problem = f"the contact {name!r} takes {wanted:.0f} sections of {rod.properties.name!r}, above {MOST_SECTIONS}"
         raise SceneError(Problem("rod_contacts", problem, "give it more width, or leave thin and long rods out"))
     intervals = len(rod.grid.left_ends)
-    return PANEL * ceil((wanted + intervals) / PANEL)
+    return ceil(wanted + intervals)
 
 
 def thinnest_pair(pairs: tuple[ContactPair, ...], scene: scenes.Scene) -> float:

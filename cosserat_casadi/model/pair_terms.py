@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import ceil
 from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.obstacle_load import section_radii
-from cosserat_casadi.loads.rod_contact import SectionPairs, SectionsInContact
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
 from cosserat_casadi.maths.numbers import as_matrix, known, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair
@@ -35,7 +36,8 @@ class ContactSide:
     Attributes:
         system: the scene.
         rod: name of the rod.
-        count: number of sections S.
+        count: number of sections that stand for a part of the rod. Sections at the tip that stand for none fill the
+            last panel; with them there are S.
     """
 
     system: System
@@ -46,6 +48,11 @@ class ContactSide:
     def discrete(self) -> DiscreteRod:
         """The constant matrices of the rod."""
         return self.system.discrete.rods[self.rod]
+
+    @property
+    def columns(self) -> int:
+        """Number of sections S."""
+        return PANEL * ceil(self.count / PANEL)
 
     @cached_property
     def interpolation(self) -> FloatArray:
@@ -61,15 +68,16 @@ class ContactSide:
         X = rod.grid.on_rod(self._coordinates, elements)
         rates = rod.grid.rates_in(elements)
         ratio = self.system.shapes[self.rod].ratio
-        lengths = as_matrix(np.full(self.count, rod.properties.length / self.count))
+        lengths = as_matrix(np.where(np.arange(self.columns) < self.count, rod.properties.length / self.count, 0.0))
         if rates is not None:
             lengths = lengths * as_matrix(rates)
         if ratio is not None:
             lengths = ratio * lengths
-        radii = as_matrix(repeated(section_radii(rod.properties, X), self.count))
+        radii = as_matrix(repeated(section_radii(rod.properties, X), self.columns))
         along = rod.properties.length * as_matrix(X)
         data = ca.horzcat(lengths, radii, along).T
-        return SectionsInContact(self._origin + self._arms, data)
+        origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.columns)
+        return SectionsInContact(origin + self._arms, data)
 
     def wrench(self, gradient: Matrix, factor: Matrix | float) -> LineWrench:
         """Forces on the nodes that do the work of those on the sections, as a force per length, base axes.
@@ -101,27 +109,22 @@ class ContactSide:
         if self.base_frame is None:
             return ca.vertcat(*components)
         x, y, z = ca.vertsplit(self._arms)
-        none = ca.DM(1, self.count)
+        none = ca.DM(1, self.columns)
         # δθ × arm, one row for each component of δθ, and δr.
         turned = [(none, z, -y), (-z, none, x), (y, -x, none)]
-        shifted = [[ca.DM.ones(1, self.count) if i == j else none for j in range(3)] for i in range(3)]
+        shifted = [[ca.DM.ones(1, self.columns) if i == j else none for j in range(3)] for i in range(3)]
         parts = zip(components, turned, shifted, strict=True)
         return ca.vertcat(*[ca.vertcat(own, *turn, *shift) for own, turn, shift in parts])
 
     @property
     def _coordinates(self) -> FloatArray:
         """Places of the sections in the coordinate of the grid, shape (S,)."""
-        return (np.arange(self.count) + 0.5) / self.count
+        return np.minimum((np.arange(self.columns) + 0.5) / self.count, 1.0)
 
     @property
     def _rotation(self) -> Matrix:
         """world_R_base, 3×3."""
         return self.system.base(self.rod).rotation
-
-    @property
-    def _origin(self) -> Matrix:
-        """Position of the base at every section, 3×S, m."""
-        return ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.count)
 
     @cached_property
     def _arms(self) -> Matrix:
@@ -173,18 +176,15 @@ class PairTerms:
     def stiffness(self) -> dict[tuple[str, str], Matrix]:
         """Gᵀ H G by rods, in the coordinates of each side, J."""
         motions = [side.motion for side in self.sides]
-        by_first, mixed, by_second = self.section_pairs.stiffness(motions[0], motions[-1])
+        own, across, other = self.section_pairs.stiffness(motions[0], motions[-1])
         first, second = self.pair.rods
-        own = _product(motions[0], by_first)
-        coupled = _product(motions[0], mixed)
-        other = _product(motions[-1], by_second)
         factor = self._factor
         if self.pair.itself:
-            return {(first, first): factor * (own + coupled + coupled.T + other)}
+            return {(first, first): factor * (own + across + across.T + other)}
         return {
             (first, first): factor * own,
-            (first, second): factor * coupled,
-            (second, first): factor * coupled.T,
+            (first, second): factor * across.T,
+            (second, first): factor * across,
             (second, second): factor * other,
         }
 
@@ -194,9 +194,3 @@ class PairTerms:
         load_factor = self.system.arguments.load_factor
         return 1.0 if load_factor is None else load_factor
 
-
-def _product(motion: Matrix, field: Matrix) -> Matrix:
-    """Sum over the sections and the components of a motion, 3n×S, times a field, 3m×S: n×m."""
-    components = zip(ca.vertsplit(motion, motion.shape[0] // 3), ca.vertsplit(field, field.shape[0] // 3), strict=True)
-    parts = [own @ other.T for own, other in components]
-    return parts[0] + parts[1] + parts[2]
