@@ -22,13 +22,17 @@ FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
-def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
+def continuation_limits(model: SystemFunctions, *, watched: bool = False) -> ContinuationSettings:
     """Limits of a continuation: in no step does a rod bend so much that it may pass through a smooth obstacle.
 
     A step as long as one radian of bending moves a section by half the length of the rod at most.
+
+    Args:
+        model: what to solve.
+        watched: whether steps that would take a rod through a rod are refused.
     """
     limits = ContinuationSettings()
-    pairs = model.discrete.pairs if isinstance(model, Model) else ()
+    pairs = model.discrete.pairs if isinstance(model, Model) and not watched else ()
     through = 2 * min(thinnest(model.scene), thinnest_pair(pairs, model.scene))
     return replace(limits, longest=min(limits.longest, through))
 

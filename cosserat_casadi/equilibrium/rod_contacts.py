@@ -29,11 +29,11 @@ def section_positions(
         x: unknowns, shape (model.size,).
         inputs: stacked inputs, shape (model.inputs.size,).
     """
-    first, second = (
-        model.at().discrete.rods[rod].grid.interpolation_matrix(X) @ model.fields[rod](x, inputs)[0].full().T
-        for rod, X in zip(pair.rods, pair.lookup, strict=True)
-    )
-    return first, second
+    positions = model.contact_sections(x, inputs).full().T
+    counts = [count for other in model.discrete.pairs for count in other.sections]
+    parts = np.split(positions, np.cumsum(counts)[:-1])
+    number = 2 * model.discrete.pairs.index(pair)
+    return parts[number], parts[number + 1]
 
 
 def contacts_of_rods(solution: Solution) -> Iterator[Contact]:
@@ -56,26 +56,19 @@ def _contacts(solution: Solution, pair: ContactPair) -> Iterator[Contact]:
     forces = np.sum(slopes[..., None] * apart, axis=1)
     for part in runs(pressed):
         rows = np.arange(part.start, part.stop)
-        # A rod that touches itself is pressed at either end of each pair: it is told from the end nearer the base.
         row, column = np.unravel_index(np.argmax(inside[rows]), inside[rows].shape)
         place = (float(pair.lookup[0][rows[row]]), float(pair.lookup[1][column]))
-        if pair.itself and place[0] > place[1]:
-            continue
         at, gap = _nearest(solution, pair, place)
         half = 0.5 / pair.sections[0]
         start, end = pair.lookup[0][rows[0]] - half, pair.lookup[0][rows[-1]] + half
         force = forces[rows].sum(axis=0)
         owner, other = pair.rods
-        yield Contact(
-            other, owner, float(start), float(end), force, (), "smooth", pair.width, gap, on_rods=at
-        )
+        yield Contact(other, owner, float(start), float(end), force, (), "smooth", pair.width, gap, on_rods=at)
 
 
 def _nearest(solution: Solution, pair: ContactPair, place: tuple[float, float]) -> tuple[tuple[float, float], float]:
     """Abscissae about a place at which two rods are nearest, between their sections too, and the gap there, m."""
-    around = [
-        np.clip(at + LOOKED_AT_BETWEEN / count, 0.0, 1.0) for at, count in zip(place, pair.sections, strict=True)
-    ]
+    around = [np.clip(at + LOOKED_AT_BETWEEN / count, 0.0, 1.0) for at, count in zip(place, pair.sections, strict=True)]
     first, second = (solution.pose(X, rod).position for X, rod in zip(around, pair.rods, strict=True))
     gaps = np.linalg.norm(first[:, None] - second, axis=2) - _touching(solution, pair, *around)
     row, column = np.unravel_index(np.argmin(gaps), gaps.shape)

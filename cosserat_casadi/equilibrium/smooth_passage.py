@@ -20,6 +20,10 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import ContactPair
 
 
+EVERY = 2
+"""Sections of rods that touch rods of which one is looked at."""
+
+
 @dataclass(frozen=True)
 class SmoothBarriers:
     """The smooth bars and balls of a scene."""
@@ -62,12 +66,18 @@ class SmoothBarriers:
         """Whether the axes of two rods come nearer than half their thickness on the way."""
         starts = section_positions(self.model, pair, before, inputs[0])
         ends = section_positions(self.model, pair, after, inputs[1])
-        apart = starts[0][:, None] - starts[1]
-        way = ends[0][:, None] - ends[1] - apart
-        squares = np.sum(way**2, axis=2)
-        share = np.clip(-np.sum(apart * way, axis=2) / np.where(squares > 0, squares, 1.0), 0.0, 1.0)
-        nearest = np.sum((apart + share[..., None] * way) ** 2, axis=2)
-        return bool(np.any(nearest[pair.meets] < (pair.thickness / 2) ** 2))
+        moved = [end - start for start, end in zip(starts, ends, strict=True)]
+        # Every other section: they are nearer each other than half the thickness.
+        meets = pair.meets[::EVERY, ::EVERY]
+        apart, way = ((own[0][::EVERY, None] - own[1][None, ::EVERY])[meets] for own in (starts, moved))
+        allowed = pair.thickness / 2
+        squares = np.einsum("ki,ki->k", apart, apart)
+        near = squares < (allowed + np.sqrt(np.max(np.einsum("ki,ki->k", way, way), initial=0.0))) ** 2
+        apart, way = apart[near], way[near]
+        lengths = np.einsum("ki,ki->k", way, way)
+        share = -np.einsum("ki,ki->k", apart, way) / np.where(lengths > 0.0, lengths, 1.0)
+        nearest = apart + np.clip(share, 0.0, 1.0)[:, None] * way
+        return bool(np.any(np.linalg.norm(nearest, axis=1) < allowed))
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

@@ -134,7 +134,7 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     model = model.at(parameters)
-    limits = settings or continuation_limits(model)
+    limits = settings or continuation_limits(model, watched=True)
     if model.scene.touches_exactly:
         values = _values_in_contact(model, values)
         solution = _in_contact(model, values, start, method, limits, progress)

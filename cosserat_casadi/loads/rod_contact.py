@@ -38,7 +38,10 @@ DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
 
 LAW = 3
-"""Numbers of a law: width, m, stiffness, N/m², and the distance along one rod below which sections do not meet, m."""
+"""Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod from the first at least, m.
+
+Of two rods every pair counts; of one and itself each pair once.
+"""
 
 FAR = -1.0
 """Depth, in widths, of sections that do not meet."""
@@ -83,7 +86,7 @@ def pair_kernels() -> PairKernels:
     (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own) for own in data)
     touching = radius + other_radius
     square = ca.sumsqr(places[0] - places[1])
-    meets = ca.fabs(along - other_along) >= nearest
+    meets = other_along - along >= nearest
     inside = ca.fmax((touching + width) ** 2 - square, 0.0)
     energy = meets * length * other_length * coefficient(width, stiffness, touching) * inside**3
     depth = ca.fmax(meets * ((touching - ca.sqrt(square)) / width - FAR), 0.0)
@@ -94,16 +97,17 @@ def pair_kernels() -> PairKernels:
         return ca.Function(f"contact_{name}", arguments, ca.cse([ca.densify(result)]))
 
     return PairKernels(
-        function("energy", energy), function("depth", depth), function("gradient", gradient), function("hessian", hessian)
+        function("energy", energy),
+        function("depth", depth),
+        function("gradient", gradient),
+        function("hessian", hessian),
     )
 
 
 def _panels() -> list[ca.MX]:
     """Symbols of the positions and the data of two panels, and of the law."""
     sizes = {"positions": 3, "data": DATA}
-    symbols = [
-        ca.MX.sym(f"{name}_{kind}", rows, PANEL) for name in ("first", "second") for kind, rows in sizes.items()
-    ]
+    symbols = [ca.MX.sym(f"{name}_{kind}", rows, PANEL) for name in ("first", "second") for kind, rows in sizes.items()]
     return [*symbols, ca.MX.sym("law", LAW)]
 
 
@@ -174,11 +178,11 @@ def panel_stiffness(count: int) -> ca.Function:
 
 @cache
 def _ball() -> ca.Function:
-    """(positions, data) of a panel ↦ centre of a ball about it, and its radius, 4×1, m."""
+    """(positions, data) of a panel ↦ centre of a ball about it, its radius, and its ends along the rod, 6×1, m."""
     places, data = ca.SX.sym("places", 3, PANEL), ca.SX.sym("data", DATA, PANEL)
     centre = ca.sum2(places) / PANEL
     reach = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2)) + data[1, :]
-    return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach))])
+    return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach), data[2, 0], data[2, -1])])
 
 
 def called_near(function: ca.Function) -> ca.Function:
@@ -209,20 +213,21 @@ class SectionsInContact:
 
     @cached_property
     def balls(self) -> Matrix:
-        """Centre and radius of a ball about each panel, 4×panels, m."""
+        """Centre and radius of a ball about each panel, and its ends along the rod, 6×panels, m."""
         return _ball().map(self.panels)(self.positions, self.data)
 
     @cached_property
     def ball(self) -> Matrix:
-        """Centre and radius of a ball about all of them, 4×1, m."""
+        """The same of all of them, 6×1, m."""
         centre = ca.sum2(self.balls[:3, :]) / self.panels
         reach = ca.sqrt(ca.sum1((self.balls[:3, :] - ca.repmat(centre, 1, self.panels)) ** 2)) + self.balls[3, :]
-        return ca.vertcat(centre, ca.mmax(reach))
+        return ca.vertcat(centre, ca.mmax(reach), self.balls[4, 0], self.balls[5, -1])
 
 
-def _meet(first: Matrix, second: Matrix, width: Matrix) -> Matrix:
-    """Whether balls, 4×k each, are nearer each other than a width, 1×k."""
-    return ca.sum1((first[:3, :] - second[:3, :]) ** 2) < (first[3, :] + second[3, :] + width) ** 2
+def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
+    """Whether sections in balls, 6×k each, may push each other, 1×k."""
+    near = ca.sum1((first[:3, :] - second[:3, :]) ** 2) < (first[3, :] + second[3, :] + law[0]) ** 2
+    return near * (second[5, :] - first[4, :] >= law[2])
 
 
 @dataclass(frozen=True)
@@ -231,7 +236,7 @@ class SectionPairs:
 
     Attributes:
         first: sections.
-        second: those of the other rod; the same where a rod touches itself, and every pair then appears twice.
+        second: those of the other rod; the same where a rod touches itself.
         law: LAW×1.
     """
 
@@ -239,16 +244,11 @@ class SectionPairs:
     second: SectionsInContact
     law: Matrix
 
-    @property
-    def itself(self) -> bool:
-        """Whether a rod touches itself."""
-        return self.first is self.second
-
     @cached_property
     def energy(self) -> Matrix:
         """Energy, 1×1, J."""
         (energies,) = self._over_pairs(panel_energy())
-        return self._share * ca.sum2(energies)
+        return ca.sum2(energies)
 
     @cached_property
     def depth(self) -> Matrix:
@@ -260,7 +260,7 @@ class SectionPairs:
     def gradient(self) -> tuple[Matrix, Matrix]:
         """Derivatives of the energy with the positions of both, 3×S each, N."""
         first, second = self._over_pairs(panel_gradient())
-        return self._share * self._of_first(first), self._share * self._of_second(second)
+        return self._of_first(first), self._of_second(second)
 
     def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """Second derivatives of the energy with coordinates: of the first twice, second and first, of the second twice.
@@ -278,21 +278,14 @@ class SectionPairs:
         across = self._of_first(mixed, width=3) @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
         own = _with_coordinates(self._of_first(by_first), first)
         other = _with_coordinates(self._of_second(by_second), second)
-        return self._share * own, self._share * across, self._share * other
-
-    @property
-    def _share(self) -> float:
-        """Of pairs that appear twice one half counts."""
-        return 0.5 if self.itself else 1.0
+        return own, across, other
 
     def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
         """Results of a function of two panels for all pairs, the first running faster; not called where rods are apart."""
         of_all = _all_pairs(function, self.first.panels, self.second.panels)
         sections = [self.first.positions, self.first.data, self.second.positions, self.second.data]
         arguments = [*sections, self.law, *motion, self.first.balls, self.second.balls]
-        if self.itself:
-            return list(of_all.call(arguments))
-        near = _meet(self.first.ball, self.second.ball, self.law[0])
+        near = _meet(self.first.ball, self.second.ball, self.law)
         return list(called_near(of_all).call([near, *arguments]))
 
     def _of_first(self, field: Matrix, width: int = 1) -> Matrix:
@@ -328,9 +321,11 @@ def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
         symbol = ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
         symbols.append(symbol)
         arguments.append(_arranged(symbol, owner, first, second))
-    balls = [ca.MX.sym(name, 4, counts[name]) for name in ("first", "second")]
-    first_balls, second_balls = (_arranged(ball, name, first, second) for ball, name in zip(balls, counts, strict=False))
-    near = _meet(first_balls, second_balls, symbols[LAW_ARGUMENT][0])
+    balls = [ca.MX.sym(name, 6, counts[name]) for name in ("first", "second")]
+    first_balls, second_balls = (
+        _arranged(ball, name, first, second) for ball, name in zip(balls, counts, strict=False)
+    )
+    near = _meet(first_balls, second_balls, symbols[LAW_ARGUMENT])
     results = called_near(function).map(first * second).call([near, *arguments])
     return ca.Function(f"{function.name()}_of_pairs", [*symbols, *balls], results)
 

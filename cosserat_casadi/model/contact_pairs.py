@@ -34,6 +34,9 @@ FROM_ITSELF = 2.0
 A rod that is bent to a circle of half its diameter and width, as tight as it may be, keeps sections as near as this apart.
 """
 
+ANYWHERE = 1e100
+"""A distance along a rod, m, that no two sections have."""
+
 MOST_SECTIONS = 2000
 """Sections of a rod beyond which a contact is refused."""
 
@@ -50,7 +53,7 @@ class ContactPair:
         rods: their names; the same twice of a rod and itself.
         width: gap from which on they push, m.
         stiffness: rate of the force per length with the gap where parallel rods touch, N/m².
-        apart: distance along a rod from which on sections push, m; below zero for two rods.
+        apart: how far the second section is along the rod from the first at least, m; far below zero for two rods.
         sections: number of sections of each rod.
         thickness: distance of the centres of sections that touch, where it is least, m.
         length: of the first rod, m.
@@ -80,7 +83,7 @@ class ContactPair:
     def meets(self) -> npt.NDArray[np.bool_]:
         """Which sections may touch each other, shape (sections of the first, sections of the second)."""
         first, second = self.lookup
-        return np.abs(first[:, None] - second) * self.length >= self.apart
+        return (second - first[:, None]) * self.length >= self.apart
 
     @property
     def law(self) -> ca.DM:
@@ -136,7 +139,7 @@ def contact_pairs(
             rods=pair,
             width=width,
             stiffness=stiffness,
-            apart=FROM_ITSELF * (thickest + width) if itself else -1.0,
+            apart=FROM_ITSELF * (thickest + width) if itself else -ANYWHERE,
             sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
             thickness=thinnest,
             length=nominal[pair[0]].properties.length,

@@ -50,6 +50,11 @@ class ContactSide:
         return self.system.discrete.rods[self.rod]
 
     @property
+    def at_sections(self) -> Matrix:
+        """Positions of the sections that stand for a part of the rod, world axes, 3×count, m."""
+        return self.sections.positions[:, : self.count]
+
+    @property
     def columns(self) -> int:
         """Number of sections S."""
         return PANEL * ceil(self.count / PANEL)
@@ -193,4 +198,3 @@ class PairTerms:
         """What the push is multiplied by on the way from the unloaded scene: it grows as the loads do."""
         load_factor = self.system.arguments.load_factor
         return 1.0 if load_factor is None else load_factor
-
