@@ -13,12 +13,11 @@ from math import isfinite
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
+from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import ContactPair
-
 
 EVERY = 2
 """Sections of rods that touch rods of which one is looked at."""

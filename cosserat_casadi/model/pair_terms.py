@@ -18,7 +18,7 @@ import numpy as np
 
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
-from cosserat_casadi.maths.numbers import as_matrix, known, repeated
+from cosserat_casadi.maths.numbers import as_matrix, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair
 from cosserat_casadi.model.floating_frames import FrameName

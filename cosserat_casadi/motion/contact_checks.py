@@ -61,7 +61,7 @@ def _too_thin(model: Model) -> Iterator[Problem]:
 
 def too_deep(history: History, duration: float) -> str:
     """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
-    if not any(obstacle.is_smooth for obstacle in history.model.scene.obstacles):
+    if history.model.contact_depth is None:
         return ""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
@@ -70,8 +70,8 @@ def too_deep(history: History, duration: float) -> str:
     if depths[worst] <= 1.0:
         return ""
     return (
-        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle, too deep to be "
-        "contact: give the obstacle more width or stiffness."
+        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep to "
+        "be contact: give the contact more width or stiffness."
     )
 
 

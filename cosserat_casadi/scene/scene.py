@@ -215,6 +215,11 @@ inputs = ["push.force", "cable.tension"]
         return {joint.rod for joint in self.joints if joint.holds_base}
 
     @property
+    def has_contact(self) -> bool:
+        """Whether rods may touch anything: obstacles, or rods."""
+        return bool(self.obstacles or self.rod_contacts)
+
+    @property
     def touches_exactly(self) -> bool:
         """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)
