@@ -52,12 +52,13 @@ class MotionEnergy:
 
     @cached_property
     def elastic(self) -> Matrix:
-        """Elastic energy of the rods, of their branches and of the springs of joints, 1×1, J."""
+        """Elastic energy of the rods, of their branches, of springs of joints, and between rods that push, 1×1, J."""
         branches = [relaxation.energy for relaxation in self.system.relaxations.values()]
         springs = [
             effort.spring_energy(value) for effort, value, _ in self._free_joints if not is_zero(effort.stiffness)
         ]
-        return _sum([self.system.energy(), *branches, *springs])
+        between = [terms.energy for terms in self.system.pairs]
+        return _sum([self.system.energy(), *branches, *springs, *between])
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
