@@ -76,6 +76,8 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         the parts as straight-line code; where one is too long for that, long ones in loops. A function that is not
         known as a program is a single part then.
     """
+    if chooses(function):
+        return _whole(function, f"{name}_0")
     places = places_by_owner(owners)
     programs = _programs(function, places)
     # A scene without inputs has no derivative by them, and no part.

@@ -60,10 +60,11 @@ class ContactSide:
         return PANEL * ceil(self.count / PANEL)
 
     @cached_property
-    def interpolation(self) -> FloatArray:
-        """Matrix from values at the nodes to values at the sections, shape (S, M)."""
+    def interpolation(self) -> ca.DM:
+        """Matrix from values at the nodes to values at the sections, S×M; of each section those of its element."""
         # Sections stay where they are in their elements: none is moved into another.
-        return replace(self.discrete.grid, ends=None).interpolation_matrix(self._coordinates)
+        matrix = replace(self.discrete.grid, ends=None).interpolation_matrix(self._coordinates)
+        return ca.sparsify(ca.DM(matrix))
 
     @cached_property
     def sections(self) -> SectionsInContact:
@@ -91,7 +92,7 @@ class ContactSide:
             gradient: derivative of the energy with the positions, 3×S, N, world axes.
             factor: what it is multiplied by.
         """
-        at_nodes = -factor * gradient @ ca.DM(self.interpolation)
+        at_nodes = -factor * gradient @ self.interpolation
         lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
         return LineWrench(self._rotation.T @ at_nodes / lengths, None, None, follower=False)
 
@@ -107,8 +108,10 @@ class ContactSide:
         The coordinates are the strains of the rod, then the motion [δθ; δr] of its base where that floats.
         """
         tangent = self.system.tangents[self.rod]
-        to_sections = ca.DM(self.interpolation @ self.discrete.grid.integration_matrix).T
-        local = [component.T @ to_sections for component in ca.vertsplit(tangent.tangent, self.discrete.grid.size)]
+        grid = self.discrete.grid
+        integrate = ca.DM(grid.integration_matrix).T
+        moved = [component.T @ integrate for component in ca.vertsplit(tangent.tangent, grid.size)]
+        local = [component @ self.interpolation.T for component in moved]
         rotation = self._rotation
         components = [sum(rotation[i, j] * local[j] for j in range(3)) for i in range(3)]
         if self.base_frame is None:
@@ -134,7 +137,7 @@ class ContactSide:
     @cached_property
     def _arms(self) -> Matrix:
         """Sections from the base, world axes, 3×S, m."""
-        return self._rotation @ self.system.shapes[self.rod].mean_positions(ca.DM(self.interpolation).T)
+        return self._rotation @ self.system.shapes[self.rod].position @ self.interpolation.T
 
 
 @dataclass(frozen=True)
