@@ -1,0 +1,154 @@
+"""Rods that touch rods, and themselves: the law, its derivatives, beams, a closed elastica, motion and C."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, fsolve
+
+from cosserat_casadi import Model, Outcome, build, parse_scene, solve
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.operation_cost import prices_of_effects
+from cosserat_casadi.model.system import Arguments, System
+
+RADIUS = 5e-3
+WIDTH = 2e-3
+TOUCHING = 2 * RADIUS
+STIFFNESS = 1e6
+SECTIONS = 6 * PANEL
+
+
+def pushed(positions: FloatArray, other: FloatArray) -> tuple[float, FloatArray]:
+    """Energy and force on the second of two straight rods of unit length."""
+    along = (np.arange(SECTIONS) + 0.5) / SECTIONS
+    data = ca.DM(np.vstack([np.full(SECTIONS, 0.2 / SECTIONS), np.full(SECTIONS, RADIUS), along]))
+    sections = [SectionsInContact(ca.MX(ca.DM(own)), data) for own in (positions, other)]
+    pairs = SectionPairs(*sections, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    energy, first, second = (ca.evalf(value).full() for value in (pairs.energy, *pairs.gradient))
+    assert_allclose(first.sum(axis=1), -second.sum(axis=1), rtol=0, atol=1e-12)
+    return float(energy[0, 0]), -second.sum(axis=1)
+
+
+def straight(angle: float, gap: float) -> tuple[FloatArray, FloatArray]:
+    """Sections of two rods of 0.2 m whose middles lie above each other."""
+    along = 0.2 * ((np.arange(SECTIONS) + 0.5) / SECTIONS - 0.5)
+    none = 0 * along
+    return np.array([along, none, none]), np.array([along * np.cos(angle), along * np.sin(angle), none + TOUCHING + gap])
+
+
+@pytest.mark.parametrize("gap", [-0.5e-3, 0.0, 0.8e-3])
+@pytest.mark.parametrize("angle", [np.pi / 2, 0.6])
+def test_crossed_rods_press_with_the_force_of_the_page(angle: float, gap: float) -> None:
+    distance = TOUCHING + gap
+    inside = (TOUCHING + WIDTH) ** 2 - distance**2
+    factor = coefficient(WIDTH, STIFFNESS, TOUCHING) / np.sin(angle)
+    energy, force = pushed(*straight(angle, gap))
+    assert_allclose(energy, np.pi / 4 * factor * inside**4, rtol=2e-3, atol=0)
+    assert_allclose(force, [0, 0, 2 * np.pi * factor * distance * inside**3], rtol=2e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("gap", [-0.5e-3, 0.0, 0.8e-3])
+def test_parallel_rods_press_with_the_force_of_the_page(gap: float) -> None:
+    distance = TOUCHING + gap
+    inside = (TOUCHING + WIDTH) ** 2 - distance**2
+    factor = 2 * distance * coefficient(WIDTH, STIFFNESS, TOUCHING)
+    # The second term is of the ends, which feel one half of the other rod.
+    wanted = factor * (16 / 5 * 0.2 * inside**2.5 - inside**3)
+    assert_allclose(pushed(*straight(0.0, gap))[1], [0, 0, wanted], rtol=1e-3, atol=1e-9)
+
+
+def test_parallel_rods_have_the_stiffness_that_was_given() -> None:
+    factor = coefficient(WIDTH, STIFFNESS, TOUCHING)
+
+    def per_length(distance: float) -> float:
+        return 32 / 5 * factor * distance * ((TOUCHING + WIDTH) ** 2 - distance**2) ** 2.5
+
+    step = 1e-7
+    slope = (per_length(TOUCHING - step) - per_length(TOUCHING + step)) / (2 * step)
+    assert_allclose(slope, STIFFNESS, rtol=1e-6, atol=0)
+    square = (TOUCHING + WIDTH) ** 2 - TOUCHING**2
+    wanted = STIFFNESS * TOUCHING * square / (5 * TOUCHING**2 - square)
+    assert_allclose(per_length(TOUCHING), wanted, rtol=1e-12, atol=0)
+
+
+def test_rods_that_are_apart_do_not_touch() -> None:
+    energy, force = pushed(*straight(0.3, WIDTH))
+    assert energy == 0.0
+    assert not np.any(force)
+    # Where axes coincide all is finite.
+    energy, force = pushed(*straight(0.0, -TOUCHING))
+    assert np.isfinite(energy)
+    assert_allclose(force, 0.0, rtol=0, atol=1e-9)
+
+
+CROSSED = """
+schema = 1
+accuracy = {{ modes = 3, nodes = 8 }}
+[[rods]]
+name = "lower"
+length = 0.3
+strain = "kirchhoff"
+material = {{ youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }}
+section = {{ shape = "circle", radius = 5e-3 }}
+base = {{ position = [-0.15, 0, 0], tangent = [1, 0, 0] }}
+[[rods]]
+name = "upper"
+length = 0.3
+strain = "kirchhoff"
+material = {{ youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }}
+section = {{ shape = "circle", radius = 5e-3 }}
+damping = {{ retardation_time = 0.01 }}
+base = {{ position = [0, -0.15, 0.013], tangent = [0, 1, 0] }}
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "upper"
+force = [0, 0, {push}]
+[[rod_contacts]]
+rods = ["lower", "upper"]
+width = 2e-3
+{more}
+"""
+
+
+def crossed(push: float = -1.0, more: str = "", *changes: str) -> Model:
+    """Two crossed cantilevers, the upper one pushed down at its tip."""
+    return build(parse_scene(CROSSED.format(push=push, more=more), list(changes)))
+
+
+def test_crossed_cantilevers_bend_as_beams_do() -> None:
+    push, length = 0.4, 0.3
+    model = crossed(-push)
+    solution = solve(model)
+    assert solution.converged
+    assert solution.stable
+    (contact,) = solution.contacts
+    (pair,) = model.discrete.pairs
+    stiffness = 2e9 * np.pi / 4 * RADIUS**4
+    factor = coefficient(WIDTH, pair.stiffness, TOUCHING)
+
+    def distance(force: float) -> float:
+        """Of the axes, where the middles of both are bent by the contact, and that of the upper by the push too."""
+        by_push = push * 5 * length**3 / 48
+        return 0.013 - (by_push - 2 * force * length**3 / 24) / stiffness
+
+    def excess(force: float) -> float:
+        inside = max((TOUCHING + WIDTH) ** 2 - distance(force) ** 2, 0.0)
+        return 2 * np.pi * factor * distance(force) * inside**3 - force
+
+    force = brentq(excess, 0.0, 2 * push)
+    assert contact.owner == "lower"
+    assert contact.on_rods is not None
+    assert contact.gap is not None
+    assert_allclose(contact.force, [0, 0, -force], rtol=5e-3, atol=0.02 * force)
+    assert_allclose(contact.on_rods, 0.5, rtol=0, atol=2e-3)
+    assert_allclose(contact.gap, distance(force) - TOUCHING, rtol=0, atol=0.02 * WIDTH)
+    # The clamps bear the push, and nothing of the contact.
+    borne = sum(solution.base_wrench(rod).force for rod in ("lower", "upper"))
+    assert_allclose(borne, [0, 0, push], rtol=0, atol=1e-9)
