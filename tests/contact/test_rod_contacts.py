@@ -152,3 +152,89 @@ def test_crossed_cantilevers_bend_as_beams_do() -> None:
     # The clamps bear the push, and nothing of the contact.
     borne = sum(solution.base_wrench(rod).force for rod in ("lower", "upper"))
     assert_allclose(borne, [0, 0, push], rtol=0, atol=1e-9)
+
+
+CARRIED = """
+[[rods]]
+name = "post"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 5e-3 }
+base = { position = [0.0, -0.15, -0.187], tangent = [0, 0, 1] }
+"""
+
+ON_POST = 'upper.base={ rod = "post", quaternion = [0.7071067811865476, -0.7071067811865476, 0, 0] }'
+
+
+def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> None:
+    model = crossed(-2.0, CARRIED, ON_POST, "accuracy.modes=1", "accuracy.nodes=5")
+    solution = solve(model, estimate_error=False)
+    assert solution.contacts
+    x = solution.x + 1e-5 * np.random.default_rng(0).normal(size=model.size)
+    jacobian = model.jacobian(x, solution.inputs)[0].full()
+    step = 1e-7
+    differences = [
+        (model.residual(x + step * e, solution.inputs) - model.residual(x - step * e, solution.inputs)).full()[:, 0]
+        for e in np.eye(model.size)
+    ]
+    wanted = np.column_stack(differences) / (2 * step)
+    assert_allclose(jacobian, wanted, rtol=0, atol=1e-7 * np.abs(wanted).max())
+    (terms,) = System(model.discrete, Arguments(ca.MX(ca.DM(x)), ca.DM(solution.inputs))).pairs
+    gradients = [ca.evalf(gradient).full().T for gradient in terms.section_pairs.gradient]
+    places = [ca.evalf(side.sections.positions).full().T for side in terms.sides]
+    size = np.abs(gradients[0]).sum()
+    assert size > 1.0
+    assert_allclose(gradients[0].sum(axis=0) + gradients[1].sum(axis=0), 0.0, rtol=0, atol=1e-13 * size)
+    moments = [np.cross(place, gradient).sum(axis=0) for place, gradient in zip(places, gradients, strict=True)]
+    assert_allclose(moments[0] + moments[1], 0.0, rtol=0, atol=1e-13 * size)
+
+
+LOOP = """
+schema = 1
+accuracy = { modes = 4, nodes = 10 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+material = { youngs_modulus = 2.0e7, poisson_ratio = 0.4 }
+section = { shape = "circle", radius = 0.02 }
+base = { position = [0, 0, 0], tangent = [0, 0, 1] }
+[[loads]]
+name = "turn"
+kind = "tip_wrench"
+rod = "rod"
+moment = [0, 17.0, 0]
+[[rod_contacts]]
+rods = ["rod"]
+width = 8e-3
+"""
+
+
+def test_an_elastica_that_closes_on_itself() -> None:
+    solution = solve(build(parse_scene(LOOP)))
+    assert solution.outcome is Outcome.CONVERGED
+    (contact,) = solution.contacts
+    assert contact.on_rods is not None
+    # It ends at its own base, and presses the centre of the end that is clamped.
+    assert_allclose(contact.on_rods, [0.0, 1.0], rtol=0, atol=0.02)
+    stiffness = 2e7 * np.pi / 4 * 0.02**4
+    tip = solution.tip().position[0]
+
+    def shot(unknowns: FloatArray) -> FloatArray:
+        """Of a planar elastica with the moment and a force at the tip: how far its tip is from where it is."""
+        along_x, along_z = unknowns
+
+        def rates(_: float, state: FloatArray) -> list[float]:
+            x, z, angle = state
+            # What is beyond a section turns it: the moment at the tip and the force on its arm.
+            bending = 17.0 + (tip[2] - z) * along_x - (tip[0] - x) * along_z
+            return [np.sin(angle), np.cos(angle), bending / stiffness]
+
+        end = solve_ivp(rates, (0.0, 1.0), [0.0, 0.0, 0.0], rtol=1e-10, atol=1e-12).y[:, -1]
+        return end[:2] - tip[[0, 2]]
+
+    force = fsolve(shot, [0.0, 0.0], xtol=1e-12)
+    assert np.hypot(*force) > 1.0
+    assert_allclose(contact.force[[0, 2]], -force, rtol=0, atol=5e-3 * np.hypot(*force))
+    assert_allclose(contact.force[1], 0.0, rtol=0, atol=1e-12)
