@@ -17,6 +17,7 @@ from cosserat_casadi.codegen.numbered import Program, function_of
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
+from cosserat_casadi.maths.calls import chooses
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 

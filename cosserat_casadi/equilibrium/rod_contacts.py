@@ -52,7 +52,7 @@ def _contacts(solution: Solution, pair: ContactPair) -> Iterator[Contact]:
     pressed = inside.max(axis=1) > 0.0
     lengths = [model.lengths[rod] * model.length_ratio(rod, solution.inputs) for rod in pair.rods]
     weights = lengths[0] * lengths[1] / np.prod(pair.sections)
-    slopes = 6 * weights * np.asarray(coefficient(pair.width, pair.stiffness, touching)) * inside**2
+    slopes = 6 * weights * np.vectorize(coefficient)(pair.width, pair.stiffness, touching) * inside**2
     forces = np.sum(slopes[..., None] * apart, axis=1)
     for part in runs(pressed):
         rows = np.arange(part.start, part.stop)

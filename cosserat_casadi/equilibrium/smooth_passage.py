@@ -57,6 +57,10 @@ class SmoothBarriers:
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
+        return self.rods_pass(before, after, inputs)
+
+    def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
+        """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""
         return any(self._pass_each_other(pair, before, after, inputs) for pair in self.model.discrete.pairs)
 
     def _pass_each_other(

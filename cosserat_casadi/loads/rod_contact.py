@@ -4,11 +4,11 @@ Two sections whose centres are d apart, of rods with the radii ρ, σ, and D = �
 
     u = c (R² − d²)₊³,    R = D + w,    c = 5 k / (32 Δ^{3/2} (5 D² − Δ)),    Δ = R² − D²
 
-with the width w and the stiffness k. Only the distance counts: forces are opposite and along the line of the centres, so
-that neither their sum nor their moment remains. Of two straight parallel rods with the gap g = d − D the integral over
-one of them is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the gap w
-on, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, where they touch, and there it grows by k for each metre of gap:
-the regularisation that an obstacle with a width has, too. Rods that cross at the angle α press each other with
+with the width w and the stiffness k. Only the distance counts: forces are opposite and along the line of the centres,
+so that neither a sum nor a moment of them remains. Of two straight parallel rods with the gap g = d − D the integral
+over one of them is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the
+gap w on, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, where they touch, and there it grows by k for each metre of
+gap: the regularisation that an obstacle with a width has, too. Rods that cross at the angle α press each other with
 2π c d (R² − d²)₊³ / sin α.
 
 Everything is a function of squared distances: value, gradient and second derivatives are finite and continuous where
@@ -17,8 +17,8 @@ the third derivative of u is bounded: half as far apart, the ripple along a rod 
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of
-both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for each
-pair of panels.
+both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for
+each pair of panels.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
 
 LAW = 3
-"""Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod from the first at least, m.
+"""Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
 
-Of two rods every pair counts; of one and itself each pair once.
+It is so far at least. Of two rods every pair counts; of one and itself each pair once.
 """
 
 FAR = -1.0
@@ -123,14 +123,16 @@ def _over_second(results: Matrix) -> Matrix:
     """Sum over the sections of the second panel of results of all pairs, side by side for the first."""
     rows, columns = results.shape
     summed = ca.sum2(ca.reshape(results, rows * columns // PANEL, PANEL))
-    return ca.reshape(summed, rows, columns // PANEL)
+    by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
+    return by_section
 
 
 def _over_first(results: Matrix) -> Matrix:
     """Sum over the sections of the first panel, side by side for the second."""
     rows, columns = results.shape
     summed = ca.repsum(ca.reshape(results, rows * columns // PANEL, PANEL), PANEL, 1)
-    return ca.reshape(summed, rows, columns // PANEL)
+    by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
+    return by_section
 
 
 @cache
@@ -163,8 +165,8 @@ def panel_stiffness(count: int) -> ca.Function:
         count: coordinates n of the motion: three components, one row for each coordinate, 3n×PANEL.
 
     Returns:
-        function whose results are the derivatives with each section of the first panel twice, and of the second, 9×PANEL
-        each, and with the coordinates and the positions of the first, n×(3 PANEL).
+        function whose results are the derivatives with each section of the first panel twice, and of the second,
+        9×PANEL each, and with the coordinates and the positions of the first, n×(3 PANEL).
     """
     arguments = _panels()
     motion = ca.MX.sym("motion", 3 * count, PANEL)
@@ -214,20 +216,23 @@ class SectionsInContact:
     @cached_property
     def balls(self) -> Matrix:
         """Centre and radius of a ball about each panel, and its ends along the rod, 6×panels, m."""
-        return _ball().map(self.panels)(self.positions, self.data)
+        balls: Matrix = _ball().map(self.panels)(self.positions, self.data)
+        return balls
 
     @cached_property
     def ball(self) -> Matrix:
         """The same of all of them, 6×1, m."""
         centre = ca.sum2(self.balls[:3, :]) / self.panels
         reach = ca.sqrt(ca.sum1((self.balls[:3, :] - ca.repmat(centre, 1, self.panels)) ** 2)) + self.balls[3, :]
-        return ca.vertcat(centre, ca.mmax(reach), self.balls[4, 0], self.balls[5, -1])
+        ball: Matrix = ca.vertcat(centre, ca.mmax(reach), self.balls[4, 0], self.balls[5, -1])
+        return ball
 
 
 def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
     """Whether sections in balls, 6×k each, may push each other, 1×k."""
     near = ca.sum1((first[:3, :] - second[:3, :]) ** 2) < (first[3, :] + second[3, :] + law[0]) ** 2
-    return near * (second[5, :] - first[4, :] >= law[2])
+    meet: Matrix = near * (second[5, :] - first[4, :] >= law[2])
+    return meet
 
 
 @dataclass(frozen=True)
@@ -281,7 +286,7 @@ class SectionPairs:
         return own, across, other
 
     def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
-        """Results of a function of two panels for all pairs, the first running faster; not called where rods are apart."""
+        """Results of a function of two panels for all pairs, the first running faster; zeros where rods are apart."""
         of_all = _all_pairs(function, self.first.panels, self.second.panels)
         sections = [self.first.positions, self.first.data, self.second.positions, self.second.data]
         arguments = [*sections, self.law, *motion, self.first.balls, self.second.balls]
@@ -291,13 +296,16 @@ class SectionPairs:
     def _of_first(self, field: Matrix, width: int = 1) -> Matrix:
         """Sum over the panels of the second of what each pair gives to the first, width columns for each section."""
         rows, columns = field.shape[0], width * self.first.positions.shape[1]
-        return ca.reshape(ca.sum2(ca.reshape(field, rows * columns, self.second.panels)), rows, columns)
+        by_panel = ca.reshape(field, rows * columns, self.second.panels)
+        summed: Matrix = ca.reshape(ca.sum2(by_panel), rows, columns)
+        return summed
 
     def _of_second(self, field: Matrix) -> Matrix:
         """Sum over the panels of the first of what each pair gives to the second, one column for each section."""
         rows, columns = field.shape[0], self.first.positions.shape[1]
         by_panel = ca.reshape(field, rows * columns, self.second.panels)
-        return ca.reshape(ca.repsum(by_panel, self.first.panels, 1), rows, self.second.positions.shape[1])
+        summed: Matrix = ca.reshape(ca.repsum(by_panel, self.first.panels, 1), rows, self.second.positions.shape[1])
+        return summed
 
 
 @cache

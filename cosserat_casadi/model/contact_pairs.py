@@ -1,4 +1,4 @@
-"""Pairs of rods that may not enter each other, with the law by which they push and the sections that it is summed over."""
+"""Pairs of rods that may not enter each other: the law by which they push, and the sections that it is summed over."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import ceil, inf, sqrt
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -31,7 +32,7 @@ SPACING = 0.25
 FROM_ITSELF = 2.0
 """Distance along a rod, relative to its diameter and the width, below which its sections do not touch.
 
-A rod that is bent to a circle of half its diameter and width, as tight as it may be, keeps sections as near as this apart.
+Bent to a circle of more than 0.53 times diameter and width, a rod keeps such sections apart by more than these.
 """
 
 ANYWHERE = 1e100
@@ -92,8 +93,8 @@ class ContactPair:
 
 
 def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
-    """The contacts of a scene with the rods of each pair; a pair that several name belongs to the first that names it."""
-    ties = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
+    """The contacts of a scene with the rods of each pair; a pair that several name belongs to the first of these."""
+    ties: list[tuple[Any, Any]] = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
     ties += [(joint.rod, ("body", joint.body)) for joint in scene.joints if joint.body is not None]
     taken = set()
     # A table that names its rods goes before one that stands for all.
@@ -133,7 +134,7 @@ def contact_pairs(
         thickest = float(radii[0].max() + radii[1].max())
         itself = pair[0] == pair[1]
         spacing = SPACING * sqrt((thinnest + width) ** 2 - thinnest**2)
-        name = contact.name or (f"{pair[0]} on itself" if itself else f"{pair[0]} on {pair[1]}")
+        name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
         yield ContactPair(
             name=name,
             rods=pair,
@@ -164,7 +165,7 @@ def _width(contact: RodContact, radii: Sequence[FloatArray]) -> float:
 
 
 def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
-    """Sections of a rod that are no farther apart, m; on another grid they stand elsewhere, so that their error shows."""
+    """Number of sections so near each other; on another grid they stand elsewhere, so that their error shows."""
     wanted = rod.properties.length / spacing
     if wanted > MOST_SECTIONS:
         problem = f"the contact {name!r} takes {wanted:.0f} sections of {rod.properties.name!r}, above {MOST_SECTIONS}"
@@ -174,5 +175,5 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
 
 
 def thinnest_pair(pairs: tuple[ContactPair, ...], scene: scenes.Scene) -> float:
-    """Distance of centres that touch, of the thinnest pair, over the length of the shortest rod; infinite without any."""
+    """Distance of centres that touch, of the thinnest pair, over the length of the shortest rod; else infinite."""
     return min((pair.thickness for pair in pairs), default=inf) / min((rod.length for rod in scene.rods), default=1.0)

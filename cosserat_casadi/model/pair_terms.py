@@ -2,8 +2,8 @@
 
 The centres of the sections of both are known, and so are the forces, minus the derivatives of one energy. On each rod
 they are a dead force per length: what follows from that, statics and tangents have already. What is left of the
-derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections with
-the strains of their rod and with its base, where that floats.
+derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections by
+the strains of their rod and by its base, where that floats.
 """
 
 from __future__ import annotations

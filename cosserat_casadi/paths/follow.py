@@ -209,8 +209,8 @@ def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
         return path
     message = (
         f"{PathOutcome.UNRESOLVED.value} From factor {path.factor[too_deep[0]]:.6g} on a rod is up to "
-        f"{depths.max():.3g} widths deep inside an obstacle or a rod, too deep to be contact: give the contact more width or "
-        "stiffness."
+        f"{depths.max():.3g} widths deep inside an obstacle or a rod, too deep to be contact: give the contact more "
+        "width or stiffness."
     )
     return replace(path, outcome=PathOutcome.UNRESOLVED, message=message)
 

@@ -86,8 +86,8 @@ def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
 def _contact_entry(contact: Contact) -> dict[str, Any]:
     """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line.
 
-    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap. Of rods that touch where
-    they are nearest, and the resultant on the first.
+    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap. Of rods that touch
+    where they are nearest, and the resultant on the first.
     """
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
     if contact.on_rods is not None:

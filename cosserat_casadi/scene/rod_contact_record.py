@@ -17,7 +17,7 @@ MOST_RODS = 2
 
 
 class RodContact(Entry):
-    """Two rods that may not enter each other, or a rod that may not enter itself; without the table they pass through."""
+    """Two rods that may not enter each other, or one that may not enter itself; without the table they do."""
 
     example: ClassVar[str] = """\
 [[rod_contacts]]
@@ -30,8 +30,8 @@ width = 5e-4
     name: Name | None = Field(None, description="name of the contact, a letter, then letters, digits and underscores")
     rods: Names | None = Field(
         None,
-        description="names of two rods, or of one that touches itself; every two rods when left out, but those of which "
-        "one starts on the other or that are joined to one body",
+        description="names of two rods, or of one that touches itself; every two rods when left out, but those of "
+        "which one starts on the other or that are joined to one body",
     )
     width: Positive | None = Field(
         None,
@@ -42,6 +42,15 @@ width = 5e-4
         description="rate of the force per length with the gap where the gap of parallel rods is zero, N/m²; "
         "30 EI/(L² width²) of the stiffer rod when left out",
     )
+
+    @property
+    def label(self) -> str:
+        """The contact for people: its name, else its rods."""
+        if self.name is not None:
+            return self.name
+        if self.rods is None:
+            return "rods on rods"
+        return f"{self.rods[0]} on {self.rods[1] if len(self.rods) == MOST_RODS else 'itself'}"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

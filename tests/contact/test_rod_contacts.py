@@ -39,7 +39,9 @@ def straight(angle: float, gap: float) -> tuple[FloatArray, FloatArray]:
     """Sections of two rods of 0.2 m whose middles lie above each other."""
     along = 0.2 * ((np.arange(SECTIONS) + 0.5) / SECTIONS - 0.5)
     none = 0 * along
-    return np.array([along, none, none]), np.array([along * np.cos(angle), along * np.sin(angle), none + TOUCHING + gap])
+    return np.array([along, none, none]), np.array(
+        [along * np.cos(angle), along * np.sin(angle), none + TOUCHING + gap]
+    )
 
 
 @pytest.mark.parametrize("gap", [-0.5e-3, 0.0, 0.8e-3])
