@@ -9,13 +9,13 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
-from cosserat_casadi import Model, Outcome, build, parse_scene, solve
+from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.operation_cost import prices_of_effects
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.scene import Simulation
 
 RADIUS = 5e-3
 WIDTH = 2e-3
@@ -240,3 +240,68 @@ def test_an_elastica_that_closes_on_itself() -> None:
     assert np.hypot(*force) > 1.0
     assert_allclose(contact.force[[0, 2]], -force, rtol=0, atol=5e-3 * np.hypot(*force))
     assert_allclose(contact.force[1], 0.0, rtol=0, atol=1e-12)
+
+
+def test_what_is_deeper_than_the_width_or_passes_through_is_told() -> None:
+    weak = crossed(-2.0, "stiffness = 1e3")
+    solution = solve(weak, estimate_error=False)
+    assert not solution.converged
+    # The upper rod above and below the lower one: on the straight way between them they meet.
+    strong = crossed(-0.5)
+    inputs = strong.pack()
+    above = solve(strong, estimate_error=False)
+    below = solve(crossed(-3.0, "stiffness = 1e-6"), method="rootfinder", estimate_error=False)
+    barriers = SmoothBarriers(strong)
+    assert above.converged
+    assert barriers.are_between(above.x, below.x, (inputs, inputs))
+    assert not barriers.are_between(above.x, above.x, (inputs, inputs))
+
+
+def test_rods_inside_each_other_from_the_start_are_refused() -> None:
+    with pytest.raises(SceneError, match="inside each other where nothing acts"):
+        crossed(-1.0, "", "upper.base.position=[0, -0.15, 0.005]")
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ('rod_contacts=[{ rods = ["lower", "lowest"] }]', "lowest"),
+        ('rod_contacts=[{ rods = ["lower", "upper"], width = 0.006 }]', "must be < the radius of 'lower'"),
+        ('rod_contacts=[{ rods = ["lower", "upper"], depth = 0.006 }]', "depth"),
+        ('upper.base={ rod = "lower", tangent = [1, 0, 0] }', "are tied to each other"),
+        ('obstacles=[{ name = "floor", kind = "plane", point = [0, 0, -1], normal = [0, 0, 1] }]', "touched exactly"),
+    ],
+)
+def test_contacts_that_cannot_be_are_refused(change: str, sentence: str) -> None:
+    with pytest.raises(SceneError, match=sentence):
+        crossed(-1.0, "", change)
+
+
+def test_all_pairs_are_those_of_rods_that_are_not_tied() -> None:
+    model = crossed(-1.0, CARRIED, ON_POST, "rod_contacts=[{ width = 1e-3 }]")
+    assert [pair.rods for pair in model.discrete.pairs] == [("lower", "upper"), ("lower", "post")]
+
+
+def test_rods_that_are_apart_cost_no_pair() -> None:
+    """Bounds of the operations: without the pairs they grow as the sections do."""
+    along = np.linspace(0.0, 1.0, 4 * PANEL)
+    far = [SectionsInContact(ca.MX.sym("x", 3, count * PANEL), ca.DM(3, count * PANEL)) for count in (4, 4)]
+    pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    gradient = ca.Function("gradient", [own.positions for own in far], list(pairs.gradient))
+    calls = [function for function in gradient.find_functions() if function.class_name() == "Switch"]
+    # One for the rods, one for the panels: nothing of either is called where rods are apart.
+    assert len(calls) == 2
+    places = np.vstack([along, 0 * along, 0 * along])
+    force, _ = gradient(places, places + 5.0)
+    assert not np.any(force.full())
+
+
+@pytest.mark.slow  # ten seconds: each step takes its own Jacobians
+def test_rods_that_touch_move_and_keep_their_energy() -> None:
+    scene = parse_scene(
+        CROSSED.format(push=-2.0, more=""),
+        ["accuracy.modes=1", "accuracy.nodes=4", "lower.damping={ retardation_time = 0.01 }"],
+    )
+    motion = simulate(scene.model_copy(update={"simulation": Simulation(duration=0.06, frames=7, start="unloaded")}))
+    assert motion.converged, motion.message
+    assert np.abs(motion.energy.imbalance).max() < 2e-3
