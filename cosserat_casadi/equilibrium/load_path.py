@@ -33,7 +33,9 @@ def continuation_limits(model: SystemFunctions, *, watched: bool = False) -> Con
     """
     limits = ContinuationSettings()
     pairs = model.discrete.pairs if isinstance(model, Model) and not watched else ()
-    through = 2 * min(thinnest(model.scene), thinnest_pair(pairs, model.scene))
+    through = 2 * thinnest(model.scene)
+    if pairs:
+        through = min(through, 2 * thinnest_pair(pairs, model.scene))
     return replace(limits, longest=min(limits.longest, through))
 
 

@@ -339,14 +339,14 @@ def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
 
 
 ARGUMENTS = ("first", "first", "second", "second", "law", "motion")
-"""What the arguments of a function of two panels belong to."""
+"""Owners of the arguments of a function of two panels."""
 
 LAW_ARGUMENT = ARGUMENTS.index("law")
 """Place of the law among them."""
 
 
 def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
-    """What belongs to the panels of one rod, or to none, for all pairs of panels, the first running faster."""
+    """A field of the panels of one rod, or of neither, for all pairs of panels, the first running faster."""
     if owner == "first":
         return ca.repmat(field, 1, second)
     if owner == "law":
@@ -357,7 +357,7 @@ def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
 
 
 def _with_coordinates(hessian: Matrix, motion: Matrix) -> Matrix:
-    """Second derivative with n coordinates, n×n, from those with each section, 9×S, and their motion, 3n×S."""
+    """Second derivative with n coordinates, n×n, from the derivatives with each section, 9×S, and its motion, 3n×S."""
     components = ca.vertsplit(motion, motion.shape[0] // 3)
     entries = ca.vertsplit(hessian)
     rows = []

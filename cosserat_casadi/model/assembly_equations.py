@@ -288,7 +288,7 @@ class Assembly:
                 blocks.add(rows, columns, block)
 
     def _by_side(self, rod: str, derivative: Matrix) -> Iterator[tuple[slice, Matrix]]:
-        """A derivative with the coordinates of a side of a pair as those with strains, and with the base of the rod."""
+        """A derivative with the coordinates of a side of a pair, parted into strains and the base of the rod."""
         strains = self.unknowns.strain(rod)
         count = strains.stop - strains.start
         yield strains, derivative[:, :count]

@@ -90,7 +90,7 @@ def _radius(body: scenes.Body) -> float:
 def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
     """Abscissae at which elements end so that they are about as long as the stretches that obstacles or rods press."""
     widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and obstacle.concerns(rod.name)]
-    widths += pair_widths(scene, rod.name)
+    widths += pair_widths(scene, rod.name) if scene.rod_contacts else []
     if not widths:
         return []
     # The ratio may be beyond all range: it is bounded before it becomes a whole number.

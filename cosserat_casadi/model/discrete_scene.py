@@ -155,6 +155,8 @@ class DiscreteScene:
     @cached_property
     def pairs(self) -> tuple[ContactPair, ...]:
         """Pairs of rods that push each other."""
+        if not self.scene.rod_contacts:
+            return ()
         return tuple(contact_pairs(self.scene, self.nominal.rods, self.rods))
 
     @cached_property

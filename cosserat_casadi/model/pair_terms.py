@@ -1,7 +1,7 @@
-"""What two rods that push each other add to the equations: forces on both, and the second variation of their energy.
+"""Terms of two rods that push each other: forces on both, and the second variation of their energy.
 
 The centres of the sections of both are known, and so are the forces, minus the derivatives of one energy. On each rod
-they are a dead force per length: what follows from that, statics and tangents have already. What is left of the
+they are a dead force per length, which statics and tangents know already. The rest of the
 derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections by
 the strains of their rod and by its base, where that floats.
 """
@@ -90,7 +90,7 @@ class ContactSide:
 
         Args:
             gradient: derivative of the energy with the positions, 3×S, N, world axes.
-            factor: what it is multiplied by.
+            factor: of the energy.
         """
         at_nodes = -factor * gradient @ self.interpolation
         lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
@@ -198,6 +198,6 @@ class PairTerms:
 
     @property
     def _factor(self) -> Matrix | float:
-        """What the push is multiplied by on the way from the unloaded scene: it grows as the loads do."""
+        """Factor of the push on the way from the unloaded scene: it grows as the loads do."""
         load_factor = self.system.arguments.load_factor
         return 1.0 if load_factor is None else load_factor

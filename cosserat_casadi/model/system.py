@@ -433,7 +433,7 @@ class System:
         return [*dead, *self._pair_wrenches(rod), *self._inertia_wrenches(rod)]
 
     def _pair_wrenches(self, rod: str) -> list[LineWrench]:
-        """What other rods, and other stretches of the rod, push it with, base frame."""
+        """Forces of other rods, and of other stretches of the rod, on it, base frame."""
         return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:

@@ -95,7 +95,7 @@ def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:
 
 
 def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
-    """Pairs of what is tied to each other: rods to those that they start on, and to the bodies of their joints."""
+    """Ties: of rods to the rods that they start on, and to the bodies of their joints."""
     for name, (_, rod) in scene.named("rods").items():
         base = rod.get("base")
         if isinstance(base, Mapping) and isinstance(base.get("rod"), str):
@@ -106,7 +106,7 @@ def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
 
 
 def are_tied(first: str, second: str, ties: Iterable[tuple[Any, Any]]) -> bool:
-    """Whether one of two rods is tied to the other, or both to one thing, by pairs of what is tied to each other."""
+    """Whether one of two rods is tied to the other, or both to one thing."""
     held: dict[str, set[Any]] = {first: set(), second: set()}
     for one, other in ties:
         for rod, holder in ((one, other), (other, one)):
