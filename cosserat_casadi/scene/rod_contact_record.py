@@ -21,7 +21,7 @@ class RodContact(Entry):
 
     example: ClassVar[str] = """\
 [[rod_contacts]]
-rods = ["finger", "arm"]
+rods = ["finger"]
 width = 5e-4
 """
 
