@@ -1,7 +1,8 @@
 """Random legal scenes at the ends of what is legal: does each end in a true outcome?
 
 Counts outcomes, the longest solve and the worst violation of an independent weak form. `--write` puts the figures
-into docs/hard-cases.md. `--log FILE` keeps one line a scene, and goes on from there.
+into docs/hard-cases.md. `--log FILE` keeps one line a scene, and goes on from there. `--robots` draws robots: bases on
+hinges and slides with springs, motors and stops, disks, straight tendons.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from rich.progress import track
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from tests.fuzz.verdict import Verdict, verdict  # noqa: E402
+from tests.fuzz.verdict import Verdict, robot_verdict, verdict  # noqa: E402
 from tests.reference.extreme_scenes import fuzz_scene  # noqa: E402
 
 DOCS = ROOT / "docs" / "hard-cases.md"
@@ -67,17 +68,18 @@ def write(text: str) -> None:
     DOCS.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
 
 
-def judged(seed: int) -> tuple[int, Verdict]:
+def judged(seed: int, robots: bool) -> tuple[int, Verdict]:
     """A scene by its seed, and what became of it; a warning is a fault."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return seed, verdict(fuzz_scene(seed))
+        return seed, robot_verdict(seed) if robots else verdict(fuzz_scene(seed))
 
 
 def main(
     count: Annotated[int, typer.Option(help="Scenes.")] = 10_000,
     first: Annotated[int, typer.Option(help="Seed of the first.")] = 0,
     log: Annotated[Path | None, typer.Option(help="One line a scene; a second run goes on from it.")] = None,
+    robots: Annotated[bool, typer.Option(help="Robots in place of rods; not with --write.")] = False,
     into_docs: Annotated[bool, typer.Option("--write", help="Put the figures into docs/hard-cases.md.")] = False,
 ) -> None:
     """Judge scenes, print the figures; exit code 1 if one has a fault."""
@@ -86,7 +88,7 @@ def main(
         log.parent.mkdir(parents=True, exist_ok=True)
     missing = [seed for seed in range(first, first + count) if seed not in found]
     with ProcessPoolExecutor() as pool:
-        judging = [pool.submit(judged, seed) for seed in missing]
+        judging = [pool.submit(judged, seed, robots) for seed in missing]
         for done in track(as_completed(judging), "Scenes", len(missing), disable=not sys.stdout.isatty()):
             seed, found[seed] = done.result()
             for fault in found[seed].faults:
@@ -96,7 +98,7 @@ def main(
                     file.write(json.dumps({"seed": seed, **asdict(found[seed])}) + "\n")
     text = summary({seed: found[seed] for seed in range(first, first + count)})
     print(text)
-    if into_docs:
+    if into_docs and not robots:
         write(text)
     raise typer.Exit(int(any(v.faults for v in found.values())))
 

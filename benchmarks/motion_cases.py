@@ -32,6 +32,8 @@ from cosserat_casadi.motion.simulate import Simulator, started  # noqa: E402
 from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau  # noqa: E402
 from tests.conftest import case_files  # noqa: E402
+from tests.model import test_joint_coordinates as joint_coordinates  # noqa: E402
+from tests.model import test_joint_stops as joint_stops  # noqa: E402
 from tests.motion import transients  # noqa: E402
 from tests.motion.stepping import moving_model, orders, stepped  # noqa: E402
 from tests.motion.test_loops_in_motion import swayed  # noqa: E402
@@ -233,6 +235,16 @@ def literature() -> Iterator[Row]:
     wanted = in_base[:, :1] * along + in_base[:, 1:] * across
     distances = np.linalg.norm(in_plane(timed.motion) - wanted, axis=1)
     yield row_of(timed, "spin-up (Kane, Ryan, Banerjee)", GALERKIN, distances, 2e-5)
+
+    timed = simulated(joint_coordinates.two_links(tolerance=1e-4))
+    first, _ = joint_coordinates.angles_of_two_links(timed.motion.times)
+    distances = np.linalg.norm(timed.motion.tip("a").position - joint_coordinates.tip_of_first_link(first), axis=1)
+    yield row_of(timed, "two stiff links, motor, spring and damper", "Lagrange's equations, RK45", distances, 1e-9)
+
+    timed = simulated(joint_stops.lever(tolerance=1e-4, **joint_stops.ELASTIC))
+    turned = joint_stops.angles(timed.motion) - joint_stops.elastic_reference(timed.motion.times)
+    in_rad = np.abs(turned) * timed.motion.model.scene.rods[0].length
+    yield row_of(timed, "lever on an elastic stop, angle", "Lagrange's equations, RK45", in_rad, 1e-7)
 
     timed = simulated(transients.flying_in_plane(tolerance=1e-3))
     distances = np.linalg.norm(in_plane(timed.motion) - transients.FLYING_LOWER, axis=1)

@@ -22,7 +22,7 @@ class Result:
         """Write the result into a file, whole or not at all; the suffix says in which format.
 
         Every result can be written as JSON (``.json``) and as a figure (``.png``, ``.pdf``, ``.svg``); some as a table
-        too.
+        too, solutions and motions of rods as meshes for Blender and the like (``.glb``, ``.usda``).
 
         Args:
             path: of the file, a string or a Path.

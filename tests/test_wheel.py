@@ -7,10 +7,12 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import venv
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tests.conftest import ROOT
 
@@ -74,6 +76,17 @@ def smoke_test(python: Path | str, folder: Path, path: Path | None = None) -> No
         assert "Equilibrium found" in run(*cosserat, "solve", scene, cwd=folder, path=path)
     run(*cosserat, "export", "examples/nitinol_wire.toml", "--output", "wire", cwd=folder, path=path)
     assert (folder / "wire" / "solver.c").exists()
+
+
+def test_the_conda_recipe_is_that_of_the_package() -> None:
+    """Conda writes a space between name and bounds."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    recipe = yaml.safe_load((ROOT / "conda" / "recipe.yaml").read_text())
+    wanted = {f"python{project['requires-python']}", *project["dependencies"]}
+    assert {entry.replace(" ", "") for entry in recipe["requirements"]["run"]} == wanted
+    assert recipe["context"]["version"] == project["version"]
+    (command,) = project["scripts"].items()
+    assert recipe["build"]["python"]["entry_points"] == [" = ".join(command)]
 
 
 @pytest.mark.slow

@@ -19,9 +19,15 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
 STRAIGHT = 3_000
-"""Instructions up to which a kernel is straight-line code: longer ones are as quick in loops, and a fraction as long.
+"""Instructions up to which a kernel is straight-line code: longer ones are about as quick in loops, and shorter.
 
 Functions of one interval are called: each call is one instruction.
+"""
+
+STRAIGHT_BESIDE_INTERVALS = 9_000
+"""The same for what a scene of one rod computes beside its intervals, four of which are computed together.
+
+Loops take half as long again there, or twice: they gather what the intervals take and give.
 """
 
 MOST_IN_COLUMNS = 50_000

@@ -41,13 +41,18 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
     return ends_by_column(ranges, case_layout(scene))
 
 
-def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json") -> None:
+MESHES = (".glb", ".usda")
+"""Suffixes of files of meshes, which need no matplotlib."""
+
+
+def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json", *, meshes: bool = False) -> None:
     """Refuse files that cannot be written, before time is spent on a solve.
 
     Args:
         output: file of the result.
         plot: file of the figure.
         suffix: of the format that the result is written in.
+        meshes: whether the figure may be a file of meshes.
 
     Raises:
         SceneError: a file cannot be written, the result has the suffix of another format, or the figure has no suffix
@@ -58,7 +63,7 @@ def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json")
     with collect_problems(problems):
         check_file(output, "--output", suffix)
     with collect_problems(problems):
-        _check_plot(plot)
+        _check_plot(plot, meshes=meshes)
     if problems:
         raise SceneError(*problems)
 
@@ -113,8 +118,11 @@ def check_inputs_stay(
         raise SceneError(*problems)
 
 
-def _check_plot(plot: Path | None) -> None:
+def _check_plot(plot: Path | None, *, meshes: bool) -> None:
     if plot is None:
+        return
+    if meshes and plot.suffix.lower() in MESHES:
+        check_writable(plot, "--plot")
         return
     # Imported here, because matplotlib is an extra and takes long to load.
     from cosserat_casadi.plots.figure import check_plot_path

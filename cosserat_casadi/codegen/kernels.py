@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import casadi as ca
 
-from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT
+from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
@@ -99,7 +99,7 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
     elif not _literal(model):
         straight = scalar(entry.function, entry.kernel)
         # Without calls of intervals there is nothing to make together.
-        if straight.find_functions(0) and straight.n_instructions() <= STRAIGHT:
+        if straight.find_functions(0) and straight.n_instructions() <= STRAIGHT_BESIDE_INTERVALS:
             with suppress(UnknownOperationError):
                 return scalars_in_c(straight, dense(entry.function, entry.kernel))
     return kernel(model, entry.function, entry.kernel)

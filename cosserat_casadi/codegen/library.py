@@ -405,6 +405,8 @@ def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
         return f"tension of the tendon {entry['tendon']}, in units of {entry['unit_N']:.6g} N"
     if "tie" in entry:
         return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
+    if "stop" in entry:
+        return f"what {entry['stop']} pushes with"
     if "branches" in entry:
         return f"strains of the dashpots of rod {entry['rod']} since rest, as its strains, one branch after the other"
     if "joint" in entry:

@@ -244,6 +244,9 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         unit = model.discrete.tension_unit(tendon.rod)
         first = model.discrete.tension(cable).start
         entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
+    for stop in model.discrete.stops:
+        first = model.discrete.stop(stop).start
+        entries.append({"rod": stop.placed.rod, "stop": stop.owner, "first": first, "count": 1})
     for block, place in model.discrete.unknowns.of_kind(BlockKind.FLOW):
         branches = len(model.discrete.rods[block.owner].properties.branches)
         entries.append({"rod": block.owner, "branches": branches, "first": place.start, "count": block.size})

@@ -34,7 +34,7 @@ JACOBIANS = "motion_jacobians"
 MATRICES = 3
 """Derivatives of inverse dynamics: stiffness, damping, mass."""
 
-INSTRUCTION = 8e-9
+INSTRUCTION = 4e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s."""
 
 AS_MANY_RESIDUALS = 10.0

@@ -17,7 +17,7 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
-from cosserat_casadi.errors import ExportError
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.motion_checks import immovable
@@ -79,6 +79,10 @@ def check_motion(model: Model) -> None:
         ExportError: with every fault.
     """
     problems = immovable(model)
+    for stop in model.discrete.stops:
+        if stop.stiffness is None:
+            remedy = "give the joint a stop_stiffness that the steps resolve, or simulate in Python"
+            problems.append(Problem(stop.owner, "is rigid, and a step of given length finds no impact on it", remedy))
     if problems:
         raise ExportError(*problems)
 

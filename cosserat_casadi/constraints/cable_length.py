@@ -124,7 +124,7 @@ class CableLength:
     @cached_property
     def _results(self) -> tuple[Matrix, Matrix, Matrix]:
         """The residual and its derivatives with sag and tension, 1×1 each."""
-        kernel = _kernel(self.slack, self.softness)
+        kernel = pair_kernel(self.slack, self.softness)
         residual, by_sag, by_tension = kernel(self.sag, self.tension, self.smoothing)
         return residual, by_sag, by_tension
 
@@ -133,8 +133,11 @@ class CableLength:
         return self.cable.shape.rod.properties.length
 
 
-def _kernel(slack: bool, softness: float) -> ca.Function:
-    """Sag, tension and smoothing ↦ residual and its derivatives with sag and tension."""
+def pair_kernel(slack: bool, softness: float) -> ca.Function:
+    """Sag, tension and smoothing ↦ residual and its derivatives with sag and tension.
+
+    Of a joint that stops the sag is the way to it, and the tension its push.
+    """
     sag = ca.SX.sym("sag")
     tension = ca.SX.sym("tension")
     smoothing = ca.SX.sym("smoothing")

@@ -4,6 +4,8 @@ Where something acts along it, a spring, a damper, a motor or a drive, the joint
 a pose that the coordinate moves. A drive prescribes the coordinate. Else it is an unknown q, whose equation is
 λ + V'(q) = 0 with the multiplier λ along the free direction, V the energy of spring and motor. As an unknown it counts
 turns: no function of the poses alone tells an angle from the same angle a turn further.
+
+A stop is the pair 0 ≤ ρ ⟂ g ≥ 0 of its push ρ, an unknown that adds to that equation, and the way g to it.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = F
         finds the eigenvalues, so the function cannot be exported to C.
 
     Args:
-        model: with loads that have a potential, and without cables that may go slack.
+        model: with loads that have a potential, and without cables that may go slack and stops.
         width: of the soft minimum.
         parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
             scene's values. The elastic stiffness that the margin is a share of is that of the scene's values in both.
@@ -46,7 +46,7 @@ def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = F
         where x or inputs are, or where a body may move while no rod is strained.
 
     Raises:
-        SceneError: the loads have no potential, or a cable may go slack.
+        SceneError: the loads have no potential, a cable may go slack, or a joint has a stop.
         ValueError: the width is not positive, or not finite.
     """
     refuse_obstacles(model.scene, "a margin of stability")
@@ -71,12 +71,14 @@ def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = F
 
 
 def _refuse_slack(model: Model) -> None:
-    """Refuse cables that hold the rod at times only: the eigenvalues jump where they go slack."""
+    """Refuse cables and stops that hold the rod at times only: the eigenvalues jump there."""
     problems = []
     for i, actuator in enumerate(model.scene.actuators):
         if EFFECTS[actuator.kind].may_go_slack(actuator):
             reason = "a cable that may go slack makes eigenvalues jump"
             problems.append(Problem(f"actuators[{i}].slack", reason, "give it slack = false"))
+    stops = model.discrete.stops
+    problems += [Problem(stop.owner, "a stop makes eigenvalues jump", "leave it out") for stop in stops]
     if problems:
         raise SceneError(*problems)
 

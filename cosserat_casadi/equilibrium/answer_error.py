@@ -235,7 +235,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     before = None
     for _ in range(MOST_SWEEPS):
         if before is None:
-            step, missing_step = _first_steps(solution)
+            step, missing_step = first_steps(solution)
         else:
             lacking = richer_balance(solution, known, missing)
             step, missing_step = lacking.step, lacking.missing_step
@@ -252,7 +252,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         before = missing_step
 
 
-def _first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
+def first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
     """Elastic steps of the unknowns and of the missing coordinates at the answer itself."""
     model = solution.model
     steps = column(model.richer_lack(solution.x, solution.inputs))
@@ -378,7 +378,7 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
-    for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION):
+    for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION, BlockKind.STOP):
         change = _relative_change(solution.x[entries], correction.known[entries])
         changes.append(change)
     for rod in discrete.rods.values():

@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.equilibrium.rod_contacts import contacts_of_rods
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -73,7 +74,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         start = _crossing(gaps - width, part.start - 1, part.start)
         end = _crossing(gaps - width, part.stop - 1, part.stop)
         # The force vanishes smoothly at both ends, or ends with the rod.
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        nodes, weights = gauss_legendre(GAUSS_POINTS)
         X = start + (end - start) * (nodes + 1) / 2
         per_length = pressure(layer, _gaps(solution, layer, X))
         along = normals(solution, layer.rod, layer.obstacle, X)

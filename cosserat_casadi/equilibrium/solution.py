@@ -313,12 +313,15 @@ class Solution(Equilibrium[Model]):
     def joint(self, name: str) -> dict[str, float]:
         """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m).
 
+        Of a joint with stops also their push, a part of the first, by the name ``stop``.
+
         Raises:
-            KeyError: no joint of that name has a spring, a damper, a motor or a drive.
+            KeyError: nothing acts along a joint of that name.
         """
         function = self.model.joint[name]
-        effort, coordinate = function(self.x, self.inputs)
-        return {function.name_out(0): float(effort), function.name_out(1): float(coordinate)}
+        return {
+            name: float(value) for name, value in zip(function.name_out(), function(self.x, self.inputs), strict=True)
+        }
 
     def _nodal_fields(self, rod: str) -> _NodalFields:
         """Fields of a rod at its nodes."""

@@ -17,6 +17,9 @@ from cosserat_casadi.model.build import Model
 ZERO = 1e-10
 """An eigenvalue below this share of the largest, or of EI/ℓ where that is more, is zero to rounding."""
 
+RIGID = 1e4
+"""Stiffness of a cable or a stop, in units of EI/ℓ, above which it counts as one that does not yield."""
+
 DEPENDENT = 1e-12
 """A singular value of the constraints below this share of the largest says that one of them repeats others."""
 
@@ -104,8 +107,12 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
         allowed: as there.
     """
     block = np.ix_(allowed.free, allowed.free)
-    hessian = jacobian[block]
-    constraints = _active_constraints(jacobian, allowed)
+    yielding = _yielding(jacobian, allowed)
+    held = np.setdiff1d(allowed.held, yielding)
+    # A cable that is slack, or that stretches, and an elastic stop follow the variations: they are eliminated.
+    pull = jacobian[np.ix_(allowed.free, yielding)] / np.diagonal(jacobian)[yielding]
+    hessian = jacobian[block] - pull @ jacobian[np.ix_(yielding, allowed.free)]
+    constraints = jacobian[np.ix_(held, allowed.free)]
     largest_unit = allowed.units.max(initial=0.0)
     roots = np.sqrt(allowed.units / largest_unit)
     # Rods of one energy unit need no scaling, and keep their digits.
@@ -126,16 +133,12 @@ def admissible_spectrum(jacobian: FloatArray, allowed: ConstrainedVariations) ->
     return np.asarray(eigenvalues), np.asarray(admissible)
 
 
-def _active_constraints(jacobian: FloatArray, allowed: ConstrainedVariations) -> FloatArray:
-    """Linearised constraints that restrict the variations, one a row."""
-    block = np.ix_(allowed.held, allowed.free)
-    constraints = jacobian[block]
-    largest = np.abs(constraints).max(axis=1, initial=0.0)
-    # A slack cable asks nothing of the rod: its equation is about its tension alone.
-    diagonal = np.diagonal(jacobian)
-    own = np.abs(diagonal[allowed.held])
-    active: FloatArray = constraints[largest > own]
-    return active
+def _yielding(jacobian: FloatArray, allowed: ConstrainedVariations) -> npt.NDArray[np.int64]:
+    """Indices of the held unknowns that their own equations give a finite stiffness, or none."""
+    gradients = np.linalg.norm(jacobian[np.ix_(allowed.held, allowed.free)], axis=1)
+    pulls = np.linalg.norm(jacobian[np.ix_(allowed.free, allowed.held)], axis=0)
+    own = np.abs(np.diagonal(jacobian)[allowed.held])
+    return np.asarray(allowed.held[(own > 0.0) & (gradients * pulls <= RIGID * own)])
 
 
 def _null_space(constraints: FloatArray) -> FloatArray:

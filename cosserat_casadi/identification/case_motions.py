@@ -26,8 +26,8 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.simulate import EXACT, STAGES
-from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.step import TimeStep, stages_of
@@ -80,9 +80,10 @@ def check_motions(model: Model) -> None:
         if rod.base.free:
             remedy = "hold the base, or move it by a motion of its position"
             problems.append(Problem(f"rods[{index}].base.free", "is not for measurements over time", remedy))
-    for cable in SlackCables(model.at()).cables:
-        problem = f"{cable.tendon.name!r} may go slack in a motion, and the path is not smooth there"
-        problems.append(Problem("actuators", problem, "give its tension over time in place of its length"))
+    for pair in OneSided(model.at()).pairs:
+        problem = f"{pair.name!r} may go slack, or stop, in a motion, and the path is not smooth there"
+        remedy = "give a tension over time in place of a length; leave stops out"
+        problems.append(Problem("joints" if pair.side else "actuators", problem, remedy))
     if problems:
         raise SceneError(*problems)
 

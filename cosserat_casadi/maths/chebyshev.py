@@ -12,6 +12,7 @@ difference of two cosines would lose as many digits.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import fsum
 
 import numpy as np
@@ -131,6 +132,12 @@ def _with_zero_row_sums(matrix: FloatArray) -> FloatArray:
     return matrix
 
 
+@lru_cache(maxsize=64)
+def _points_and_weights(N: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights of interpolation; contact in motion asks for one row over and over."""
+    return nodes(N), barycentric_weights(N)
+
+
 def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> FloatArray:
     """The matrix from values at the points to values of the interpolant elsewhere, exact at the points.
 
@@ -153,10 +160,11 @@ def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> Float
     inside = (abscissae >= -margin) & (abscissae <= 1 + margin)
     if not np.all(inside):
         raise ValueError(f"abscissae lie between 0 and 1, but these are {abscissae.tolist()}")
-    gaps = abscissae[:, None] - nodes(N)
+    points, weights = _points_and_weights(N)
+    gaps = abscissae[:, None] - points
     on_node = np.abs(gaps) < _SAME_POINT
     divisors = np.where(on_node, 1.0, gaps)
-    terms: FloatArray = barycentric_weights(N) / divisors
+    terms: FloatArray = weights / divisors
     # The row of an abscissa on a node picks the value there.
     picks = on_node.any(axis=1, keepdims=True)
     terms = np.where(picks, on_node, terms)

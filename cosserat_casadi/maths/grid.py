@@ -11,12 +11,13 @@ then a reference: integrals run over its coordinate, along which each element ha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
@@ -242,3 +243,12 @@ class Grid:
     def _spans(self) -> list[tuple[float, float]]:
         """Start and end of every element in the coordinate, base to tip."""
         return list(pairwise(self.breaks))
+
+
+@cache
+def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights of Gauss–Legendre quadrature on [−1, 1], shape (count,) each; neither may be written to."""
+    points, weights = legendre.leggauss(count)
+    points.flags.writeable = False
+    weights.flags.writeable = False
+    return points, weights

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import factorial
 from typing import Any
 
@@ -35,6 +36,7 @@ def coefficient_count(order: int) -> int:
     return order // 2
 
 
+@cache
 def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points on τ ∈ [−½, ½] and the matrix from samples of h K there to α₁ … α_count.
 
@@ -46,7 +48,7 @@ def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray
         points: number of Gauss–Legendre points, at least ``count``.
 
     Returns:
-        the points, shape (points,), and the matrix, shape (count, points).
+        the points, shape (points,), and the matrix, shape (count, points); neither may be written to.
     """
     # Gauss–Legendre on [−1, 1], halved.
     x, weights = legendre.leggauss(points)

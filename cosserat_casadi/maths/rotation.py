@@ -136,21 +136,21 @@ def directors(q: Columns) -> tuple[Columns, Columns, Columns]:
         Three 3×k matrices, world coordinates.
     """
     w, x, y, z = _rows(q, 4)
-    d1 = _from_rows(
-        1 - 2 * y * y - 2 * z * z,
-        2 * x * y + 2 * w * z,
-        2 * x * z - 2 * w * y,
-    )
-    d2 = _from_rows(
-        2 * x * y - 2 * w * z,
-        1 - 2 * x * x - 2 * z * z,
-        2 * y * z + 2 * w * x,
-    )
-    d3 = _from_rows(
-        2 * x * z + 2 * w * y,
-        2 * y * z - 2 * w * x,
-        1 - 2 * x * x - 2 * y * y,
-    )
+    twice_w = 2 * w
+    twice_x = 2 * x
+    twice_y = 2 * y
+    wx = twice_w * x
+    wy = twice_w * y
+    wz = twice_w * z
+    xx = twice_x * x
+    xy = twice_x * y
+    xz = twice_x * z
+    yy = twice_y * y
+    yz = twice_y * z
+    zz = 2 * z * z
+    d1 = _from_rows(1 - yy - zz, xy + wz, xz - wy)
+    d2 = _from_rows(xy - wz, 1 - xx - zz, yz + wx)
+    d3 = _from_rows(xz + wy, yz - wx, 1 - xx - yy)
     return d1, d2, d3
 
 

@@ -19,7 +19,7 @@ their unknowns. With u = (strains q, multipliers m, deviations d of frames, tens
     cable      by ∂L/∂q             0                  0                        by τ
 
 A joint whose coordinate is an unknown adds its row (constraints/joint_coordinate.py) and a column wherever its wrench
-turns with it.
+turns with it; a stop of it adds the row of its pair, and a column in that of the coordinate.
 
 Here δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame with
 d. Docs/theory.md, section 8.
@@ -35,6 +35,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.cable_length import SMOOTHING, pair_kernel
 from cosserat_casadi.constraints.section_constraint import PoseVariations
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
@@ -42,11 +43,12 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.body_obstacle_loads import BorneLoad, borne_loads
-from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
+from cosserat_casadi.model.discrete_scene import STOP_COMPLIANCE, CableOfLength, DiscreteScene, JointStop
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
 from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
-from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, spring
+from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, smoothing_at, spring
 from cosserat_casadi.model.pair_terms import PairTerms
+from cosserat_casadi.model.scene_actuators import CORNER
 from cosserat_casadi.model.scene_constraints import ASSEMBLED, PlacedConstraint
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import Unknowns
@@ -140,7 +142,7 @@ class Assembly:
 
     @cached_property
     def coordinate_rows(self) -> list[Matrix]:
-        """λ + V'(q) of every joint whose coordinate q is an unknown, at the load factor."""
+        """λ + V'(q) − ρ of every joint whose coordinate q is an unknown, ρ of its stops, at the load factor."""
         rows = []
         for placed in self.discrete.free_coordinates:
             value = self.system.coordinate(placed)
@@ -148,6 +150,9 @@ class Assembly:
             slope = self.system.joint_effort(placed).slope(value)
             effort = self.system.multipliers(placed)[placed.along_coordinate]
             balance = effort + placed.coordinate_scale / placed.constraint.unit * slope
+            for stop in self.discrete.stops:
+                if stop.placed is placed:
+                    balance = balance - stop.side * self.system.arguments.x[self.discrete.stop(stop)]
             unknown = self.system.arguments.x[self.discrete.coordinate(placed)]
             rows.append(row_at(balance, unknown, ASSEMBLED, self.load_factor))
         return rows
@@ -161,13 +166,34 @@ class Assembly:
             rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
         return rows
 
+    @cached_property
+    def stop_rows(self) -> list[Matrix]:
+        """Pair of every stop of a joint and its push, at the load factor."""
+        rows = []
+        for stop, (residual, _, _) in self._stop_pairs:
+            push = self.system.arguments.x[self.discrete.stop(stop)]
+            rows.append(row_at(residual, push, STOP_COMPLIANCE, self.load_factor))
+        return rows
+
+    @cached_property
+    def _stop_pairs(self) -> list[tuple[JointStop, tuple[Matrix, Matrix, Matrix]]]:
+        """Stops with their rows of the scene itself, and the derivatives of these with the way and the push."""
+        if not self.discrete.stops:
+            return []
+        kernel = pair_kernel(slack=True, softness=1.0)
+        smoothing = smoothing_at(CORNER, SMOOTHING, self.load_factor)
+        pairs = []
+        for stop in self.discrete.stops:
+            push = self.system.arguments.x[self.discrete.stop(stop)]
+            pairs.append((stop, kernel(self.system.way_to_stop(stop), push, smoothing)))
+        return pairs
+
     # Jacobian
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
-        ends = [entries.stop for entries in self.unknowns.slices.values()]
-        blocks = BlockMatrix(ends)
+        blocks = self._empty_blocks()
         for rod, tangent in self.system.tangents.items():
             strains = self.unknowns.strain(rod)
             blocks.add(strains, strains, tangent.jacobian)
@@ -186,8 +212,29 @@ class Assembly:
             self._add_coordinate(blocks, placed)
         for cable in self.discrete.cables:
             self._add_cable(blocks, cable)
+        for stop, (_, by_way, by_push) in self._stop_pairs:
+            push = self.discrete.stop(stop)
+            coordinate = self.discrete.coordinate(stop.placed)
+            blocks.add(coordinate, push, column_at(ca.DM(-stop.side), self.load_factor))
+            blocks.add(push, coordinate, column_at(stop.side * by_way, self.load_factor))
+            if stop.stiffness is not None:
+                by_push = by_push + by_way * stop.softness
+            blocks.add(push, push, column_at(by_push, self.load_factor))
         self._add_springs(blocks)
         return blocks.matrix()
+
+    @cached_property
+    def constraint_jacobian(self) -> Matrix:
+        """∂ residual / ∂x with the rows of the constraints alone; the other rows are empty."""
+        blocks = self._empty_blocks()
+        for placed in self.constraints:
+            self._add_constraint(blocks, placed)
+        return blocks.matrix()
+
+    def _empty_blocks(self) -> BlockMatrix:
+        """A matrix of the unknowns' size without blocks."""
+        ends = [entries.stop for entries in self.unknowns.slices.values()]
+        return BlockMatrix(ends)
 
     def _section_motion(self, placed: PlacedConstraint) -> Matrix:
         """δ: motion [δθ; δr] of a held section with the strains of its rod, 6×n, base axes."""
@@ -506,3 +553,5 @@ class Assembly:
             yield self.discrete.coordinate(placed), ASSEMBLED
         for cable in self.discrete.cables:
             yield self.discrete.tension(cable), cable.compliance
+        for stop in self.discrete.stops:
+            yield self.discrete.stop(stop), STOP_COMPLIANCE

@@ -77,7 +77,7 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
 def _constraint_rows(system: System) -> FloatArray:
     """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
-    jacobian = ca.evalf(SceneEquations(system).jacobian).full()
+    jacobian = ca.evalf(SceneEquations(system).assembly.constraint_jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))

@@ -19,11 +19,11 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.maths.numbers import any_symbolic, as_matrix, is_symbolic, known
+from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
-from cosserat_casadi.model.discretise import enriched
+from cosserat_casadi.model.discretise import enriched, for_first_step
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -44,7 +44,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
-from cosserat_casadi.scene.constraint_records import AxisJoint
+from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
@@ -65,11 +65,15 @@ class CableOfLength:
     softness: float
 
     @property
+    def may_go_slack(self) -> bool:
+        """Whether it never pushes."""
+        return bool(EFFECTS[self.tendon.kind].may_go_slack(self.tendon))
+
+    @property
     def compliance(self) -> Compliance:
         """The spring between its length and the wanted one, as soft as the rod: tensions grow all along the way."""
-        member = EFFECTS[self.tendon.kind]
         # The row of a cable that may go slack grows with its tension; that of another cable, −s, falls with it.
-        if member.may_go_slack(self.tendon):
+        if self.may_go_slack:
             return Compliance(power=1, scale=self.softness)
         return Compliance(power=1, scale=-self.softness)
 
@@ -84,6 +88,43 @@ def _softness(rod: DiscreteRod, routing: Routing | HoleRouting) -> float:
     pull = gradient / rod.properties.length
     softness = float(pull @ np.linalg.solve(known(rod.stiffness), pull))
     return softness if softness > NO_SOFTNESS else 1.0
+
+
+@dataclass(frozen=True)
+class JointStop:
+    """A stop of a joint, which pushes with an unknown moment or force.
+
+    Attributes:
+        placed: the joint.
+        bound: coordinate that it stops, rad or m.
+        side: 1 for the least coordinate, −1 for the largest: where the stop pushes to.
+        stiffness: of an elastic stop, N m/rad or N/m; None of a rigid one.
+    """
+
+    placed: PlacedConstraint
+    bound: Scalar
+    side: int
+    stiffness: Scalar | None
+
+    @property
+    def softness(self) -> Matrix:
+        """How far an elastic stop gives way to a unit of its push, in the unit of the unknown, 1×1."""
+        assert self.stiffness is not None, "asked for of an elastic stop"
+        return self.placed.constraint.unit / self.placed.coordinate_scale**2 / as_matrix(as_vector([self.stiffness]))
+
+    @property
+    def owner(self) -> str:
+        """Path of the stop in the scene."""
+        return f"{self.placed.where}.{self.key}"
+
+    @property
+    def key(self) -> str:
+        """Key of the stop in the table of its joint."""
+        return STOP_KEYS[0] if self.side > 0 else STOP_KEYS[1]
+
+
+STOP_COMPLIANCE = Compliance(power=1)
+"""A stop yields by a unit of its coordinate for a unit of its push, on the way to the scene."""
 
 
 @dataclass(frozen=True)
@@ -238,13 +279,14 @@ class DiscreteScene:
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """The unknowns x in their order: strains, multipliers, poses, coordinates, tensions, flows."""
+        """The unknowns x in their order: strains, multipliers, poses, coordinates, tensions, stops, flows."""
         blocks = [
             *self._strain_blocks(),
             *self._multiplier_blocks(),
             *self._pose_blocks(),
             *self._coordinate_blocks(),
             *self._tension_blocks(),
+            *self._stop_blocks(),
             *self._flow_blocks(),
         ]
         return Unknowns(tuple(blocks))
@@ -322,6 +364,38 @@ class DiscreteScene:
                 step_weight=FORCE_WEIGHT,
             )
 
+    @cached_property
+    def stops(self) -> list[JointStop]:
+        """Stops of joints."""
+        stops = []
+        for placed in self.free_coordinates:
+            record = self.joint_record(placed)
+            for bound, side in ((record.lower_stop, 1), (record.upper_stop, -1)):
+                if bound is not None:
+                    stops.append(JointStop(placed, bound, side, record.stop_stiffness))
+        return stops
+
+    def stop(self, stop: JointStop) -> slice:
+        """Slice of the push of a stop in x."""
+        return self.unknowns.slice_of(BlockKind.STOP, stop.owner)
+
+    @property
+    def pair_rows(self) -> list[int]:
+        """Rows of pairs of which one is zero: of cables that may go slack, then of stops."""
+        of_cables = [self.tension(cable).start for cable in self.cables if cable.may_go_slack]
+        return [*of_cables, *(self.stop(stop).start for stop in self.stops)]
+
+    def _stop_blocks(self) -> Iterator[UnknownBlock]:
+        for stop in self.stops:
+            yield UnknownBlock(
+                kind=BlockKind.STOP,
+                owner=stop.owner,
+                rod=None,
+                size=1,
+                unit=stop.placed.constraint.unit,
+                step_weight=FORCE_WEIGHT,
+            )
+
     def _flow_blocks(self) -> Iterator[UnknownBlock]:
         for name, rod in self.rods.items():
             branches = len(rod.properties.branches)
@@ -374,10 +448,23 @@ class DiscreteScene:
             name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
             for name, rod in self.rods.items()
         }
-        discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
+        return Richer(self, self._on(discretisation))
+
+    @cached_property
+    def richer_for_first_step(self) -> Richer:
+        """The same with rotations of a lower order: what the first step of the missing modes is taken with."""
+        richer = self.richer.discrete.rods
+        discretisation = {
+            name: for_first_step(richer[name].discretisation, rod.discretisation) for name, rod in self.rods.items()
+        }
+        return Richer(self, self._on(discretisation))
+
+    def _on(self, discretisation: Mapping[str, Discretisation]) -> DiscreteScene:
+        """The same scene on another discretisation of its rods."""
+        discrete = discrete_scene(self.nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return Richer(self, discrete)
+        return discrete
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.loads.load import Site
+from cosserat_casadi.loads.load import Site, UnloadedPoses
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.load_assembly import unloaded_poses
 from cosserat_casadi.model.registry import EFFECTS
@@ -33,6 +33,10 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
         member = EFFECTS[load.kind]
         for rod, discrete_rod in discrete.rods.items():
             if member.acts_on(load, rod):
-                to_sections = discrete_rod.grid.interpolation_matrix(LOOKED_AT)
-                site = Site(discrete_rod.properties, LOOKED_AT, partial(unloaded_poses, discrete, rod, to_sections))
+                site = Site(discrete_rod.properties, LOOKED_AT, partial(_unloaded_poses, discrete, rod))
                 yield from member.faults(load, site)
+
+
+def _unloaded_poses(discrete: DiscreteScene, rod: str) -> UnloadedPoses:
+    to_sections = discrete.rods[rod].grid.interpolation_matrix(LOOKED_AT)
+    return unloaded_poses(discrete, rod, to_sections)

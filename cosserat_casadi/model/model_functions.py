@@ -76,7 +76,10 @@ def _joint_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     (joint,) = [joint for joint in discrete.scene.joints_with_coordinate if joint.name == name]
     assert isinstance(joint, AxisJoint), "joints with a coordinate have an axis"
     keys = (joint.effort_key, joint.coordinate_key)
-    return tuple(Output(key, joint.inputs[key].unit) for key in keys)
+    outputs = [Output(key, joint.inputs[key].unit) for key in keys]
+    if joint.has_stops:
+        outputs.append(Output("stop", outputs[0].unit))
+    return tuple(outputs)
 
 
 class ModelFunctions:
@@ -183,7 +186,8 @@ class ModelFunctions:
         Elastic steps of the unknowns and of the coordinates of the missing modes, one below the other.
         """
         none = ca.DM.zeros(written.discrete.richer.missing_size, 1)
-        richer, system = _enriched(written, written["x"], none)
+        richer = written.discrete.richer_for_first_step
+        system = _enriched(written, richer, written["x"], none)
         return [ca.densify(ca.vertcat(*_elastic_steps(richer, system)))]
 
     @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
@@ -193,7 +197,9 @@ class ModelFunctions:
         One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
         unknowns, and the watched poses and lengths, as the next function gives them.
         """
-        richer, system = _enriched(written, written["x"] + written["correction"], written["missing"])
+        richer = written.discrete.richer
+        known = written["x"] + written["correction"]
+        system = _enriched(written, richer, known, written["missing"])
         residual, _ = richer.split(SceneEquations(system).residual)
         return [ca.densify(ca.vertcat(*_elastic_steps(richer, system), residual, watched(system).column))]
 
@@ -301,6 +307,17 @@ class ModelFunctions:
             rotation @ rod.statics.held_moment,
         ]
 
+    @owned_functions(Owner.ROD, (Output("quaternion"), Output("by_position"), Output("by_quaternion")))
+    def field_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ quaternions at the nodes, and derivatives of positions and quaternions with x, node after node.
+
+        World frame.
+        """
+        position, quaternion = self.fields[written.owner].call(list(written.symbols.values()))[:2]
+        by_position = ca.jacobian(ca.vec(position), written["x"])
+        by_quaternion = ca.jacobian(ca.vec(quaternion), written["x"])
+        return [quaternion, by_position, by_quaternion]
+
     @owned_functions(
         Owner.ACTUATOR,
         _actuator_outputs,
@@ -325,11 +342,17 @@ class ModelFunctions:
         differentiable=True,
     )
     def joint(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each."""
+        """(x, inputs) ↦ moment or force along a joint on its section, and its angle or displacement, 1×1 each.
+
+        A joint with stops has their push as a third output; the first one counts it too.
+        """
         (index,) = [i for i, joint in enumerate(written.discrete.scene.joints) if joint.name == written.owner]
         (placed,) = [placed for placed in written.discrete.constraints if placed.joint == index]
         value, effort = written.system.joint_state(placed)
-        return [ca.densify(ca.MX(effort)), ca.densify(ca.MX(value))]
+        outputs = [effort, value]
+        if written.discrete.joint_record(placed).has_stops:
+            outputs.append(written.system.stop_effort(placed))
+        return [ca.densify(ca.MX(output)) for output in outputs]
 
     @owned_functions(
         Owner.BODY,
@@ -371,10 +394,9 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _enriched(written: Expressions, known: Matrix, missing: Matrix) -> tuple[Richer, System]:
-    """The scene with modes and intervals added, and its equations at these unknowns and missing coordinates."""
-    richer = written.discrete.richer
-    return richer, System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
+def _enriched(written: Expressions, richer: Richer, known: Matrix, missing: Matrix) -> System:
+    """The equations with modes and intervals added, at these unknowns and missing coordinates."""
+    return System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
 
 
 def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:

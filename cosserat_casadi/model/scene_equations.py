@@ -7,6 +7,7 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
     frames        balance of every floating frame = 0
     joints        balance along every coordinate that is an unknown = 0
     cables        length, or slack = 0
+    stops         way to it, or nothing pushed with = 0
     flows         at rest none, w = 0
 """
 
@@ -40,7 +41,7 @@ class SceneEquations:
         rod_rows = [igm.residual for igm in self.system.rods.values()]
         assembly = self.assembly
         of_frames = [*assembly.balance_rows, *assembly.coordinate_rows]
-        assembly_rows = [*assembly.constraint_rows, *of_frames, *assembly.cable_rows]
+        assembly_rows = [*assembly.constraint_rows, *of_frames, *assembly.cable_rows, *assembly.stop_rows]
         return ca.vertcat(*rod_rows, *assembly_rows, *self._flow_rows)
 
     @property

@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Generic, TypeVar, final
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, repeated
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod import section
@@ -144,7 +145,7 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
 
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
         """Gauss points across its width times those across its height."""
-        points, weights = np.polynomial.legendre.leggauss(POINTS_ACROSS)
+        points, weights = gauss_legendre(POINTS_ACROSS)
         width, height = sizes["width"], sizes["height"]
         return [
             (x / 2 * width, y / 2 * height, along_x * along_y / 4 * width * height)
@@ -159,7 +160,7 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
 
 def _round_fibres(outer: Matrix, inner: Matrix) -> list[Fibre]:
     """Points on rings between two radii, m, Gauss points in the square of the radius, all of one ring alike."""
-    points, weights = np.polynomial.legendre.leggauss(RADIAL_POINTS)
+    points, weights = gauss_legendre(RADIAL_POINTS)
     squares = outer**2 - inner**2
     fibres = []
     for point, weight in zip((points + 1) / 2, weights / 2, strict=True):

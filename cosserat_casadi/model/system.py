@@ -23,7 +23,7 @@ from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
@@ -257,7 +257,7 @@ class System:
         """Motion of a rod's base in the world, in the axes of the base."""
         frame = self.discrete.unloaded.floating_base(rod)
         world_motion = self._still_base_motion(rod) if frame is None else self.frame_motions[frame].motion
-        return world_motion.in_axes(self._base_R_world(rod))
+        return world_motion.in_axes(self._base_R_world[rod])
 
     def section(self, rod: str, node: int) -> Pose:
         """Pose of a node's section in the base of its rod."""
@@ -272,7 +272,7 @@ class System:
         """World pose of a rod's base."""
         frame = self.discrete.unloaded.floating_base(rod)
         if frame is None:
-            return self._still_base(rod)
+            return self._still_bases[rod]
         return self.frame(frame)
 
     def frame(self, name: FrameName) -> Pose:
@@ -305,7 +305,7 @@ class System:
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
         if placed.at_base:
-            return self._still_base(placed.rod)
+            return self._still_bases[placed.rod]
         if placed.frame is None:
             return IDENTITY.pose
         return self.frame(placed.frame)
@@ -332,6 +332,28 @@ class System:
         effort: JointEffort = JOINT_KINDS[record.kind].effort(record, ca.DM(1, 1) if motor is None else motor)
         return effort
 
+    def way_to_stop(self, stop: JointStop) -> Matrix:
+        """Way of a joint to its stop, which may have given way, 1×1, in the unit of its coordinate as an unknown."""
+        value = self.arguments.x[self.discrete.coordinate(stop.placed)]
+        way = stop.side * (value - as_matrix(as_vector([stop.bound])) / stop.placed.coordinate_scale)
+        if stop.stiffness is None:
+            return way
+        return way + stop.softness * self.arguments.x[self.discrete.stop(stop)]
+
+    def stop_energy(self, stop: JointStop) -> Matrix:
+        """Energy that an elastic stop holds, 1×1, J."""
+        push = self.arguments.x[self.discrete.stop(stop)]
+        return stop.placed.constraint.unit * stop.softness / 2 * push**2
+
+    def stop_effort(self, placed: PlacedConstraint) -> Matrix:
+        """Push of the stops of a joint on its section along the coordinate, N m or N, 1×1."""
+        pushes = [
+            stop.side * self.arguments.x[self.discrete.stop(stop)]
+            for stop in self.discrete.stops
+            if stop.placed is placed
+        ]
+        return placed.constraint.unit / placed.coordinate_scale * sum(pushes[1:], pushes[0])
+
     def joint_state(self, placed: PlacedConstraint) -> tuple[Matrix, Matrix]:
         """Coordinate of a joint, rad or m, and the effort along it on the section, N m or N, 1×1 each."""
         value = self.coordinate(placed)
@@ -346,6 +368,11 @@ class System:
     def deviation(self, name: FrameName) -> Matrix:
         """Unknowns of a floating frame, 7×1."""
         return self.arguments.x[self.discrete.deviation(name)]
+
+    @cached_property
+    def _still_bases(self) -> dict[str, Pose]:
+        """Poses of the bases as the scene and the inputs say them, by the names of their rods."""
+        return {rod: self._still_base(rod) for rod in self.discrete.rods}
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
@@ -456,7 +483,7 @@ class System:
         return replace(self._rod_loads(rod), motion=None).of(load)
 
     def _rod_loads(self, rod: str) -> RodLoads:
-        base = RodBase(self.base(rod).position, self._base_R_world(rod))
+        base = RodBase(self.base(rod).position, self._base_R_world[rod])
         ratio = ratio_of(self.discrete, rod, self.arguments)
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
@@ -486,13 +513,17 @@ class System:
         """
         return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed), self.coordinate(placed))
 
-    def _base_R_world(self, rod: str) -> Matrix:
-        """Rotation from the world into the base of a rod, 3×3; sparse where it is constant."""
-        rotation = quaternion_to_matrix(self.base(rod).quaternion)
-        # Zeros of a constant base, an upright rod's above all, cost no product.
-        if isinstance(rotation, ca.DM):
-            rotation = ca.sparsify(rotation, ROUNDING)
-        return rotation.T
+    @cached_property
+    def _base_R_world(self) -> dict[str, Matrix]:
+        """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
+        rotations = {}
+        for rod in self.discrete.rods:
+            rotation = quaternion_to_matrix(self.base(rod).quaternion)
+            # Zeros of a constant base, an upright rod's above all, cost no product.
+            if isinstance(rotation, ca.DM):
+                rotation = ca.sparsify(rotation, ROUNDING)
+            rotations[rod] = rotation.T
+        return rotations
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:

@@ -29,6 +29,8 @@ class BlockKind(Enum):
     """Angle or displacement of a joint that something acts along."""
     TENSION = "tension"
     """Tension of a cable of given length."""
+    STOP = "stop"
+    """Moment or force of a stop of a joint."""
     FLOW = "flow"
     """Strain coordinates of the dashpots of a rod whose stress relaxes, since the start of its motion."""
 
@@ -55,8 +57,8 @@ class UnknownBlock:
 
     @property
     def differential(self) -> bool:
-        """Whether the unknowns are coordinates that move; multipliers and tensions are algebraic."""
-        # Multipliers and tensions follow from the coordinates at every instant and have no rate of their own.
+        """Whether the unknowns are coordinates that move; multipliers, tensions and pushes are algebraic."""
+        # Those follow from the coordinates at every instant and have no rate of their own.
         return self.kind in (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE, BlockKind.FLOW)
 
 

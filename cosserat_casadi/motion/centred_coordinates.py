@@ -20,8 +20,8 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_frame import BaseKernels, SeenFromBase, frame_weights
 from cosserat_casadi.motion.momentum import flies_alone
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.rod.rod_motion import StrainRates
 
@@ -35,7 +35,7 @@ def can_be_centred(model: Model) -> bool:
     Guards of contacts and cables read the steps in the unknowns of the model, and a length that is an input would enter
     the frame with its rates.
     """
-    if not flies_alone(model) or model.scene.touches_exactly or SlackCables(model).cables:
+    if not flies_alone(model) or model.scene.touches_exactly or OneSided(model).pairs:
         return False
     (name,) = model.discrete.rods
     return model.discrete.layout.of_rod(name, "length") is None

@@ -19,7 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.slack_cables import Tautness
+from cosserat_casadi.motion.one_sided import Closed
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import CarriedStep
@@ -37,7 +37,7 @@ class Resume:
 
     Attributes:
         at: the state in the coordinates of the steps, with forces of contacts behind them.
-        phases: which cables are taut, or what touches.
+        phases: which cables are taut and which joints at their stops, or what touches.
         places: abscissae to which the contacts were last followed.
         guard: number of the guard that came to zero there; None where none did.
         first: size of the next step, s.
@@ -45,7 +45,7 @@ class Resume:
     """
 
     at: Instant
-    phases: ContactPhase | Tautness
+    phases: ContactPhase | Closed
     places: tuple[float, ...]
     guard: int | None
     first: float
@@ -213,7 +213,7 @@ def _instant(data: Mapping[str, Any]) -> Instant:
     return Instant(float(data["t"]), _array(data["x"]), _array(data["v"]), _array(data["a"]))
 
 
-def _phases_data(phases: ContactPhase | Tautness, places: tuple[float, ...]) -> dict[str, Any]:
+def _phases_data(phases: ContactPhase | Closed, places: tuple[float, ...]) -> dict[str, Any]:
     if not isinstance(phases, ContactPhase):
         return {"taut": list(phases)}
     return {
@@ -227,7 +227,7 @@ def _phases_data(phases: ContactPhase | Tautness, places: tuple[float, ...]) -> 
     }
 
 
-def _phases(data: Mapping[str, Any]) -> tuple[ContactPhase | Tautness, tuple[float, ...]]:
+def _phases(data: Mapping[str, Any]) -> tuple[ContactPhase | Closed, tuple[float, ...]]:
     if "taut" in data:
         return tuple(bool(taut) for taut in data["taut"]), ()
     phase = ContactPhase(

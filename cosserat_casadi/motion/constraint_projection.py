@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 
@@ -44,8 +43,7 @@ class Closing:
         discrete = self.model.discrete
         entries = [span for _, span in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
         # The row of a cable that may go slack holds its tension too.
-        taut = [cable for cable in discrete.cables if not EFFECTS[cable.tendon.kind].may_go_slack(cable.tendon)]
-        entries += [discrete.tension(cable) for cable in taut]
+        entries += [discrete.tension(cable) for cable in discrete.cables if not cable.may_go_slack]
         numbers = [np.arange(span.start, span.stop) for span in entries]
         return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
 

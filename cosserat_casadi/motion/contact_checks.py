@@ -12,8 +12,8 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -26,11 +26,9 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     if simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
-    slack = [
-        cable.tendon.name for cable in model.discrete.cables if EFFECTS[cable.tendon.kind].may_go_slack(cable.tendon)
-    ]
-    if slack:
-        what = f"exact contact in motion does not go with cables that may go slack: {', '.join(slack)}"
+    sided = [pair.name for pair in OneSided(model).pairs]
+    if sided:
+        what = f"exact contact in motion does not go with slack cables or with stops of joints: {', '.join(sided)}"
         yield Problem("obstacles", what, remedy)
     yield from _too_thin(model)
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_along, distances
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import along_curve, distances, surface
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -24,6 +25,7 @@ from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import FAR, Facing, Minimum, Rows, SectionGap
 from cosserat_casadi.motion.lying_sections import laid_sections
 from cosserat_casadi.motion.moving_points import centre_of, nodes_of
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 
 SECTIONS_IN_ELEMENT = 200
 """Sections of an element at which gaps are looked at first."""
@@ -98,7 +100,7 @@ class RodFacing(Facing):
         """The gap at a section, a little beyond the ends of the rod too."""
         rows = self._rows(X)
         tangent = rows.first @ nodes
-        distance = distance_along(self.obstacle, rows.value @ nodes, tangent, rows.second @ nodes)
+        distance = along_curve(self._surface.matrices(rows.value @ nodes), tangent, rows.second @ nodes)
         taper = self._radii[1] - self._radii[0]
         gap = distance.value - self._radii[0] - X * taper
         slope = distance.slope - taper
@@ -230,6 +232,12 @@ class RodFacing(Facing):
     @cached_property
     def _grid(self) -> Grid:
         return self.model.discrete.rods[self.owner].grid
+
+    @cached_property
+    def _surface(self) -> RepeatedCall:
+        function = surface(self.obstacle)
+        point = function.mx_in()
+        return RepeatedCall(ca.Function("surface", point, [ca.densify(part) for part in function.call(point)]), 3)
 
     @cached_property
     def _looking(self) -> FloatArray:

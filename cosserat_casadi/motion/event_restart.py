@@ -1,4 +1,4 @@
-"""How a motion goes on where its equations change: what cables and contacts have in common."""
+"""How a motion goes on where its equations change: what cables, stops and contacts have in common."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 Phases = TypeVar("Phases")
-"""State of the switches for a while: the cables that are taut, or the contacts."""
+"""State of the switches for a while: the cables that are taut and the joints at their stops, or the contacts."""
 
 HeldPhases = TypeVar("HeldPhases", covariant=True)
 """The same, of what only holds and does not take it."""
@@ -20,17 +20,18 @@ HeldPhases = TypeVar("HeldPhases", covariant=True)
 
 @dataclass(frozen=True)
 class ContactEvent:
-    """A change of contact in a motion, or of a cable that may go slack.
+    """A change of contact in a motion, of a cable that may go slack, or of a joint with a stop.
 
     Attributes:
         kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable
-            "taut" or "slack".
+            "taut" or "slack", of a joint "stop_hit" or "stop_left".
         time: s.
-        owner: name of the rod, or of the body, that touches; or of the cable.
-        obstacle: name of the obstacle; empty of a cable.
-        place: abscissa X of the section; 0 of a body or a cable.
+        owner: name of the rod, or of the body, that touches; or of the cable or the joint.
+        obstacle: name of the obstacle, "lower_stop" or "upper_stop"; empty of a cable.
+        place: abscissa X of the section; 0 of a body, a cable or a joint.
         energy: kinetic energy that the impact took, or the cable that became taut, J; zero of the others.
-        impulse: of the obstacle on the rod, along its normal there, N s; zero of the others.
+        impulse: of the obstacle on the rod, along its normal there, N s, or of the stop on the joint, N s or N m s;
+            zero of the others.
         of_body: whether it is a body that touches.
     """
 
@@ -50,7 +51,7 @@ class Restart(Generic[HeldPhases]):
 
     Attributes:
         start: state with accelerations and tensions, or forces of contact.
-        phases: which cables are taut, or what touches.
+        phases: which cables are taut and which joints at their stops, or what touches.
         lost: energy that an impact has taken, J.
         work: that a base or another input in motion has done in it, J.
         events: changes of contact.
@@ -66,7 +67,7 @@ class Restart(Generic[HeldPhases]):
 
 
 class Switching(Protocol[Phases]):
-    """Cables or contacts that switch between equations of motion, each of them smooth for a while."""
+    """Cables and stops, or contacts, that switch between equations of motion, each of them smooth for a while."""
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
         """The phases at a state."""

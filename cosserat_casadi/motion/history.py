@@ -23,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, 
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.slack_cables import SlackCables, sags_by_cable
+from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -84,7 +84,7 @@ def equations_of(
 
 @dataclass(frozen=True)
 class Leg:
-    """The steps over one piece, or over a part of it in which no cable becomes slack or taut, and the same touches.
+    """The steps over one piece, or over a part of it in which cables, stops and contacts do not change.
 
     Attributes:
         piece: the inputs.
@@ -113,8 +113,8 @@ class History:
 
     Attributes:
         model: the model.
-        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
-            contact changes.
+        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, a
+            joint hits a stop or leaves it, or contact changes.
         method: of its steps.
         settings: how it steps.
         coordinates: coordinates of the steps; None for the unknowns of the model.
@@ -280,6 +280,28 @@ class History:
         return [step.end.time for _, step in self.steps]
 
 
+@dataclass(frozen=True)
+class FreeFlight:
+    """Helpers of steps of what nothing holds; they take time to be made, and are those of all motions of a model.
+
+    Attributes:
+        coordinates: coordinates of the steps; None for the unknowns of the model.
+        keeper: puts the momentum right; None where something is held.
+    """
+
+    coordinates: CentredCoordinates | None
+    keeper: MomentumKeeper | None
+
+
+def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
+    """The helpers for a model; arguments as of :func:`integrated`."""
+    # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
+    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
+    to_model = None if coordinates is None else coordinates.to_model
+    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    return FreeFlight(coordinates, keeper)
+
+
 def integrated(
     model: Model,
     pieces: Sequence[Piece],
@@ -292,6 +314,7 @@ def integrated(
     phases: ContactPhase | None = None,
     kernels: StepKernels | None = None,
     resume: Resume | None = None,
+    flight: FreeFlight | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -307,19 +330,21 @@ def integrated(
         phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
         kernels: as for :func:`equations_of`.
         resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
+        flight: that of the model; None for a new one.
 
     Raises:
         SceneError: the start contradicts the constraints.
     """
     inputs = pieces[0].at(pieces[0].start).value
     chosen = kernels or interpreted(model)
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume)
+    flight = flight or free_flight(model, p)
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight)
     if not model.scene.touches_exactly:
-        cables = SlackCables(model)
-        first = cables.first_phases(x, inputs)
+        pairs = OneSided(model)
+        first = pairs.first_phases(x, inputs)
         if resume is not None and not isinstance(resume.phases, ContactPhase):
             first = resume.phases
-        return switched(cables, first)
+        return switched(pairs, first)
     contacts = ExactContacts(model)
     if resume is not None and isinstance(resume.phases, ContactPhase):
         follower = Follower(contacts.facings, resume.phases.touches)
@@ -339,14 +364,12 @@ def _switched(
     p: FloatArray | None,
     kernels: StepKernels,
     resume: Resume | None,
+    flight: FreeFlight,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
     """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
-    # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
-    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
-    to_model = None if coordinates is None else coordinates.to_model
-    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    coordinates, keeper = flight.coordinates, flight.keeper
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     if coordinates is not None:

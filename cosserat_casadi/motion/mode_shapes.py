@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
@@ -50,23 +49,13 @@ def rod_shape(
         X: abscissae, shape (k,).
     """
     grid = model.discrete.rods[rod].grid
-    quaternions, by_position, by_quaternion = _nodal(model, rod)(x, inputs)
+    quaternions, by_position, by_quaternion = model.field_jacobian[rod](x, inputs)
     count = motions.shape[1]
     displacement = (by_position.full() @ motions).T.reshape(count, grid.size, 3)
     turned = (by_quaternion.full() @ motions).T.reshape(count, grid.size, 4)
     rotation = _rotation_vectors(turned, quaternions.full().T)
     interpolation = grid.interpolation_matrix(X)
     return RodShape(X, interpolation @ displacement, interpolation @ rotation)
-
-
-def _nodal(model: Model, rod: str) -> ca.Function:
-    """(x, inputs) ↦ quaternions at the nodes, and derivatives of positions and quaternions with x, node after node."""
-    x = ca.MX.sym("x", model.size)
-    inputs = ca.MX.sym("inputs", model.inputs.size)
-    positions, quaternions = model.fields[rod](x, inputs)[:2]
-    by_position = ca.jacobian(ca.vec(positions), x)
-    by_quaternion = ca.jacobian(ca.vec(quaternions), x)
-    return ca.Function("nodal", [x, inputs], [quaternions, by_position, by_quaternion])
 
 
 def _rotation_vectors(changes: NumberArray, quaternions: FloatArray) -> NumberArray:

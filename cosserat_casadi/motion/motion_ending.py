@@ -9,12 +9,12 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.slack_cables import SlackCables
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
 
 NEARLY_TAUT = 1e-3
-"""Length, over the rod's, that a cable may lack or have over where it counts as about to become taut."""
+"""Gap of a cable, over the rod's length, or of a joint at which it counts as about to become taut, or to stop."""
 
 DEPENDENT = 1e-2
 """Independence of the constraints below which they end a motion: it falls with the root of the time that is left."""
@@ -40,7 +40,7 @@ def outcome_of(history: History) -> MotionOutcome:
     outcome = OUTCOMES[history.outcome]
     if outcome not in (MotionOutcome.STEP_TOO_SMALL, MotionOutcome.NOT_SOLVED):
         return outcome
-    if snapping_cables(history):
+    if snapping(history):
         return MotionOutcome.SNAPPED
     if independence(history) < DEPENDENT:
         return MotionOutcome.SINGULAR_CONSTRAINT
@@ -74,15 +74,15 @@ def independence_of(derivatives: FloatArray) -> float:
     return float(sizes[-1] / sizes[0])
 
 
-def snapping_cables(history: History) -> list[str]:
-    """Names of the cables that may go slack and are next to taut where a motion ends."""
+def snapping(history: History) -> list[str]:
+    """Names of the cables next to taut, and of the joints next to a stop, where a motion ends."""
     model = history.model
     end = history.at(history.end.time)
-    slack = SlackCables(model)
-    if not slack.cables:
+    sided = OneSided(model)
+    if not sided.pairs:
         return []
-    sags = slack.sags(end.x, end.inputs)
-    return [cable.tendon.name for cable, sag in zip(slack.cables, sags, strict=True) if abs(sag) <= NEARLY_TAUT]
+    gaps = sided.gaps(end.x, end.inputs)
+    return [pair.name for pair, gap in zip(sided.pairs, gaps, strict=True) if abs(gap) <= NEARLY_TAUT]
 
 
 def message_of(history: History, outcome: MotionOutcome) -> str:
@@ -93,7 +93,7 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
         return f"{outcome.value} {unsettled(history)}"
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
     if outcome is MotionOutcome.SNAPPED:
-        return f"{outcome.value} Reached: {reached}; the cable is {', '.join(snapping_cables(history))}."
+        return f"{outcome.value} Reached: {reached}; the cable or joint is {', '.join(snapping(history))}."
     return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
 
 

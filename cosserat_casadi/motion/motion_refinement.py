@@ -25,6 +25,8 @@ from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.simulate import (
+    COARSER,
+    LEFT_BY_FINER,
     MOST_TIGHTENINGS,
     Companion,
     Simulator,
@@ -78,12 +80,6 @@ FELT = 0.02
 
 LAST = 3
 """One of so many coefficients counts as one of the last."""
-
-COARSER = 3.0
-"""Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
-
-LEFT_BY_FINER = 1.4
-"""Error of the finer of the two over their distance, where errors go with the square root of tolerances or faster."""
 
 
 @dataclass(frozen=True)

@@ -60,25 +60,25 @@ def tip_poses(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Pose
     Returns:
         shapes (T, 3) and (T, 4).
     """
-    position, quaternion, _ = _evaluated(model.tip[rod], x, inputs)
+    position, quaternion, _ = evaluated(model.tip[rod], x, inputs)
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
 def body_poses(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Poses:
     """Poses of a rigid body, shapes (T, 3) and (T, 4); arguments as in :func:`tip_poses`."""
-    position, quaternion, _ = _evaluated(model.body[body], x, inputs)
+    position, quaternion, _ = evaluated(model.body[body], x, inputs)
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
 def tip_frames(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Frames:
     """Frames of a rod's tip; arguments as in :func:`tip_poses`."""
-    position, _, rotation = _evaluated(model.tip[rod], x, inputs)
+    position, _, rotation = evaluated(model.tip[rod], x, inputs)
     return Frames(position[:, :, 0], rotation)
 
 
 def body_frames(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Frames:
     """Frames of a rigid body; arguments as in :func:`tip_poses`."""
-    position, _, rotation = _evaluated(model.body[body], x, inputs)
+    position, _, rotation = evaluated(model.body[body], x, inputs)
     return Frames(position[:, :, 0], rotation)
 
 
@@ -96,7 +96,7 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
         shapes (T, k, 3) and (T, k, 4).
     """
     # The nodes are asked for once a time, and the sections follow by one matrix: less than a call for each section.
-    nodal_position, nodal_quaternion, *_ = _evaluated(model.fields[rod], x, inputs)
+    nodal_position, nodal_quaternion, *_ = evaluated(model.fields[rod], x, inputs)
     abscissae = np.atleast_1d(np.asarray(X, dtype=float))
     interpolation = model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
     position = np.einsum("kn,tin->tki", interpolation, nodal_position)
@@ -109,12 +109,12 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
 def states_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> ActuatorStates:
     """Effort and conjugate of an actuator or a joint from its function; arguments as in :func:`tip_poses`."""
     # The third output of an actuator, the rate of the conjugate with the unknowns, is for control.
-    effort, conjugate, *_ = _evaluated(function, x, inputs)
+    effort, conjugate, *_ = evaluated(function, x, inputs)
     return ActuatorStates(effort[:, 0, 0], conjugate[:, 0, 0])
 
 
-def _evaluated(function: ca.Function, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
-    """Outputs of a function of (x, inputs) at T times, each of shape (T, rows, columns)."""
+def evaluated(function: ca.Function, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
+    """Outputs of a function of (x, inputs) at T times, of shape (T, rows, columns) each."""
     count = len(x)
     shapes = [function.size_out(index) for index in range(function.n_out())]
     # CasADi maps over one time at least; a motion that never started has none.

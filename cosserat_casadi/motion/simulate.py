@@ -22,7 +22,7 @@ from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import told_inside, told_passage, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
-from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -59,6 +59,12 @@ TIGHTER = 10.0
 
 LEFT_BY_TIGHTER = 0.5
 """Error of the more exact of the two over their distance: a tenth of the tolerance leaves a third of the error."""
+
+COARSER = 3.0
+"""Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
+
+LEFT_BY_FINER = 1.4
+"""Error of the finer of the two over their distance, where errors go with the square root of tolerances or faster."""
 
 SLOPE = 0.8
 """Power of a step's tolerance that the error of the paths is taken to go with."""
@@ -160,6 +166,10 @@ class Simulator:
         """The inputs over time."""
         return moving_inputs(self.model)
 
+    @cached_property
+    def _flight(self) -> FreeFlight:
+        return free_flight(self.model)
+
     @property
     def _constrained(self) -> bool:
         return self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential)
@@ -232,20 +242,25 @@ class Simulator:
         """
         wanted = CLEAR * tolerance if flies_free(self.model) else tolerance
         coarse_paths = self.paths(coarse)
+        allowed = max(tolerance, enough * wanted)
         timed = TimedHistory(coarse, float("nan"), first, first)
+        factor, left = TIGHTER, LEFT_BY_TIGHTER
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
-            tighter = timed.tolerance / TIGHTER
+            tighter = timed.tolerance / factor
             fine = self.controlled(tighter)
             fine_paths = self.paths(fine)
             distance = path_distance(coarse_paths, fine_paths)
-            error = LEFT_BY_TIGHTER * distance
+            error = left * distance
             sufficient = _sufficient(timed.tolerance, distance, wanted)
-            timed = TimedHistory(fine, error, tighter, sufficient, Companion(timed.history, LEFT_BY_TIGHTER))
+            asked = _foretold(timed.tolerance, distance, allowed)
+            timed = TimedHistory(fine, error, tighter, sufficient, Companion(timed.history, left))
             coarse_paths = fine_paths
-            if error <= max(tolerance, enough * wanted):
+            if error <= allowed:
                 break
+            if asked > tighter / COARSER:
+                factor, left = COARSER, LEFT_BY_FINER
         return timed
 
     def _with_given_step(self, size: float) -> TimedHistory:
@@ -294,6 +309,7 @@ class Simulator:
             phases=self.start.phases,
             kernels=kernels,
             resume=self.start.resume,
+            flight=self._flight,
         )
         if self.source is not None:
             self.source.learn(history.statistics)
@@ -312,11 +328,15 @@ def _sufficient(coarse: float, distance: float, wanted: float) -> float:
         distance: error of the paths that it leaves.
         wanted: error of the paths.
     """
+    # Not below the tenth of it that was tried: that one leaves what it leaves.
+    return max(_foretold(coarse, distance, wanted), coarse / TIGHTER)
+
+
+def _foretold(coarse: float, distance: float, wanted: float) -> float:
+    """Tolerance of a step that leaves a wanted error by the power that errors go with, at most the coarse one."""
     if distance <= wanted:
         return coarse
-    # Not below the tenth of it that was tried: that one leaves what it leaves.
-    share = float((wanted / distance) ** (1.0 / SLOPE))
-    return coarse * max(share, 1.0 / TIGHTER)
+    return coarse * float((wanted / distance) ** (1.0 / SLOPE))
 
 
 def simulate(

@@ -47,7 +47,8 @@ class MotionOutcome(Enum):
     NO_START = "No motion was computed: no state to start from was found."
     NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
     SNAPPED = (
-        "The motion ended early: a slack cable became taut and slack over and over, or had no motion to go on by: "
+        "The motion ended early: a cable became taut and slack, or a joint hit a stop, over and over, or "
+        "had no motion to go on by: "
         "damp the rod, or move more slowly."
     )
     TOO_MANY_STEPS = (

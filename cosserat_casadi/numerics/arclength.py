@@ -20,6 +20,9 @@ from cosserat_casadi.numerics.newton import relative_norm
 SINGULAR = 1e-9
 """A singular value below this share of the largest is zero to rounding."""
 
+BEHIND = 1e-4
+"""How far behind a corner a path goes on: growth of the side of a pair that was zero before it."""
+
 STILL_HELPS = 0.5
 """Share of the residual that a step below the tolerance may leave and count as a help."""
 
@@ -137,6 +140,7 @@ class Curve:
         rows: what each equation is multiplied by where linear systems are solved, shape (n,); None where all are of one
             size. Residuals are measured without.
         singular: share of the largest singular value below which one is zero to rounding.
+        pairs: equations of pairs of which one is zero, whose curve has a corner where they change places.
     """
 
     path: Path
@@ -144,6 +148,7 @@ class Curve:
     settings: ArcSettings
     rows: FloatArray | None = None
     singular: float = SINGULAR
+    pairs: tuple[int, ...] = ()
 
     def residual(self, y: FloatArray) -> FloatArray:
         """Residual g(y), shape (n,)."""
@@ -238,6 +243,26 @@ class Curve:
         if cosine < self.settings.min_cosine:
             return None
         return point, corrected.steps
+
+    def round_corner(self, current: ArcPoint) -> ArcPoint | None:
+        """The point just behind a corner next to a point; None where there is no corner.
+
+        The gradient of a pair's equation is that of its side that is zero: behind the corner this grows.
+        """
+        derivative = self.derivative(current.y)
+        for number in self.pairs:
+            across = derivative[number] / np.linalg.norm(derivative[number])
+            predicted = current.y + BEHIND * across
+            corrected = self.correct(predicted, plane_through(predicted, across))
+            if corrected is None:
+                continue
+            distance = float(np.linalg.norm(corrected.y - current.y))
+            point = self.point(corrected.y, across, current.length + distance)
+            after = self.derivative(corrected.y)[number]
+            turned = abs(after @ across) < self.settings.min_cosine * np.linalg.norm(after)
+            if point is not None and turned and distance < self.settings.longest:
+                return point
+        return None
 
 
 def plane_through(y: FloatArray, normal: FloatArray) -> Hyperplane:

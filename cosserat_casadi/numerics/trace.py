@@ -73,12 +73,14 @@ class Trace:
         events: special points in the order of travel.
         outcome: how it ended; None while under way.
         branch: index of the first point on the crossing branch, None while on the first curve.
+        corner: arclength behind the last corner.
     """
 
     points: list[ArcPoint]
     events: list[Event] = field(default_factory=list)
     outcome: PathOutcome | None = None
     branch: int | None = None
+    corner: float = -np.inf
 
 
 def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, guard: Guard | None = None) -> Trace:
@@ -134,6 +136,13 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     current = traced.points[-1]
     step = curve.bounded(current, step)
     advance = curve.advance(current, step)
+    if advance is None and step <= SEPARATE and current.length > traced.corner + SEPARATE:
+        behind = curve.round_corner(current)
+        if behind is not None:
+            traced.points.append(behind)
+            traced.corner = behind.length
+            traced.outcome = _outcome(traced, step, bifurcation_missing=leave_at != 0)
+            return step
     if advance is None:
         return _halved(traced, step, limits.shortest)
     point, corrections = advance

@@ -100,7 +100,7 @@ class _Followed:
             rate=lambda x, t: unscaled.rate(scale * x, t),
             start=start / scale,
         )
-        return Curve(scaled, self.monitor, settings)
+        return Curve(scaled, self.monitor, settings, pairs=tuple(self.model.discrete.pair_rows))
 
     def record(self, traced: Trace, message: str = "") -> EquilibriumPath:
         """A trace as arrays.

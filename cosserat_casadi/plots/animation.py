@@ -25,10 +25,10 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, rod_colour, rod_style
+from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, actuator_colour, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
-from cosserat_casadi.plots.obstacle_drawing import surface_lines
+from cosserat_casadi.plots.obstacle_drawing import draw_surfaces, surface_lines
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 FORMATS = (".gif", ".mp4")
@@ -40,7 +40,11 @@ FRAME_RATE = 25
 MOST_FRAMES = 500
 """Frames of an animation, all of which are held in memory; of a longer one they are further apart."""
 
-DPI = 100
+SIZE = (9.6, 5.4)
+"""Width and height of the picture, inches."""
+
+DPI = {".gif": 80, ".mp4": 200}
+"""Dots per inch: 1920 × 1080 dots in MP4, 768 × 432 in GIF, whose frames are not compressed against each other."""
 
 MARGIN = 0.08
 """Free room around the motion, relative to its extent."""
@@ -51,7 +55,7 @@ TURNING = np.linspace(0.0, 1.0, 11)
 AXIS_LENGTH = 0.25
 """Length of such an axis relative to the extent of the motion."""
 
-TITLE_LETTERS = 70
+TITLE_LETTERS = 100
 """Letters of a title in one line."""
 
 TICKS = 5
@@ -228,7 +232,7 @@ def _writer_of(figure: Any, suffix: str, seconds_a_frame: float) -> Iterator[tup
             writer = PillowWriter(fps=_rate_of_gif(seconds_a_frame))
         else:
             writer = FFMpegWriter(fps=1 / seconds_a_frame)
-        writer.setup(figure, str(drawn), dpi=DPI)
+        writer.setup(figure, str(drawn), dpi=DPI[suffix])
         try:
             yield writer, drawn
         except BaseException:
@@ -277,7 +281,7 @@ class _Film:
         if plane is None:
             projection = "3d"
 
-        self.figure = figure_class()(figsize=(6.4, 4.8), layout="constrained")
+        self.figure = figure_class()(figsize=SIZE, layout="constrained")
         title = textwrap.fill(frames.model.scene.title or "Untitled scene", TITLE_LETTERS)
         self.figure.suptitle(title, fontsize=11, fontweight="bold")
         axes = self.figure.add_subplot(projection=projection)
@@ -286,12 +290,14 @@ class _Film:
         self._lines = self._draw(frames.model, shapes) + self._draw_obstacles(frames, shapes)
         if frames.section_axes:
             self._lines += self._draw_section_axes(frames, shapes)
+        standing = [obstacle for obstacle in frames.model.scene.obstacles if obstacle.body is None]
+        draw_surfaces(self._canvas, standing, shapes.points, {})
         draw_supports(self._canvas, frames.model.scene)
         self._set_limits(shapes)
         handles, labels = axes.get_legend_handles_labels()
-        # One rod needs no name.
-        if len(shapes.rods) > 1:
-            self.figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+        # One rod alone needs no name.
+        if len(handles) > 1:
+            self.figure.legend(handles, labels, loc="outside right center", fontsize=9)
         self.show(0)
         # Laid out once: a layout for every frame would let the axes jump about.
         self.figure.draw_without_rendering()
@@ -314,6 +320,9 @@ class _Film:
         for name, outlines in shapes.outlines.items():
             body = canvas.line(outlines[0], color=BODIES, linewidth=2.0, label=name)
             lines.append(_Moving(body, outlines))
+        for index, (name, course) in enumerate(shapes.courses.items()):
+            cable = canvas.line(course[0], color=actuator_colour(index), linewidth=1.2, label=name)
+            lines.append(_Moving(cable, course))
         for index, (name, centre_lines) in enumerate(shapes.rods.items()):
             rod = canvas.line(centre_lines[0], linewidth=3.5, label=name, **rod_style(index))
             lines.append(_Moving(rod, centre_lines))

@@ -27,11 +27,25 @@ LABEL_HEIGHT = 0.05
 LABEL_DISTANCE = 9.0
 """Between the numbers of an axis in space and its name, points: nearer they stand on each other."""
 
+SMALL = 8
+"""Size of letters in a small panel, points."""
+
+FEW_TICKS = 3
+"""Most intervals between its ticks."""
+
 THINNEST_BOX = 0.4
 """Least side of the box of a scene in space, relative to the longest."""
 
-ZOOM = 0.85
-"""Size of that box in its axes, which leaves room for labels."""
+ELEVATION, AZIMUTH = np.radians(22.0), np.radians(-58.0)
+"""Direction from which space is seen."""
+
+BOX = 1.906
+"""Diagonal of a box of zoom 1, in the units in which matplotlib's panel is PANEL high."""
+
+PANEL = 1.86
+
+MARGIN, SMALL_MARGIN = 0.25, 0.2
+"""Room for labels on each side of a panel in space, and of a small one, inches."""
 
 FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
@@ -46,12 +60,14 @@ class Canvas:
         plane: the coordinate plane that is shown; None shows space.
         size: largest extent of the scene, m, which arrows and section axes are scaled with.
         view_axes: the axes that the plane is counted in, a row each, shape (3, 3).
+        small: whether it is one of many panels, with small letters and few ticks.
     """
 
     axes: Any
     plane: Plane | None
     size: float
     view_axes: FloatArray = field(default_factory=lambda: WORLD)
+    small: bool = False
 
     @property
     def columns(self) -> tuple[int, ...]:
@@ -151,9 +167,14 @@ class Canvas:
     def label_axes(self) -> None:
         """Name the axes that are shown, with their unit; the vertical one of space where its end is known."""
         right, up = self.columns[:2]
-        distance = LABEL_DISTANCE if self.plane is None else None
-        self.axes.set_xlabel(f"{self._axis_name(right)}, m", labelpad=distance)
-        self.axes.set_ylabel(f"{self._axis_name(up)}, m", labelpad=distance)
+        style: dict[str, Any] = {}
+        if self.plane is None:
+            style["labelpad"] = LABEL_DISTANCE
+        if self.small:
+            style = {"labelpad": 0.0, "fontsize": SMALL}
+            self.axes.tick_params(labelsize=SMALL, pad=0.0)
+        self.axes.set_xlabel(f"{self._axis_name(right)}, m", **style)
+        self.axes.set_ylabel(f"{self._axis_name(up)}, m", **style)
 
     def _axis_name(self, index: int) -> str:
         """Name of an axis that is shown: one of the world's, or the direction that it has in the world."""
@@ -179,11 +200,23 @@ class Canvas:
         limits = np.stack([centre - widths / 2, centre + widths / 2], axis=1)
         self.axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
         # As a tuple: matplotlib would scale the array itself.
-        self.axes.set_box_aspect(tuple(widths), zoom=ZOOM)
+        self.axes.set_box_aspect(tuple(widths), zoom=self._zoom(widths))
         for name, width in zip(AXIS_NAMES, widths, strict=True):
             # Short axes have room for few ticks.
-            self.axes.locator_params(axis=name, nbins=max(2, round(TICKS * width / widths.max())))
-        self.axes.view_init(elev=22, azim=-58)
+            most = FEW_TICKS if self.small else TICKS
+            self.axes.locator_params(axis=name, nbins=max(1 if self.small else 2, round(most * width / widths.max())))
+        self.axes.view_init(elev=np.degrees(ELEVATION), azim=np.degrees(AZIMUTH))
         # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
         right, back, top = limits[:, 1]
-        self.axes.text(right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center")
+        self.axes.text(
+            right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center", fontsize=SMALL if self.small else None
+        )
+
+    def _zoom(self, widths: FloatArray) -> float:
+        """Zoom by which a box with these sides fills its panel but for the labels."""
+        x, y, z = BOX * widths / np.linalg.norm(widths)
+        sine, cosine = abs(np.sin(AZIMUTH)), abs(np.cos(AZIMUTH))
+        seen = np.array([x * sine + y * cosine, z * np.cos(ELEVATION) + (x * cosine + y * sine) * np.sin(ELEVATION)])
+        sides = self.axes.get_position().size * self.axes.figure.get_size_inches()
+        room = PANEL * (sides - 2 * (SMALL_MARGIN if self.small else MARGIN)) / sides.min()
+        return float((room / seen).min())

@@ -13,6 +13,9 @@ ROD_MARKERS = ("", "o", "^", "s", "D", "v")
 
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 BODIES = "#777777"
+DISKS = ("#777777", "#44aa99", "#aa4499", "#bb8844")
+"""Colours of rows of disks."""
+
 OBSTACLES = "#a08c5b"
 FORCES = "#b2560d"
 LINE_FORCES = "#c98b4b"
@@ -50,6 +53,11 @@ def rod_style(index: int) -> dict[str, Any]:
     marker = ROD_MARKERS[index // len(RODS) % len(ROD_MARKERS)]
     # A mark in every tenth of the picture: points along a rod may be many or few.
     return {"color": rod_colour(index), "marker": marker, "markersize": 7, "markevery": 0.1}
+
+
+def disk_colour(index: int) -> str:
+    """Colour of the row of disks of this index; they come again after the last."""
+    return DISKS[index % len(DISKS)]
 
 
 def actuator_colour(index: int) -> str:

@@ -70,7 +70,7 @@ def plot_modes(modes: Modes) -> Any:
     rows = max(1, ceil(count / columns))
     figure = figure_class()(figsize=(3.6 * columns, 3.5 * rows + 0.6), layout="constrained")
     # Labels of axes in space reach out of their panels.
-    figure.get_layout_engine().set(wspace=0.08)
+    figure.get_layout_engine().set(wspace=0.08, hspace=0.08)
     add_title(figure, modes.model.scene.title)
     if not count:
         figure.text(0.5, 0.5, modes.message, color=FAILURE, ha="center", wrap=True)
@@ -83,7 +83,7 @@ def plot_modes(modes: Modes) -> Any:
         if plane is None:
             projection = "3d"
         axes = figure.add_subplot(rows, columns, index + 1, projection=projection)
-        canvas = Canvas(axes, plane, drawn.size, view_axes)
+        canvas = Canvas(axes, plane, drawn.size, view_axes, small=True)
         _draw_mode(canvas, modes, drawn)
         axes.set_title(mode_words(mode, index), fontsize=10, color=FAILURE if mode.grows else PLAIN_TEXT)
     return figure

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
@@ -26,12 +28,14 @@ class MovingShapes:
         times: shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
         outlines: closed outlines of bodies, and rims of disks, by what a legend calls them, shape (T, k, 3), m.
+        courses: courses of cables and chambers by actuator, shape (T, k, 3), m.
         followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
     """
 
     times: FloatArray
     rods: dict[str, FloatArray]
     outlines: dict[str, FloatArray]
+    courses: dict[str, FloatArray]
     followed: dict[str, FloatArray]
 
     @property
@@ -88,4 +92,13 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
             # A legend leaves out what begins with an underscore: it names a row once.
             name = f"_{number}_{disk}" if disk else row.name or "disks"
             outlines[name] = sections.position[:, disk, None, :] + rim
-    return MovingShapes(times, rods, outlines, followed)
+    courses = {}
+    for actuator in model.scene.actuators:
+        if hasattr(actuator, "offset"):
+            X = drawn_places(actuator, SECTIONS)
+            sections = section_poses(model, actuator.rod, X, x, inputs)
+            across = np.stack([rotations(quaternions)[:, :, :2] for quaternions in sections.quaternion])
+            courses[actuator.name] = sections.position + np.einsum(
+                "tkij,jk->tki", across, known(offset_at(actuator, X)[0])
+            )
+    return MovingShapes(times, rods, outlines, courses, followed)

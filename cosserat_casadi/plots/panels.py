@@ -69,12 +69,11 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
                 continue
             axes = linear_axes if component >= 3 else panel
             style = _curve_style(len(rods), index, component)
-            # Strokes tell components and are named once; the picture beside names the rods.
-            shown_label = None
-            if label not in labelled:
-                shown_label = label
+            axes.plot(SAMPLES, curve, label=label if len(rods) == 1 else None, **style)
+            if len(rods) > 1 and label not in labelled:
+                # Strokes tell components and are named once, in grey; the picture beside names the rods.
+                axes.plot([], [], color="0.3", linestyle=style["linestyle"], label=label)
             labelled.add(label)
-            axes.plot(SAMPLES, curve, label=shown_label, **style)
         # Fields may jump where one element ends and the next begins.
         for element_end in discrete_rod.grid.known_places[1:-1]:
             panel.axvline(element_end, color="0.6", linewidth=0.8)

@@ -194,7 +194,9 @@ def _runs(styles: FloatArray) -> list[tuple[int, int, int]]:
 def _input_value(path: EquilibriumPath) -> str:
     numbers = np.ravel(path.value, order="F")
     components = ", ".join(f"{number:.4g}" for number in numbers)
-    return f"{path.name} [{components}]"
+    (unit,) = [entry.declared.unit for entry in path.model.scene.free_inputs() if entry.name == path.name]
+    value = f"[{components}]" if len(numbers) > 1 else components
+    return f"{path.name} {value}" if unit == "1" else f"{path.name} {value} {unit}"
 
 
 def _subtitle(path: EquilibriumPath) -> str:

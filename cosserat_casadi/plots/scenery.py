@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import UnloadedScene
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
+from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, disk_colour, rod_style
 from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import Disks, Scene
 
@@ -204,11 +204,11 @@ def _order_around_mean(points: FloatArray) -> Indices:
 
 def draw_disks(canvas: Canvas, solution: Solution) -> None:
     """Draw the rims of disks; the legend names a row once."""
-    for row in solution.model.scene.disks:
+    for index, row in enumerate(solution.model.scene.disks):
         label: str | None = row.name or "disks"
         for at in row.places:
             rim = in_world(solution.pose(at, row.rod), disk_rim(row))
-            canvas.line(rim, color=BODIES, linewidth=1.6, label=label)
+            canvas.line(rim, color=disk_colour(index), linewidth=1.6, label=label)
             label = None
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.plots.canvas import AXIS_NAMES, Plane
+from cosserat_casadi.plots.canvas import AXIS_NAMES, Canvas, Plane
 from cosserat_casadi.plots.colours import category_style
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.sweeps.outcome_table import LABELS, Sweep
@@ -72,7 +72,9 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     panels = [_add_view(figure, grid, view) for view in views]
     scatters = [_scatter(panel, points, view, shades) for panel, view in zip(panels, views, strict=True)]
     if shades is not None:
-        figure.colorbar(scatters[0], ax=panels, label=coloured_by, shrink=0.8, pad=0.02)
+        unit = sweep.record.get("units", {}).get(coloured_by, "1")
+        label = coloured_by if unit == "1" else f"{coloured_by}, {unit}"
+        figure.colorbar(scatters[0], ax=panels, label=label, shrink=0.8, pad=0.02)
     if show_inputs:
         _draw_inputs(figure.add_subplot(grid[:, -1]), sweep, varying[0], varying[1])
     panels[0].set_title(_subtitle(sweep), fontsize=10)
@@ -118,10 +120,7 @@ def _figure(views: tuple[_View, ...], show_inputs: bool) -> tuple[Any, Any]:
 def _add_view(figure: Any, grid: Any, view: _View) -> Any:
     cell = grid[view.row, view.column]
     if view.plane is None:
-        panel = figure.add_subplot(cell, projection="3d")
-        panel.set(xlabel="x, m", ylabel="y, m", zlabel="z, m")
-        panel.locator_params(nbins=4)
-        return panel
+        return figure.add_subplot(cell, projection="3d")
     right, up = view.plane
     panel = figure.add_subplot(cell)
     panel.set(xlabel=f"{AXIS_NAMES[right]}, m", ylabel=f"{AXIS_NAMES[up]}, m")
@@ -149,11 +148,10 @@ def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | N
         panel.set_aspect("equal", adjustable="datalim")
         return panel.scatter(*points[:, view.plane].T, **style)
     dots = panel.scatter(*points.T, **style)
-    extents = None
     if len(points):
-        extents = np.ptp(points, axis=0)
-    # A little smaller than its panel, which leaves room for the label of the third axis.
-    panel.set_box_aspect(extents, zoom=0.85)
+        canvas = Canvas(panel, None, float(np.ptp(points, axis=0).max()))
+        canvas.label_axes()
+        canvas.equalise(points)
     return dots
 
 

@@ -88,31 +88,46 @@ def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
     axes.set_title(words, fontsize=10, color=colour, wrap=True)
 
 
-def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
-    """Name of an equilibrium in a legend."""
-    verdict = VERDICTS[solution.stable]
-    if several:
-        return f"{number + 1}: {verdict}, {solution.energy:.4g} J"
-    return verdict
-
-
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
-    """The centre line, as thick as there are tubes in it."""
-    shape = solution.shape
+    """The centre line: of one equilibrium each tube has its colour, of several each equilibrium.
+
+    The line is as thick as there are tubes in it.
+    """
+    if not several:
+        _draw_nested(canvas, solution)
+        return
     reaches = solution.robot.translations(solution.inputs)
     colour = rod_colour(number)
     stroke = STROKES[solution.stable]
-    label: str | None = _name(solution, number, several=several)
+    label: str | None = f"{number + 1}: {VERDICTS[solution.stable]}, {solution.energy:.4g} J"
     ends = sorted({0.0, *(float(reach) for reach in reaches)})
     for start, end in pairwise(ends):
-        here = _between(shape.distance, start, end)
         tubes = int(np.sum(reaches >= end))
         width = WIDEST * tubes / len(reaches)
-        stations = shape.distance[here]
-        between = np.linspace(stations[:-1], stations[1:], DRAWN, axis=1).ravel()
-        line, _ = shape.between(between)
+        line = _centre_line(solution, start, end)
         canvas.line(line, color=colour, linestyle=stroke, linewidth=width, label=label)
         label = None
+
+
+def _draw_nested(canvas: Canvas, solution: TubeSolution) -> None:
+    """The tubes of an equilibrium, each over the tubes that enclose it and thinner."""
+    reaches = solution.robot.translations(solution.inputs)
+    stroke = STROKES[solution.stable]
+    # A tube that encloses another one ends before it.
+    for rank, index in enumerate(np.argsort(reaches, kind="stable").tolist()):
+        line = _centre_line(solution, 0.0, float(reaches[index]))
+        width = WIDEST * (len(reaches) - rank) / len(reaches)
+        name = solution.robot.names[index]
+        canvas.line(line, color=rod_colour(index), linestyle=stroke, linewidth=width, label=name)
+
+
+def _centre_line(solution: TubeSolution, start: float, end: float) -> FloatArray:
+    """Points of the centre line from one distance to another, shape (k, 3), m."""
+    shape = solution.shape
+    stations = shape.distance[_between(shape.distance, start, end)]
+    between = np.linspace(stations[:-1], stations[1:], DRAWN, axis=1).ravel()
+    line, _ = shape.between(between)
+    return np.asarray(line)
 
 
 def _between(distance: FloatArray, start: float, end: float) -> npt.NDArray[np.bool_]:

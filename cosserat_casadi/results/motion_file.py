@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.checkpoint import KEY
 from cosserat_casadi.motion.event_restart import ContactEvent
-from cosserat_casadi.motion.pose_series import Poses
+from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
@@ -196,10 +196,10 @@ def _actuator_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
 
 
 def _joint_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
-    """Effort and coordinate by the names of their keys, such as moment and angle."""
+    """Effort and coordinate by the names of their keys, such as moment and angle, and the push of stops."""
     function = motion.model.joint[name]
-    states = motion.joint(name)
-    return {function.name_out(0): states.effort, function.name_out(1): states.conjugate}
+    values = evaluated(function, motion.x, motion.inputs)
+    return {key: value[:, 0, 0] for key, value in zip(function.name_out(), values, strict=True)}
 
 
 def _columns(motion: Motion) -> Iterator[Column]:

@@ -52,6 +52,7 @@ class Presentation:
 
 
 _MOTION = "results.motion_file:write_motion"
+_FILM = "plots.film:write_film"
 _SWEEP = "sweeps.outcome_file:write_sweep"
 
 PRESENTATIONS = {
@@ -59,6 +60,7 @@ PRESENTATIONS = {
         data="results.solution_file:result",
         facts="results.facts:solution_facts",
         figure="plots.scene_plot:plot_solution",
+        tables={".glb": _FILM, ".usda": _FILM},
     ),
     "EquilibriumPath": Presentation(
         data="results.path_file:path_result",
@@ -70,7 +72,7 @@ PRESENTATIONS = {
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
-        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION},
+        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, ".glb": _FILM, ".usda": _FILM},
     ),
     "Modes": Presentation(
         data="results.modes_file:modes_result",

@@ -62,18 +62,20 @@ def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:
 
 def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
     """Rows of the coordinates of strain a, columns of those of strain b."""
-    phi_a = ca.sparsify(ca.DM(igm.rod.at_nodes[a]))
-    phi_b = ca.sparsify(ca.DM(igm.rod.at_nodes[b]))
     # Efforts first add their rows at the nodes: one product with Φ for all of them.
     rows = []
     for effort, conjugate in igm.strain_functions:
         curvature = conjugate.curvature(a, b)
         if curvature is not None:
             rows.append(effort / igm.rod.energy_unit * curvature)
+    phi_a = igm.rod.at_nodes[a]
+    phi_b = igm.rod.at_nodes[b]
     if not rows:
         return ca.DM(phi_a.shape[1], phi_b.shape[1])
     total = sum(rows[1:], rows[0])
-    block = phi_a.T @ (ca.diag(total) @ phi_b)
+    left = ca.sparsify(ca.DM(phi_a)).T
+    right = ca.sparsify(ca.DM(phi_b))
+    block = left @ (ca.diag(total) @ right)
     # Symmetric to the last digit, and half the products.
     if a == b:
         return ca.triu2symm(ca.triu(block))

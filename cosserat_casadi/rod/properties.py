@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import (
     Numbers,
     Scalar,
@@ -159,7 +160,7 @@ class RodProperties:
         """Mean of the Hooke tensor's diagonal along the rod that scales the equations, shape (6,)."""
         if self.nominal is not None:
             return self.nominal.mean_hooke
-        points, weights = legendre.leggauss(8)
+        points, weights = gauss_legendre(8)
         X = (points + 1) / 2
         return np.asarray((weights / 2) @ known(self.hooke(X)))
 

@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.block_operators import cumulative_sum
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
 from cosserat_casadi.rod.kinematics import Shape
@@ -323,7 +324,7 @@ class RubbingCable(RoutedCable):
 def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points between the nodes of an element of width one and their weights, shape (intervals, points) each."""
     nodes = chebyshev.nodes(intervals)
-    points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
+    points, weights = gauss_legendre(BETWEEN)
     widths = np.diff(nodes)[:, None]
     return nodes[:-1, None] + widths * (points + 1) / 2, widths * weights / 2
 
@@ -357,7 +358,7 @@ def _missed_by_gauss(components: int) -> ca.Function:
     # 1 − σ².
     across = 2 * (e0 * e1 - both - STRAIGHT**2) / squared_length
     integral = q / 2 - q / 4 * across * (1 - share)
-    points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
+    points, weights = gauss_legendre(BETWEEN)
     gauss_sum = ca.SX(0)
     for point, weight in zip(((points + 1) / 2).tolist(), (weights / 2).tolist(), strict=True):
         between = left + point * (right - left)

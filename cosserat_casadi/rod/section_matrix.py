@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
-from numpy.polynomial import legendre
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import (
     Numbers,
     any_symbolic,
@@ -55,7 +55,7 @@ def _gauss_points(rod: DiscreteRod, element: int) -> tuple[FloatArray, FloatArra
 
     Enough for the product of two polynomials with a section stiffness of degree four.
     """
-    points, weights = legendre.leggauss(max(rod.discretisation.modes) + 8)
+    points, weights = gauss_legendre(max(rod.discretisation.modes) + 8)
     start, end = rod.grid.breaks[element : element + 2]
     width = end - start
     X = start + width * (points + 1) / 2

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, listing, shown
+from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.values import numbers_of
 
 TIP = 1.0
 """Abscissa of a tip, where a joint is unless it says otherwise."""
@@ -51,6 +53,36 @@ def _circle(carriers: Mapping[str, str], name: str) -> list[str]:
     if carrier != name or len(passed) == 1:
         return []
     return list(passed)
+
+
+def rods_that_spin(scene: SceneTables) -> Iterator[Fault]:
+    """The motion of a straight rod that may turn about its tangent is not determined without inertia about it."""
+    if scene.get("simulation") is None:
+        return
+    carriers = _carriers(scene).values()
+    for name, (index, rod) in scene.named("rods").items():
+        inertia = numbers_of(rod.get("rotary_inertia"))
+        resists = len(inertia) == 3 and inertia[2] != 0.0
+        is_straight = "linear_density" in rod and "intrinsic" not in rod
+        if is_straight and not resists and name not in carriers and _turns_about_its_axis(scene, name, rod):
+            problem = "missing about the tangent: nothing resists a spin of the rod"
+            remedy = "three numbers > 0, kg m; material and section give them too"
+            yield Fault(("rods", index, "rotary_inertia"), problem, remedy)
+
+
+def _turns_about_its_axis(scene: SceneTables, name: str, rod: Table) -> bool:
+    """Whether nothing but balls and pins, which are on its axis, holds a rod."""
+    base = rod.get("base")
+    floats = isinstance(base, Mapping) and base.get("free") is True
+    for key, kinds in (("supports", SUPPORTS), ("joints", JOINTS)):
+        for _, holder in scene.tables(key):
+            if holder.get("rod") != name:
+                continue
+            record = kinds.record_of(holder)
+            if record is None or not record.turns_freely:
+                return False
+            floats = floats or holder.get("at") == 0
+    return floats
 
 
 def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:

@@ -40,8 +40,13 @@ from cosserat_casadi.scene.values import (
 
 
 class SupportRecord(Entry):
-    """A support, which holds the tip of a rod in the world."""
+    """A support, which holds the tip of a rod in the world.
 
+    Attributes:
+        turns_freely: whether the tip may turn about every axis through it.
+    """
+
+    turns_freely: ClassVar[bool] = False
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
     name: Name | None = Field(None, description="name of the support, a letter, then letters, digits and underscores")
@@ -111,6 +116,7 @@ kind = "pinned"
 position = [0.1, 0, 0.1]
 """
 
+    turns_freely: ClassVar[bool] = True
     kind: Literal["pinned"] = Field(description="position of the tip prescribed, moment free")
 
 
@@ -220,9 +226,15 @@ between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 
 
 
 class JointRecord(Oriented, Entry):
-    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names."""
+    """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names.
 
+    Attributes:
+        turns_freely: whether the section may turn about every axis through it.
+    """
+
+    turns_freely: ClassVar[bool] = False
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
+    instead: ClassVar[Mapping[str, str]] = {"rod": "between"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
     between: tuple[JointEnd, JointEnd] | None = Field(
@@ -347,11 +359,16 @@ kind = "spherical"
 position = [0.02, 0, 0]
 """
 
+    turns_freely: ClassVar[bool] = True
     kind: Literal["spherical"] = Field(description="the section stays at a point of the body and turns freely")
 
 
+STOP_KEYS = ("lower_stop", "upper_stop")
+"""Keys of the least and the largest value of a coordinate."""
+
+
 class AxisJoint(JointRecord):
-    """A joint that leaves one coordinate free, along which a spring, a damper, a motor or a drive may act.
+    """A joint that leaves one coordinate free, along which springs, dampers, stops, motors or drives may act.
 
     Attributes:
         coordinate_key: key that prescribes the coordinate.
@@ -369,16 +386,32 @@ class AxisJoint(JointRecord):
         stiffness: float  # in the units of the kind, as the two that follow
         rest: float
         damping: float
+        lower_stop: float | None
+        upper_stop: float | None
+        stop_stiffness: float | None
+    restitution: Share = Field(
+        0.0, description="share of the speed that is left after the joint has hit a stop, in motion, without unit"
+    )
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A drive says where the coordinate is: nothing else acts on it. Inputs have a name."""
+        """A drive says where the coordinate is: nothing else acts on it. Inputs have a name. Stops leave a range."""
         yield from super().conflicts(given)
-        for key in (cls.effort_key, "stiffness", "rest", "damping"):
+        for key in (cls.effort_key, "stiffness", "rest", "damping", *STOP_KEYS):
             if cls.coordinate_key in given and key in given:
                 yield Fault((key,), f"stands beside {cls.coordinate_key}", "which is prescribed: leave one of them out")
         if "rest" in given and "stiffness" not in given:
             yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
+        for key in ("restitution", "stop_stiffness"):
+            if key in given and not any(stop in given for stop in STOP_KEYS):
+                yield Fault((key,), "is of a stop, and the joint has none", "give lower_stop, upper_stop or both")
+        if "restitution" in given and "stop_stiffness" in given:
+            problem = "stands beside stop_stiffness, and an elastic stop gives back what it took"
+            yield Fault(("restitution",), problem, "leave one of them out")
+        lower, upper = (given.get(key) for key in STOP_KEYS)
+        if isinstance(lower, int | float) and isinstance(upper, int | float) and not lower < upper:
+            problem = f"must be > lower_stop = {shown(lower)}, got {shown(upper)}"
+            yield Fault(("upper_stop",), problem, "a joint that cannot move is fixed, or has a drive")
         if "name" not in given and (cls.coordinate_key in given or cls.effort_key in given):
             yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
 
@@ -401,9 +434,14 @@ class AxisJoint(JointRecord):
         return self.prescribed or not (isinstance(self.stiffness, float) and self.stiffness == 0.0)
 
     @property
+    def has_stops(self) -> bool:
+        """Whether a stop holds the coordinate at one end or both."""
+        return self.lower_stop is not None or self.upper_stop is not None
+
+    @property
     def has_coordinate(self) -> bool:
         """Whether something acts along the coordinate."""
-        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping")
+        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping", *STOP_KEYS)
         return any(getattr(self, key) is not None and key in self.model_fields_set for key in acting)
 
 
@@ -425,6 +463,7 @@ axis = [0, 1, 0]
 stiffness = 0.3            # or angle = 0.0: a drive, as an input
 damping = 0.001
 moment = 0.0               # of a motor, an input
+upper_stop = 0.8           # rad; and lower_stop, stop_stiffness or restitution
 """
 
     coordinate_key: ClassVar[str] = "angle"
@@ -438,6 +477,11 @@ moment = 0.0               # of a motor, an input
     stiffness: NotNegative = Field(0.0, description="moment of a spring by its angle, N m/rad")
     rest: Number = Field(0.0, description="angle at which the spring is unloaded, rad")
     damping: NotNegative = Field(0.0, description="moment by the rate of the angle, in motion, N m s/rad")
+    lower_stop: Number | None = Field(None, description="least angle, where a stop holds the joint, rad")
+    upper_stop: Number | None = Field(None, description="largest angle, where a stop holds the joint, rad")
+    stop_stiffness: Positive | None = Field(
+        None, description="moment of an elastic stop by the angle beyond it, N m/rad; left out, stops are rigid"
+    )
     angle: Number | None = Field(None, description="angle of a drive, which prescribes it, rad; any number of turns")
     moment: Number | None = Field(None, description="moment of a motor on the section about the axis, N m")
 
@@ -471,6 +515,11 @@ displacement = 0.0         # of a drive, an input; or stiffness, rest, damping a
     stiffness: NotNegative = Field(0.0, description="force of a spring by its displacement, N/m")
     rest: Number = Field(0.0, description="displacement at which the spring is unloaded, m")
     damping: NotNegative = Field(0.0, description="force by the speed of the slide, in motion, N s/m")
+    lower_stop: Number | None = Field(None, description="least displacement, where a stop holds the joint, m")
+    upper_stop: Number | None = Field(None, description="largest displacement, where a stop holds the joint, m")
+    stop_stiffness: Positive | None = Field(
+        None, description="force of an elastic stop by the displacement beyond it, N/m; left out, stops are rigid"
+    )
     displacement: Number | None = Field(None, description="displacement of a drive, which prescribes it, m")
     force: Number | None = Field(None, description="force of a motor on the section along the axis, N")
 

@@ -11,6 +11,9 @@ from cosserat_casadi.scene.orientations import ORIENTATION_KEYS
 PLACE = ("position", *ORIENTATION_KEYS)
 """Keys of an end in a body or in the world that say where the joint is."""
 
+KEYS = {"rod", "at", "body", "world", *PLACE}
+"""Keys of an end: one with another is left for its record to refuse."""
+
 Tables = dict[str, Any]
 
 
@@ -24,7 +27,7 @@ def place_joints_by_their_ends(tables: Tables) -> None:
     joints: list[tuple[int, Any]] = list(given.tables("joints"))
     for index, joint in joints:
         ends = joint.get("between")
-        if not isinstance(ends, list) or list(end_faults(ends)):
+        if not _are_two_tables(ends) or list(end_faults(ends)) or any(set(end) - KEYS for end in ends):
             continue
         rods = [end for end in ends if "rod" in end]
         if len(rods) == 1:
@@ -38,16 +41,23 @@ def place_joints_by_their_ends(tables: Tables) -> None:
 
 def end_faults(ends: Any) -> Iterator[Fault]:
     """Why two ends make no joint, without path; nothing where they are no two tables, which is another fault."""
-    if not isinstance(ends, list) or len(ends) != 2 or not all(isinstance(end, Mapping) for end in ends):
+    if not _are_two_tables(ends):
         return
     rods = [end for end in ends if "rod" in end]
     if not rods:
         yield Fault((), "joins no rod", "one end at least is a section of a rod: { rod = …, at = … }")
     elif len(rods) == 2 and all(_at(end) == 0 for end in rods):
         yield Fault((), "joins two bases", "start one of the rods from its other end")
-    for end in ends:
+    for number, end in enumerate(ends):
         if sum(key in end for key in ("rod", "body", "world")) != 1:
             yield Fault((), "has an end that is not of one thing", "each end has one of rod, body and world = true")
+        elif "rod" in end:
+            for key in (key for key in PLACE if key in end):
+                yield Fault((number, key), "stands in the end of a rod", "at says which section is jointed")
+
+
+def _are_two_tables(ends: Any) -> bool:
+    return isinstance(ends, list) and len(ends) == 2 and all(isinstance(end, Mapping) for end in ends)
 
 
 def _at(end: Table) -> Any:

@@ -350,22 +350,6 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         return admitted_strains(self.strain)
 
     @classmethod
-    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """The motion of a straight free rod is determined: something resists a spin about its tangent."""
-        base = given.get("base")
-        is_free = isinstance(base, Mapping) and base.get("free") is True
-        is_straight = "linear_density" in given and "intrinsic" not in given
-        if scene.get("simulation") is None or not is_free or not is_straight:
-            return
-        holders = [table for key in ("supports", "joints") for _, table in scene.tables(key)]
-        if any(table.get("rod") == given.get("name") for table in holders):
-            return
-        inertia = numbers_of(given.get("rotary_inertia"))
-        if "rotary_inertia" not in given or (len(inertia) == 3 and inertia[2] == 0.0):
-            problem = "missing about the tangent: nothing resists a spin of the free rod"
-            yield Fault(("rotary_inertia",), problem, "three numbers > 0, kg m; material and section give them too")
-
-    @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The elasticity is given once, for every admitted strain; damping for no other; inertia with its mass."""
         yield from _elasticity_given_once(given)

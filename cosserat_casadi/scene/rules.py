@@ -11,7 +11,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
-from cosserat_casadi.scene.assembly_rules import bases_on_nothing, bodies_that_nobody_holds, sections_held_twice
+from cosserat_casadi.scene.assembly_rules import (
+    bases_on_nothing,
+    bodies_that_nobody_holds,
+    rods_that_spin,
+    sections_held_twice,
+)
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
@@ -351,6 +356,7 @@ RULES: tuple[Rule, ...] = (
     bodies_that_nobody_holds,
     sections_held_twice,
     weightless_rods,
+    rods_that_spin,
     overlapping_supports,
     own_rules,
     miscounted_modes,

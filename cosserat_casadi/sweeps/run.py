@@ -563,6 +563,15 @@ def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: Fl
     return np.where(converged, within, 0.0)
 
 
+def _units(scene: Scene, columns: Sequence[str]) -> dict[str, str]:
+    """Units of the columns that set inputs; a number without unit has "1"."""
+    units: dict[str, str] = {}
+    for entry in scene.free_inputs():
+        of_entry = [column for column in columns if column == entry.name or column.startswith(f"{entry.name}.")]
+        units |= dict.fromkeys(of_entry, entry.declared.unit)
+    return units
+
+
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
     sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
     missed = {"missed": sweep.missed_count} if plan.estimate_errors else {}
@@ -579,6 +588,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "chosen": choice.plain(),
         "checked": checked,
         "swept": list(sweep.swept),
+        "units": _units(plan.scene, sweep.swept),
         **({"tubes": [tube.name for tube in plan.scene.tubes]} if plan.scene.tubes else {}),
         "parameters": list(plan.variants.parameters),
         "arguments": list(plan.variants.arguments),

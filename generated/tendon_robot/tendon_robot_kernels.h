@@ -41,12 +41,12 @@ int tendon_robot_k_richer_lack(const casadi_real** arg, casadi_real** res, casad
 #define tendon_robot_k_richer_lack_SZ_ARG 2
 #define tendon_robot_k_richer_lack_SZ_RES 1
 #define tendon_robot_k_richer_lack_SZ_IW 0
-#define tendon_robot_k_richer_lack_SZ_W 1351
+#define tendon_robot_k_richer_lack_SZ_W 1613
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 1429
+#define tendon_robot_k_richer_balance_SZ_W 1771
 int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1
@@ -66,7 +66,7 @@ int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 1360
+#define tendon_robot_k_tip_jacobian_SZ_W 815
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2

@@ -200,7 +200,7 @@ def test_a_muscle_without_moment_and_force_is_refused() -> None:
 def test_a_free_rod_that_may_spin_without_inertia_is_refused() -> None:
     tables = swimmer(4.0)
     del tables["rods"][0]["rotary_inertia"]
-    with pytest.raises(SceneError, match="nothing resists a spin of the free rod"):
+    with pytest.raises(SceneError, match="nothing resists a spin of the rod"):
         scene_from_dict(tables)
 
 

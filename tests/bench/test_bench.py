@@ -60,6 +60,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, s
     yield folder, *bench(folder)
 
 
+@pytest.mark.slow
 def test_every_point_is_measured(measured: tuple[Path, str, list[Measurement]]) -> None:
     _, _, rows = measured
     assert [row.name for row in rows] == [point.name for point in POINTS]
@@ -156,6 +157,7 @@ def test_a_point_that_is_not_compiled_says_why() -> None:
     assert replace(large, note="").pose_error < 1e-2
 
 
+@pytest.mark.slow
 def test_effects_are_priced_in_time() -> None:
     """The whole scene and the scene without each load, compiled and run."""
     wanted = planar()

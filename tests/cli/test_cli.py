@@ -92,6 +92,7 @@ def test_check_prices_the_scene(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
+@pytest.mark.slow
 def test_check_lists_parameters_and_solve_takes_their_values(wire: Path) -> None:
     names = '["wire.material.youngs_modulus", "wire.section.radius"]'
     done = cosserat("check", "wire.toml", "--set", f"parameters={names}", cwd=wire)
@@ -415,6 +416,7 @@ normal = [0, 0, 1]
 """
 
 
+@pytest.mark.slow
 def test_export_in_exact_contact(tmp_path: Path) -> None:
     """The contacts of the load cases are in the folder; other scenes refuse load cases."""
     (tmp_path / "table.toml").write_text(CONTACT)

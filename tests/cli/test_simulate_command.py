@@ -106,6 +106,12 @@ def test_all_files_are_written_and_the_report_is_in_words(
         assert words in shown
 
 
+def test_moving_meshes_are_written_at_a_speed(folder: Path, command: Callable[..., int]) -> None:
+    assert command("wire.toml", "--animation", "m.usda", "--speed", "0.5") == 0
+    assert new_files(folder) == ["m.usda"]
+    assert "endTimeCode = 40\n" in (folder / "m.usda").read_text()
+
+
 @pytest.mark.parametrize(("lift_offs", "words"), [(1, "1 impact, which took 0.5 J, 1 lift-off"), (2, "2 lift-offs")])
 def test_contacts_are_counted_in_words(
     folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str], lift_offs: int, words: str

@@ -46,6 +46,7 @@ def test_the_dae_vs_the_model(make: Callable[[], Model]) -> None:
     assert_allclose(value(x, xdot, u, z).full()[:, 0], expected, rtol=1e-11, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", mostly_slow([arm, supported], quick=[supported]))
 def test_jacobians_vs_differentiated_expressions(make: Callable[[], Model]) -> None:
     model = make()

@@ -89,7 +89,11 @@ def entries_by_parts(model: Model, parts: Assembled, x: FloatArray, load_factor:
     return entries
 
 
-@pytest.mark.parametrize("lengths", [(0.7, 0.7, 0.7), (0.7, 0.75, 0.8)], ids=["alike", "of different lengths"])
+@pytest.mark.parametrize(
+    "lengths",
+    [(0.7, 0.7, 0.7), pytest.param((0.7, 0.75, 0.8), marks=pytest.mark.slow)],
+    ids=["alike", "of different lengths"],
+)
 def test_parts_by_columns_make_the_jacobian(lengths: tuple[float, ...]) -> None:
     model = legs(*lengths)
     parts = in_parts(model)

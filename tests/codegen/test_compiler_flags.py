@@ -43,6 +43,7 @@ def test_arithmetic_without_infinities_is_refused(library: Callable[[str], Expor
         assert "compile without -ffast-math" in done.stderr
 
 
+@pytest.mark.slow
 def test_contact_without_infinities_is_refused(tmp_path: Path) -> None:
     made = exported_contact(over_bar(), tmp_path / "bar", np.array([[0.0, 0.0, -1.0]]), 2, 4)
     done = attempt("gcc", "-std=c99", "-ffast-math", "-fsyntax-only", made.folder / "bar.c")

@@ -47,6 +47,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
     return exported_contact(on_table(), tmp_path_factory.mktemp("table") / "table", down(60.0)[None], 4, 8)
 
 
+@pytest.mark.slow
 def test_touch_slide_and_lift_off(bar: ContactLibrary) -> None:
     """Where the rod touches the bar, how hard, and where its tip is are those of Python, there and back."""
     found = bar.loaded.start()
@@ -106,6 +107,7 @@ def test_derivatives_of_the_tip(bar: ContactLibrary, force: float) -> None:
     assert np.log2(errors[0] / errors[1]) > 1.8
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_line(table: ContactLibrary) -> None:
     """The abscissa from which the rod lies moves; the derivative of its tip is that of differences in C."""
     library = table.loaded
@@ -232,6 +234,7 @@ def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
         assert "No answer here tells its own error" in (folder / file).read_text()
 
 
+@pytest.mark.slow
 def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp_path: Path) -> None:
     """In header, README and manifest, as folders without contact do."""
     verified = Verified(("push.force.z=-4:-2",), 7, 0.25, 0, False)

@@ -144,6 +144,7 @@ def stepped_by_fmu(slave: FMU3Slave, described: ModelDescription, model: Model, 
     return outputs_of(slave, described)
 
 
+@pytest.mark.slow
 def test_fmu_is_valid_and_names_its_parameters(fmu: Path, described: ModelDescription) -> None:
     assert validate_fmu(str(fmu)) == []
     listed = {one.name: one for one in described.modelVariables if one.causality == "parameter"}

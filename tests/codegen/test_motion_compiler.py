@@ -133,6 +133,7 @@ def test_a_later_motion_of_the_same_rods_takes_them_from_the_cache(monkeypatch: 
         MotionCompiler(always=True).kernels(moving(arm(stiffness=1.1)))
 
 
+@pytest.mark.slow
 def test_parameters_that_are_bound_have_equations_of_their_own() -> None:
     model = moving({**arm(), "parameters": ["rod.length"]})
     short, long = model.at({"rod.length": 0.5}), model.at({"rod.length": 0.9})

@@ -42,6 +42,7 @@ def speeds(model: Model) -> FloatArray:
     return np.linspace(1.0, 3.0, model.inputs.size)
 
 
+@pytest.mark.slow
 def test_equations_of_motion(made: Exported) -> None:
     model, compiled = made.model, made.compiled
     random = np.random.default_rng(1)

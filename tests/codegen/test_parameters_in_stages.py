@@ -68,6 +68,7 @@ def test_compiled_stages(model: Model, near: Solution) -> None:
     )
 
 
+@pytest.mark.slow
 def test_stage_in_motion(model: Model) -> None:
     """Jacobians made of stiffness, damping and mass against CasADi's own."""
     stage = motion_stage(model, 0.02, parameters=True)

@@ -73,6 +73,7 @@ def test_constants_that_differ_by_rounding_share_a_kernel_and_stay_in_its_code()
         assert_allclose(float(found), value, rtol=1e-15, atol=0)
 
 
+@pytest.mark.slow
 def test_legs_of_any_length_share_one_kernel() -> None:
     """A stiffness of the equations is one, or one that is off by rounding, as the length of the leg has it."""
     lengths = (0.42, 0.43, 0.45, 0.44, 0.41, 0.46)

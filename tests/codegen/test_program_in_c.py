@@ -17,6 +17,7 @@ from cosserat_casadi.codegen.numbered import function_of
 from cosserat_casadi.codegen.products import Product
 from cosserat_casadi.codegen.program_in_c import FEW_RUNS, program_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
+from tests.families import mostly_slow
 
 ROD = {
     "name": "rod",
@@ -83,7 +84,7 @@ def test_function_of_a_model_is_the_same_as_steps(model: Model, name: str) -> No
     assert_same(written, function, 1e-14)
 
 
-@pytest.mark.parametrize("name", list(FUNCTIONS))
+@pytest.mark.parametrize("name", mostly_slow(FUNCTIONS, quick=["rate", "residual", "second_derivative", "shape"]))
 def test_function_of_a_model_is_the_same_in_c(model: Model, name: str) -> None:
     function = FUNCTIONS[name](model)
     _, compiled = in_c(function, f"program_{name}")

@@ -256,6 +256,7 @@ int main(void) {
 """
 
 
+@pytest.mark.slow
 def test_results_that_nobody_asks_for(tmp_path: Path) -> None:
     """Of three results only the first is given a place."""
     program = tmp_path / "one.c"
@@ -272,6 +273,7 @@ def test_results_that_nobody_asks_for(tmp_path: Path) -> None:
     assert run(tmp_path / "one").split() == ["3", "0"]
 
 
+@pytest.mark.slow
 def test_a_jacobian_of_too_many_statements_is_loops_with_the_same_solution(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

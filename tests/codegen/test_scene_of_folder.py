@@ -42,6 +42,7 @@ def uneven() -> Model:
     return build(wanted, chosen)
 
 
+@pytest.mark.slow
 def test_rods_that_differ(tmp_path: Path) -> None:
     model = uneven()
     read = read_scene(export(model, tmp_path / "uneven") / "scene.toml")

@@ -33,7 +33,7 @@ FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail", "__cpu_model"}
 MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["pinned", "fixed", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["fixed", "robot"]))
 def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
     made = library(name)
     for stem in (name, f"{name}_demo"):
@@ -85,7 +85,7 @@ def test_program_for_a_microcontroller(library: Library, name: str, single: bool
     run(*words, *include, tmp_path / "main.c", *objects, "--specs=nosys.specs", "-lm", "-o", tmp_path / "program")
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["robot"]))
 def test_shared_library_shows_the_functions_of_the_header_alone(library: Library, name: str) -> None:
     made = library(name)
     lines = run("nm", "-D", "--defined-only", made.compiled.library).splitlines()

@@ -108,6 +108,7 @@ def test_column_about_its_critical_loads(
     assert (found.verdict, found.negative, found.stable) == (verdict, negative, verdict == "stable")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param("robot", marks=pytest.mark.slow), pytest.param("tendons", marks=pytest.mark.slow), "cables"]
 )

@@ -78,6 +78,7 @@ def test_period_of_a_scene_in_exact_contact_is_refused(tmp_path: Path) -> None:
         export(Recipe(over_bar(), 2, 4).model(), tmp_path / "bar", period=1e-3)
 
 
+@pytest.mark.slow
 def test_period_by_the_command(tmp_path: Path) -> None:
     scene = str(ROOT / "examples" / "planar_strip.toml")
     written = cosserat("export", scene, "--output", "strip", "--period", "1e-2", cwd=tmp_path)

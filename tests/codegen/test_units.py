@@ -25,7 +25,7 @@ SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
             ("pinned", "units_dense.c"),
             ("gripper", "units_blocks.c"),
         ],
-        quick=[("planar", "units_dense.c"), ("gripper", "units_blocks.c")],
+        quick=[("planar", "units_dense.c")],
     ),
 )
 def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:

@@ -180,6 +180,7 @@ def on_dome() -> Solution:
 # Carried rods
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("share", "touching", "atol"),
     [

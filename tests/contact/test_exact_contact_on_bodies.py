@@ -184,6 +184,7 @@ def _equations(solution: Solution) -> tuple[ContactEquations, FloatArray]:
     return equations, np.concatenate([solution.x, forces, equations.state.places])
 
 
+@pytest.mark.slow
 def test_equations_have_their_exact_derivative(touching: Solution, lying: Solution) -> None:
     for solution in (touching, lying):
         equations, z = _equations(solution)
@@ -397,6 +398,7 @@ def test_a_disk_that_slips_off_loses_stability_at_the_limit() -> None:
     assert not path.stable[turns + 2]
 
 
+@pytest.mark.slow
 def test_rows_of_a_sweep_tell_the_contact(touching: Solution) -> None:
     names = row_results(parse_scene(FINGERS))
     (row,) = RowModel(FINGERS).solve(np.array([[0.0, 0.0, -PUSH]]))

@@ -181,6 +181,7 @@ def test_planes_that_coincide_are_as_one() -> None:
     assert_allclose(contact.force, one.contacts[0].force, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sideways", [3.0, pytest.param(0.0, marks=pytest.mark.slow)])
 def test_a_rod_lies_in_a_groove_as_on_a_plane(sideways: float) -> None:
     """At the bottom of the groove; what its walls press along y they press against each other, and the weight."""

@@ -23,6 +23,7 @@ def feet(inputs: np.ndarray) -> np.ndarray:
     return np.linalg.norm(inputs[LENGTH_INPUTS:].reshape(3, 3), axis=1)
 
 
+@pytest.mark.slow
 def test_the_margin_is_held_where_the_feet_alone_would_not(tmp_path: Path) -> None:
     """At the top, where the robot is symmetric and its smallest eigenvalue double."""
     model, top = robot(modes=3), arch(3)[1:2]

@@ -92,6 +92,7 @@ def assert_plan_is(model: Model, near: Solution, modulus: float | None, expected
     assert_allclose(near.inputs + STEP * first[:, 0], expected[0], rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_vs_nlp_in_motion() -> None:
     """Unknowns of a stage are algebraic states of a discrete system, the equations of motion their equation."""

@@ -51,6 +51,7 @@ def test_covariance_is_consistent_over_two_hundred_runs(plant):
     assert_allclose(error, entries, rtol=0.0, atol=band)
 
 
+@pytest.mark.slow
 def test_filter_in_c_vs_python(tmp_path):
     """Of a robot with few modes: the compiler takes several times as long over the equations of the whole one."""
     model = robot(modes=1, nodes=4)

@@ -246,6 +246,7 @@ def test_modes_that_do_not_resolve_the_rod_are_no_result() -> None:
     assert not found.met
 
 
+@pytest.mark.slow
 def test_a_stable_equilibrium_when_asked() -> None:
     """Beyond its critical load a column meets its target straight; asked for a stable one, it is told that none is."""
     column = scene(

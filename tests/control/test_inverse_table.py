@@ -199,6 +199,7 @@ def test_command_writes_a_row_for_each_target(tmp_path: Path) -> None:
     assert all(row["angle_gap"] == "" for row in read)
 
 
+@pytest.mark.slow
 def test_command_names_rows_that_fail(tmp_path: Path) -> None:
     given = wanted(bounds=BOUNDS)
     (tmp_path / "scene.toml").write_text(scene_text(given))

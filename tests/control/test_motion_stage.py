@@ -86,6 +86,7 @@ def test_an_optimum_replays_in_the_simulator(method: Collocation) -> None:
     assert np.abs(found.states[-1, half:]).max() < 0.5 * np.abs(found.states[STAGES // 2, half:]).max()
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_fatrop_vs_ipopt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Variables and constraints stage by stage: the next state is linear, the equations of motion follow its gap."""

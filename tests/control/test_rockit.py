@@ -26,7 +26,8 @@ def shot() -> object:
     return rockit.MultipleShooting(N=STAGES, intg="collocation")
 
 
-@pytest.mark.parametrize("method", [collocated, pytest.param(shot, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("method", [collocated, shot])
 def test_rockit_vs_nlp(method: Callable[[], object]) -> None:
     model, near = robot()
     ocp = rockit.Ocp(T=STAGES * STEP)

@@ -124,6 +124,7 @@ CENTRE = np.array([0.02, 0.01, 0.05])
 SIDE = np.array([0.4, -0.3, 0.2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [pytest.param("fixed", marks=pytest.mark.slow), "spherical"])
 def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     """Three rods that do not fit a body unloaded: all root wrenches and the body's pose found at once."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, scene_from_dict, solve
+from cosserat_casadi import Model, build, follow, scene_from_dict, solve
 from tests.families import mostly_slow
 
 ROD = {
@@ -85,3 +85,14 @@ def test_jacobian_vs_ad(load_factor: float, slack: bool) -> None:
     residual = model.path_residual(symbol, model.pack(), load_factor)
     ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
     assert_allclose(model.path_jacobian(x, model.pack(), load_factor).full(), ad, rtol=0, atol=1e-12)
+
+
+def test_path_on_which_a_cable_becomes_taut() -> None:
+    model = robot({"tension": 0.0}, {"length": 0.2505}, {"tension": 0.0}, slack=True)
+    path = follow(model, "cable_0.tension", 1.0)
+    assert path.converged, path.message
+    tensions = np.array(
+        [float(model.actuator["cable_1"](x, u)[0]) for x, u in zip(path.x, path.all_inputs, strict=True)]
+    )
+    assert tensions[0] < 1e-12 and tensions[-1] > 0.1
+    assert_allclose(path.x[-1], solve(model, {"cable_0.tension": 1.0}).x, rtol=0, atol=1e-8)

@@ -22,6 +22,7 @@ def refuse(*arguments: object) -> None:
     raise AssertionError("a warm solve began again from the unloaded scene")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("step", "turns"), mostly_slow([(2e-4, 500), (6e-4, 500), (6e-4, 120)], [(6e-4, 120)]))
 @pytest.mark.parametrize("kind", mostly_slow(["unknowns", "solution"], quick=["solution"]))
 def test_cables_moved_turn_after_turn(

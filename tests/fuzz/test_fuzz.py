@@ -9,16 +9,21 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cosserat_casadi import Scene, SceneError, parse_scene
+from cosserat_casadi import Scene, SceneError, parse_scene, scene_from_dict, solve
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.catalogue.cases import torsion_ratio
 from tests.catalogue.checks import solved
 from tests.conftest import ROOT
-from tests.fuzz.verdict import evaluate, verdict
+from tests.families import mostly_slow
+from tests.fuzz.verdict import evaluate, robot_verdict, verdict
 from tests.reference.extreme_scenes import extreme_scene, quick_scene
+from tests.reference.robot_scenes import joint_faults, robot_scene
 
 TEXT = (ROOT / "examples" / "planar_strip.toml").read_text()
 WORDS = sorted({word for word in TEXT.replace("=", " ").replace(",", " ").split() if not word.startswith("#")})
+JOINTED = 2
+"""Seed of a robot on a joint without stops."""
+
 SPOILT = [
     "0",
     "-1",
@@ -43,6 +48,21 @@ def test_extreme_scenes_end_truly(first: int) -> None:
     found = {seed: verdict(quick_scene(seed)) for seed in range(first, first + 10)}
     assert {seed: v.faults for seed, v in found.items() if v.faults} == {}
     assert sum(v.outcome == "converged" for v in found.values()) >= 4
+
+
+@pytest.mark.parametrize("seed", mostly_slow(range(20), quick=[1]))
+def test_robots_end_truly(seed: int) -> None:
+    """Joints with springs, motors and stops, disks and straight tendons, as the clamped rods that they come to."""
+    assert robot_verdict(seed).faults == ()
+
+
+def test_a_joint_out_of_balance_is_seen() -> None:
+    tables = robot_scene(JOINTED)
+    solution = solve(scene_from_dict(tables))
+    assert joint_faults(tables, solution, 1e-8) == []
+    (joint,) = tables["joints"]
+    softer = {**tables, "joints": [{**joint, "stiffness": 0.999 * joint["stiffness"]}]}
+    assert joint_faults(softer, solution, 1e-8) != []
 
 
 @pytest.mark.slow

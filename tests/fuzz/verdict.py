@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi import SceneError, Solution, scene_from_dict, solve
 from tests.pose_errors import distance_between
-from tests.reference.rods import rod_of
+from tests.reference.robot_scenes import as_clamped, joint_faults, robot_scene
 from tests.reference.weak_form import Claim, Violation, violation
 
 UNIT = 1e-9
@@ -47,6 +47,11 @@ class Verdict:
     faults: tuple[str, ...] = ()
 
 
+def robot_verdict(seed: int) -> Verdict:
+    """What becomes of a drawn robot: judged as the clamped rod that it is in equilibrium, and its joint beside it."""
+    return verdict(robot_scene(seed))
+
+
 def verdict(tables: dict[str, Any]) -> Verdict:
     """Solve a scene and judge the answer. What the package raises, but for a refusal, is a fault."""
     start = time.perf_counter()
@@ -80,16 +85,18 @@ def _judged(tables: dict[str, Any], solution: Solution, written: Any, seconds: f
         "wrench left at the tip": (found.tip, SLACK_STRAIN * shape + ROUNDING),
     }
     faults += [f"{name}: {value:.2g} > {bound:.2g}" for name, (value, bound) in checks.items() if not value <= bound]
+    faults += joint_faults(tables, solution, SLACK_STRAIN * shape + ROUNDING)
     return Verdict("converged", seconds, found.weak, gap, tuple(faults))
 
 
 def evaluate(tables: dict[str, Any], solution: Solution) -> Violation:
     """The weak form on what a solution claims."""
-    discretisation, base = solution.model.discretisation["rod"], solution.base_wrench()
-    claim = Claim(solution.strain, base.force, base.moment, discretisation.breaks, discretisation.modes)
+    discretisation = solution.model.discretisation["rod"]
+    clamped, force, moment = as_clamped(tables, solution)
+    claim = Claim(solution.strain, force, moment, discretisation.breaks, discretisation.modes)
     held = next((support["kind"] for support in tables.get("supports", [])), None)
     bending = solution.model.discrete.rods["rod"].properties.bending_stiffness
-    return violation(rod_of(tables), claim, bending, held)
+    return violation(clamped, claim, bending, held)
 
 
 def _estimate(solution: Solution) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, modes_of
@@ -23,6 +24,7 @@ def chosen(shapes: MadeUp, stages: list[str] | None = None, **changes: Any) -> F
     return with_discretisation(completed, draft, read_cases(completed, draft.inputs, shapes.data), told.append)
 
 
+@pytest.mark.slow
 def test_the_deviations_of_the_data_say_how_exact_the_model_is(shapes: MadeUp) -> None:
     """A tenth of 0.2 mm on 0.2 m; a tolerance that is written holds, and a guess of a deviation is not believed."""
     of_data = chosen(shapes).scene.accuracy

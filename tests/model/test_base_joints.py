@@ -116,6 +116,13 @@ def test_base_that_moves_as_an_input_takes_its_hinge_along() -> None:
     [
         (ends({"rod": "a", "at": 0.0}, {"rod": "b", "at": 0.0}), "joints[0].between", "joins two bases"),
         (ends({"body": "a"}, {"world": True}), "joints[0].between", "joins no rod"),
+        ({**ends(0, 0), "between": [{"rod": "a"}]}, "joints[0].between[1]", "missing"),
+        (ends({"rod": "a", "att": 0.0}, {"world": True}), "joints[0].between[0].att", "unknown key"),
+        (
+            ends({"rod": "a", "position": [0, 0, 1]}, {"world": True}),
+            "joints[0].between[0].position",
+            "stands in the end of a rod",
+        ),
         ({"rod": "a", "kind": "fixed"}, "joints[0].position", "missing"),
         (hinge(position=[0, 0, 1]), "joints[0].position", "stands in a joint at X = 0 without body"),
         (hinge("free"), "joints[0].at", "holds a base that is free"),
@@ -127,4 +134,14 @@ def test_refusals(joint: dict[str, Any], where: str, problem: str) -> None:
     rods = [link("a"), link("b"), link("free", base={"free": True}), carried]
     with pytest.raises(SceneError) as refused:
         scene_from_dict(scene(rods, [joint]))
-    assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]
+    assert [(one.where, one.problem) for one in refused.value.problems] == [(where, problem)]
+
+
+def test_a_rod_that_spins_on_a_ball_without_inertia_is_refused() -> None:
+    bar = {"name": "a", "length": 0.3, "stiffness": {"bending_y": 0.5}, "strain": "planar", "linear_density": 0.1}
+    ball = {"rod": "a", "at": 0.0, "kind": "spherical"}
+    simulation = {"duration": 0.1}
+    with pytest.raises(SceneError, match=r"rods\[0\].rotary_inertia.*resists a spin"):
+        scene_from_dict(scene([bar], [ball], simulation=simulation))
+    scene_from_dict(scene([{**bar, "rotary_inertia": [0, 0, 1e-6]}], [ball], simulation=simulation))
+    scene_from_dict(scene([bar], [hinge()], simulation=simulation))

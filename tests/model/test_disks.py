@@ -40,6 +40,7 @@ def cut() -> Scene:
     return scene_from_dict(tables)
 
 
+@pytest.mark.slow
 def test_a_rod_with_disks_vs_the_rod_cut_into_rods_with_bodies() -> None:
     one, three = solve(build(scene(ROW, loads=[WEIGHT, PUSH]))), solve(build(cut()))
     assert one.converged

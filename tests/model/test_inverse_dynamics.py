@@ -74,7 +74,7 @@ def test_residual_in_scalars_vs_that_of_matrices(family: str) -> None:
 OF_RODS = sorted(path.name for path in (ROOT / "examples").glob("*.toml") if "[[tubes]]" not in path.read_text())
 
 
-@pytest.mark.parametrize("name", OF_RODS)
+@pytest.mark.parametrize("name", mostly_slow(OF_RODS, quick=OF_RODS[::3]))
 def test_examples_at_rest_are_static_to_the_last_bit(name: str) -> None:
     tables = read_scene(ROOT / "examples" / name)
     model = build(tables)

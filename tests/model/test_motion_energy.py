@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from tests.families import mostly_slow
 from tests.moving_scenes import (
     FAMILIES,
     FOLLOW,
@@ -50,7 +51,7 @@ def only_bases_and_lengths(state: State, family: str) -> State:
     return State(state.x, state.v, state.a, state.inputs, rates, accelerations)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", mostly_slow([1, 2], quick=[1]))
 @EVERY
 def test_balance_of_energy(family: str, seed: int) -> None:
     """Kinetic and elastic energy grow by the powers that are put in, and by the work of what the equations lack.

@@ -141,6 +141,7 @@ def thrown() -> Motion:
     return simulate(free_rod(ball, modes=1, duration=0.14, tangent="1, 0.2, 0.1", along=1.5, strain="kirchhoff"))
 
 
+@pytest.mark.slow
 def test_it_flies_as_a_stone_until_it_strikes(thrown: Motion) -> None:
     first = thrown.events[0]
     before = thrown.times < first.time

@@ -169,6 +169,7 @@ def test_a_beam_falls_on_a_stop_as_a_linear_beam_does() -> None:
     assert abs(motion.energy.imbalance).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_energy_of_an_impact_is_what_the_kinetic_energy_falls_by(on_ball: Motion) -> None:
     impact = next(event for event in on_ball.events if event.kind == "impact")
     kinetic = []
@@ -278,6 +279,7 @@ def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None
         assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
 
 
+@pytest.mark.slow
 def test_a_start_that_is_not_found_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A soft rod that lies on a table from a quarter of its length on takes more turns than one to lie on few modes."""
     heavy = read_scene("examples/rod_on_table.toml", ["simulation={duration=0.1}"])

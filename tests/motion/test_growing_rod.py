@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
 from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
@@ -92,6 +93,7 @@ def galerkin(count: int, points: int) -> Galerkin:
     return Galerkin(slopes, integral @ slopes, integral, weights / 2)
 
 
+@pytest.mark.slow
 def test_a_rod_that_is_drawn_out_vs_independent_galerkin_method() -> None:
     """Weight acts at once and the rod is damped: its tip falls, swings and is pushed out."""
     motion = simulate(scene_from_dict(growing(1e-4)))

@@ -231,6 +231,7 @@ def largest_change_of_energy(steps: int, parts: int) -> FloatArray:
     return np.asarray(changes.reshape(parts, -1).max(axis=1))
 
 
+@pytest.mark.slow
 def test_energy_is_bounded_by_gauss() -> None:
     """It swings about its value and does not drift: late steps are as good as early ones."""
     changes = largest_change_of_energy(2000, 4)

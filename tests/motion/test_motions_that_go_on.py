@@ -16,6 +16,7 @@ from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
+from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
 from tests.motion.test_exact_contact_in_motion import BALL, moving, rod
 
@@ -67,7 +68,7 @@ def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_
     assert 0.8 * whole.error_estimate < second.error_estimate < 1.25 * whole.error_estimate
 
 
-@pytest.mark.parametrize("subject", ["held", "free", "touches"])
+@pytest.mark.parametrize("subject", mostly_slow(["held", "free", "touches"], quick=["held", "touches"]))
 def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> None:
     """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over."""
     if subject == "touches":

@@ -60,6 +60,7 @@ def test_a_record_takes_the_steps_of_what_it_records(count: int, interpolation: 
     assert_allclose(many.tip().position, few.tip().position, rtol=0, atol=3.0 * TOLERANCE * 0.4)
 
 
+@pytest.mark.slow
 def test_noise_of_a_record_is_as_exact_as_with_steps_that_end_at_each_knot(monkeypatch: pytest.MonkeyPatch) -> None:
     noise = np.random.default_rng(2).normal(scale=0.2, size=101)
     found = recorded(noise, "linear")

@@ -102,6 +102,7 @@ def test_a_rod_that_lies_down_is_never_deep_nor_pulled_and_its_energy_only_falls
     assert np.diff(energy.impacts).min() >= 0.0
 
 
+@pytest.mark.slow
 def test_a_motion_that_starts_in_contact_stays_at_rest(resting: Motion) -> None:
     assert resting.converged, resting.message
     assert not resting.events
@@ -133,6 +134,7 @@ def heavy_at_rest() -> Solution:
     return solve(build(read_scene(HEAVY)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("modes", mostly_slow([2, 3, 4, 5, 6, 7, 10, 12, 16, 24], quick=[5]))
 def test_a_heavy_rod_starts_in_contact_on_any_number_of_modes(modes: int, heavy_at_rest: Solution) -> None:
     """Few modes stand on as many sections as they have; without the table under it the rod would be unstable."""

@@ -226,6 +226,7 @@ def test_flying_rod_in_space() -> None:
     assert_allclose(angular[after], angular[-1] * np.ones((3, 1)), rtol=0, atol=0.3)
 
 
+@pytest.mark.slow
 def test_scissors_fly_as_their_impulses_say() -> None:
     """Two free rods on a hinge: it stays closed, momentum is the impulse, angular momentum stays."""
     scene = transients.scissors(tolerance=1e-3)

@@ -242,6 +242,7 @@ def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
     assert handle["width"] > 150
 
 
+@pytest.mark.slow
 def test_what_moves_is_painted_as_finely_as_there_is_time_for_and_at_rest_in_full(page: Any) -> None:
     page.set_viewport_size({"width": 1100, "height": 700})
     # The picture is looked at when it is painted: before, the last one is shown; after, perhaps the one at rest.

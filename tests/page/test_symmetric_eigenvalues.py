@@ -16,13 +16,15 @@ def test_eigenvalues_over_the_admissible_variations(tmp_path: Path) -> None:
     random = np.random.default_rng(7)
     cases = []
     expected = []
-    # Without constraints; with three; with two that repeat each other; with a slack cable; rods of two energy units.
+    # Without constraints; with three; with two that repeat each other; with a cable that is slack; with one that
+    # stretches; rods of two energy units.
     for free, held, spoil in (
         (1, 0, ""),
         (9, 0, ""),
         (12, 3, ""),
         (12, 3, "repeat"),
         (8, 2, "slack"),
+        (8, 2, "elastic"),
         (10, 3, "units"),
     ):
         n = free + held
@@ -35,6 +37,8 @@ def test_eigenvalues_over_the_admissible_variations(tmp_path: Path) -> None:
         if spoil == "slack":
             jacobian[-1] = 0.0
             jacobian[-1, -1] = 1.0
+        if spoil == "elastic":
+            jacobian[-1, -1] = 0.5
         if spoil == "units":
             units[: free // 2] = 0.01
         allowed = ConstrainedVariations(np.arange(free), np.arange(free, n), units)

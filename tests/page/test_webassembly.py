@@ -18,7 +18,8 @@ from cosserat_casadi.page.webassembly import VARIABLE, find_wasm_compiler, wasm_
 from tests.page.pages_made import portal, run_node, strip, wasm_compiler
 
 
-@pytest.mark.parametrize(("made", "steps"), [(strip, 6), pytest.param(portal, 3, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("made", "steps"), [(strip, 6), (portal, 3)])
 def test_node_finds_what_gcc_finds(made: Callable[[], Scene], steps: int, tmp_path: Path) -> None:
     scene = made()
     compiler = wasm_compiler()

@@ -266,6 +266,7 @@ def test_scene_path_meets_its_tolerance() -> None:
     assert_allclose(path.events[1].factor, 0.0853380845, rtol=1e-6, atol=0)
 
 
+@pytest.mark.slow
 def test_command(tmp_path: Path) -> None:
     scene = tmp_path / "table.toml"
     scene.write_text(TABLE.replace("[[rods]]", "[[rods]]", 1).replace("tolerance = 1e-7", "modes = 5"))

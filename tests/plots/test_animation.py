@@ -164,7 +164,7 @@ def test_mp4_gets_every_frame(short: Motion, tmp_path: Path, monkeypatch: pytest
     put_ffmpeg(tmp_path, 'cat > "$file"', monkeypatch)
     path = tmp_path / "swing.mp4"
     save_animation(short, path)
-    assert path.stat().st_size == 11 * 640 * 480 * 4
+    assert path.stat().st_size == 11 * 1920 * 1080 * 4
 
 
 def test_ffmpeg_that_gives_up_is_a_sentence(short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

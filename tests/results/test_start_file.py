@@ -40,6 +40,7 @@ def test_a_chosen_discretisation_comes_back(tmp_path: Path) -> None:
     assert_allclose(start.x, solution.x, rtol=0, atol=1e-10)
 
 
+@pytest.mark.slow
 def test_assemblies_and_cables_come_back(tmp_path: Path) -> None:
     model = two_rods_on_a_platform(frames=1).model
     for given in (model.scene, three_cables()):

@@ -153,6 +153,7 @@ def test_lost_clients_are_collected_before_another_is_made() -> None:
         gc.enable()
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cosserat_casadi.sweeps.cluster.PATIENCE", 2)
     with (

@@ -82,6 +82,7 @@ def test_a_tolerance_that_nobody_wrote_is_not_missed() -> None:
     assert "asks for no tolerance" in printed(found)
 
 
+@pytest.mark.slow
 def test_rows_without_estimates_are_those_of_older_tables(tmp_path: Path) -> None:
     """The same rows without the two columns, and another sweep than that with them."""
     file = tmp_path / "rows.csv"

@@ -43,6 +43,7 @@ def test_stability_of_every_row_vs_euler(compiled_from: int, monkeypatch: pytest
     assert_array_equal(again.values, found.values[:, :-2])
 
 
+@pytest.mark.slow
 def test_eigenvalues_are_counted_in_the_scene_compiled_or_not(monkeypatch: pytest.MonkeyPatch) -> None:
     """Stiffness and length of rods that are bent: a small table in Python has the numbers of a large one in C."""
     bent = scene(push(force=[0.3, 0.0, -0.4]), rods=[{**COLUMN, "strain": "planar"}], accuracy={**FIXED, "modes": 4})

@@ -30,6 +30,7 @@ moment = [0.0, 0.0, 0.001]
 """
 
 
+@pytest.mark.slow
 def test_rows_are_what_solve_finds() -> None:
     turns = [0.0, 1.3, np.pi, -2.0]
     reaches = [0.2, 0.13, 0.2, 0.05]

@@ -425,6 +425,7 @@ def test_what_works_on_rods_refuses_tubes() -> None:
         all_equilibria(parse_scene("schema = 1" + ROD))
 
 
+@pytest.mark.slow
 def test_files_hold_what_python_says(tmp_path: Path) -> None:
     scene = tmp_path / "tubes.toml"
     scene.write_text(TWO.replace("1e-8", "1e-3"))

@@ -135,6 +135,7 @@ def page(session: ContactSession) -> Iterator[Any]:
         assert faults == []
 
 
+@pytest.mark.slow
 def test_contact_moves_under_the_slider(page: Any, session: ContactSession, first: Solution) -> None:
     slider = page.get_by_label("push.force x, N", exact=True)
     slider.evaluate("(range) => { range.value = 1.4; range.dispatchEvent(new Event('input')); }")

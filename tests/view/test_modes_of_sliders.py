@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from cosserat_casadi import build, choose, discretise, read_scene, solve
 from cosserat_casadi.equilibrium.metrics import pose_distance
@@ -10,6 +11,7 @@ from cosserat_casadi.page.slider_ranges import sliders
 from tests.conftest import ROOT
 
 
+@pytest.mark.slow
 def test_a_template_is_right_all_over_its_sliders() -> None:
     """Against finer modes; those of its own inputs, which lie in a plane, are off by a hundred times the tolerance."""
     robot = read_scene(ROOT / "cosserat_casadi" / "cli" / "templates" / "tendon-robot.toml")

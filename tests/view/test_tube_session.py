@@ -136,6 +136,7 @@ def test_what_is_out_of_range_is_refused() -> None:
         session.move([None, 0.1, 0.0, 0.2])
 
 
+@pytest.mark.slow
 def test_a_browser_shows_tubes() -> None:
     with RobotServer(session_of("loaded_tubes")) as server, browser() as window:
         thread = threading.Thread(target=server.serve_forever)

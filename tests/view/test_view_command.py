@@ -64,6 +64,7 @@ def test_a_scene_in_contact_opens_on_the_modes_of_its_own_inputs(tmp_path: Path)
             running.kill()
 
 
+@pytest.mark.slow
 def test_locked_modes_are_told_before_the_page_is_served(tmp_path: Path) -> None:
     scene = tmp_path / "held.toml"
     scene.write_text(LOCKED)

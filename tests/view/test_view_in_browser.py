@@ -96,9 +96,27 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     bar = page.get_by_label("Time")
     bar.evaluate("(range) => { range.value = 0.5; range.dispatchEvent(new Event('input')); }")
     assert page.inner_text("#transport output") == "0.200 s"
+    with page.expect_download(timeout=PATIENCE) as film:
+        page.get_by_role("button", name="Film").click()
+    # WebM and MP4 say what they are in their first bytes.
+    content = film.value.path().read_bytes()
+    assert content.startswith(b"\x1aE\xdf\xa3") or content[4:8] == b"ftyp"
+    with page.expect_download(timeout=PATIENCE) as picture:
+        page.get_by_role("button", name="Save picture").click()
+    assert picture.value.suggested_filename == "robot.png"
+    assert picture.value.path().read_bytes().startswith(b"\x89PNG")
     page.get_by_label("Back to the equilibrium").click()
     assert not page.locator("#transport").is_visible()
     assert "In equilibrium" in page.inner_text("#status")
+
+
+def test_the_page_follows_dark_mode(page: Any) -> None:
+    grounds = {}
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        grounds[scheme] = page.eval_on_selector("#panel", "(panel) => getComputedStyle(panel).backgroundColor")
+    page.emulate_media(color_scheme="light")
+    assert grounds == {"light": "rgb(255, 255, 255)", "dark": "rgb(27, 32, 38)"}
 
 
 def test_a_robot_beyond_the_tolerance_is_said_to_be_so_and_refined(page: Any, server: RobotServer) -> None:

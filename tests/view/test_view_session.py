@@ -178,6 +178,7 @@ def planar() -> ViewSession:
     return opened(solve(choose(pushed, ends, samples=1).model))
 
 
+@pytest.mark.slow
 def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(planar: ViewSession) -> None:
     planar.reset(planar.first.inputs.tolist())
     at_home = planar.accuracy()

@@ -32,6 +32,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.mjcf.export import LINKS, check_mjcf, mjcf_of
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
 from cosserat_casadi.page.page import export_page
@@ -54,6 +55,11 @@ def export(
         Path | None,
         typer.Option(help="File to write for other simulators: the motion by FMI 3.0, .fmu.", show_default=False),
     ] = None,
+    mjcf: Annotated[
+        Path | None,
+        typer.Option(help="File to write for MuJoCo: rods as chains of rigid links, .xml.", show_default=False),
+    ] = None,
+    links: Annotated[int, typer.Option(min=1, max=1000, help="Links of each rod in that file, about.")] = LINKS,
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
     derivatives: Annotated[
         bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
@@ -84,13 +90,14 @@ def export(
     ] = True,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources, a page for a browser, or an FMU.
+    """Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.
 
     Exit codes: 0 written; 2 refused; 3 not solved and nothing written, or written with an error above the tolerance
     somewhere in the ranges, or on modes that constraints lock, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
-    is one file that other simulators step.
+    is one file that other simulators step. The model of MuJoCo is written without a solve;
+    a sentence names each thing of the scene that it lacks.
 
     Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
     [ranges] or [[bounds]], or their scale, or at the load cases of --over. Modes and nodes that the scene fixes are
@@ -99,8 +106,8 @@ def export(
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
     # All that can be refused is refused before the solve, which may take a minute.
-    if output is None and page is None and fmu is None:
-        remedy = "name a folder for the sources, or a file with --page or --fmu"
+    if output is None and page is None and fmu is None and mjcf is None:
+        remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
         raise ExportError(Problem("--output", "missing", remedy))
     if output is None:
         asked = {
@@ -119,7 +126,9 @@ def export(
         check_writable(page, "--page")
     if fmu is not None:
         check_fmu(fmu)
-    check_inputs_stay(_written_files(output, page, fmu), scene, settings, over)
+    if mjcf is not None:
+        check_mjcf(mjcf)
+    check_inputs_stay(_written_files(output, page, fmu, mjcf), scene, settings, over)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
     if exported_scene.tubes:
@@ -132,6 +141,7 @@ def export(
             "--range": bool(ranges),
             "--page": page is not None,
             "--fmu": fmu is not None,
+            "--mjcf": mjcf is not None,
             "--period": period is not None,
             "--no-error-estimate": not estimate_errors,
         }
@@ -139,6 +149,10 @@ def export(
         assert output is not None
         _export_tubes(exported_scene, output, name)
         return
+    if mjcf is not None:
+        _export_mjcf(exported_scene, mjcf, links)
+        if output is None and page is None and fmu is None:
+            return
     check_period(exported_scene, period)
     cases = None
     if output is not None:
@@ -214,6 +228,15 @@ def export(
         raise typer.Exit(NOT_FOUND)
 
 
+def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
+    """Write a model of MuJoCo, and name the things of the scene that it lacks."""
+    model = mjcf_of(scene, links)
+    model.write(path)
+    for sentence in model.left_out:
+        print_plain(Console(stderr=True), escape(sentence), soft_wrap=True)
+    print_plain(Console(), f"wrote {escape(str(path))}; MuJoCo opens it", soft_wrap=True)
+
+
 def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseLayout) -> FloatArray:
     """Load cases of a file, or spread over ranges, shape (count, size of a case).
 
@@ -243,9 +266,11 @@ def _export_tubes(scene: Scene, output: Path, name: str) -> None:
     print_tubes_export(Console(), solution, output)
 
 
-def _written_files(output: Path | None, page: Path | None, fmu: Path | None) -> dict[str, Path | None]:
-    """Files that an export writes over, by option: page, FMU, and the files of an earlier export in the folder."""
-    written = {"--page": page, "--fmu": fmu}
+def _written_files(
+    output: Path | None, page: Path | None, fmu: Path | None, mjcf: Path | None
+) -> dict[str, Path | None]:
+    """Files that an export writes over, by option, and the files of an earlier export in the folder."""
+    written = {"--page": page, "--fmu": fmu, "--mjcf": mjcf}
     if output is not None and output.is_dir():
         # Names of files are no options: they tell the many of one folder apart.
         written |= {f"--output, {file.name}": file for file in output.iterdir()}

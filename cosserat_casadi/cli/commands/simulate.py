@@ -10,6 +10,7 @@ from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
+    MESHES,
     SceneFile,
     Settings,
     check_inputs_stay,
@@ -41,7 +42,9 @@ def simulate(
     scene: SceneFile,
     output: Annotated[Path | None, typer.Option(help="Write the motion here: .json, .csv, .parquet or .npz.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
-    animation: Annotated[Path | None, typer.Option(help="Draw an animation here: .gif or .mp4.")] = None,
+    animation: Annotated[
+        Path | None, typer.Option(help="Draw an animation here: .gif or .mp4; moving meshes: .glb or .usda.")
+    ] = None,
     speed: Annotated[
         float,
         typer.Option(metavar="FACTOR", help="Of the animation: 1 is as fast as the motion, 0.1 ten times slower."),
@@ -118,11 +121,13 @@ def _check_files(
         problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
     if animation is None:
         return
+    with collect_problems(problems):
+        check_writable(animation, "--animation")
+    if animation.suffix.lower() in MESHES:
+        return
     # Imported here, because matplotlib is an extra and takes long to load.
     from cosserat_casadi.plots.animation import check_animation_path
 
-    with collect_problems(problems):
-        check_writable(animation, "--animation")
     with collect_problems(problems):
         check_animation_path(animation)
 
@@ -162,6 +167,11 @@ def _simulate_with_progress(scene: Scene, start: StartOfMotion, compiled: bool |
 
 def _animate(motion: Motion, file: Path, speed: float) -> None:
     """Draw an animation, and say how to slow it down where it has next to no frames."""
+    if file.suffix.lower() in MESHES:
+        from cosserat_casadi.plots.film import write_film
+
+        write_film(motion, file, speed)
+        return
     from cosserat_casadi.plots.animation import frame_times, save_animation
 
     with share_display("Drawing the animation") as show_share:

@@ -11,6 +11,7 @@ from rich.console import Console
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
+    MESHES,
     SceneFile,
     Settings,
     check_inputs_stay,
@@ -34,7 +35,9 @@ def solve(
     scene: SceneFile,
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the result file (JSON) here.")] = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg; meshes: .glb or .usda.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
     stable: Annotated[
         bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
@@ -55,7 +58,7 @@ def solve(
     # A file that cannot be written is refused before the solve, not after it.
     problems: list[Problem] = []
     with collect_problems(problems):
-        check_outputs(output, plot)
+        check_outputs(output, plot, meshes=True)
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
     with collect_problems(problems):
@@ -65,6 +68,8 @@ def solve(
         if every and stable:
             problem = "stands beside --all, which calls each equilibrium stable or not"
             problems.append(Problem("--stable", problem, "leave one of them out"))
+        if read.tubes and plot is not None and plot.suffix.lower() in MESHES:
+            problems.append(Problem("--plot", "tubes have no file of meshes", "use .png, .pdf or .svg"))
         if exact and read.tubes:
             problems.append(Problem("--exact-contact", "is for rods, which touch obstacles", "leave it out"))
         elif exact:

@@ -54,6 +54,10 @@ def _end_table(motion: Motion) -> Table:
     return table
 
 
+OF_PAIRS = {"cables: taut": ("taut", "slack"), "joints: at a stop": ("stop_hit", "stop_left")}
+"""Words for changes of cables and stops, and their kinds, the one that takes energy first."""
+
+
 def _merit_sentences(motion: Motion) -> Iterator[str]:
     """The steps of the motion, its accuracy, and its discretisation."""
     if motion.start:
@@ -66,12 +70,13 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
-    if any(event.obstacle for event in motion.events):
+    for words, kinds in OF_PAIRS.items():
+        changes = [event for event in motion.events if event.kind in kinds]
+        hits = [event for event in changes if event.kind == kinds[0]]
+        if changes:
+            yield f"{words} {counted(len(hits), 'time')}, which took {sum(event.energy for event in hits):.3g} J"
+    if any(all(event.kind not in kinds for kinds in OF_PAIRS.values()) for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
-    elif motion.events:
-        snaps = [event for event in motion.events if event.kind == "taut"]
-        taken = sum(event.energy for event in snaps)
-        yield f"cables: taut {counted(len(snaps), 'time')}, which took {taken:.3g} J"
     yield "; ".join(discretisation_sentences(motion.model))
 
 

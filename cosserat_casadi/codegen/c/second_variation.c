@@ -23,7 +23,8 @@ static const real PRECISION = (real)1.2e-7;
 #define ABSOLUTE fabs
 static const real PRECISION = (real)2.2e-16;
 #endif
-static const int QR_STEPS = 30; /* most of them for one eigenvalue */
+static const int QR_STEPS = 30;     /* most of them for one eigenvalue */
+static const real RIGID = (real)1e4; /* stiffness of a cable or a stop, in EI/L, above which it does not yield */
 
 static real norm_of(const real *a, int count) {
   real sum = 0;
@@ -73,7 +74,20 @@ static void reflect_columns(real *matrix, const real *v, int first, real factor,
   }
 }
 
-/* Symmetric part of the scaled Jacobian by the free unknowns, at the point of room->jacobian. */
+/* Whether the equation of a held unknown gives it a finite stiffness, or none: a cable that is slack, or that stretches, or
+   an elastic stop. */
+static int yields(const memory *room, int row) {
+  const real own = ABSOLUTE(room->jacobian[row * N + row]);
+  real gradient = 0, pull = 0;
+  for (int i = 0; i < FREE; i++) {
+    const real g = room->jacobian[FREE_UNKNOWNS[i] * N + row], p = room->jacobian[row * N + FREE_UNKNOWNS[i]];
+    gradient += g * g;
+    pull += p * p;
+  }
+  return own > 0 && SQUARE_ROOT(gradient) * SQUARE_ROOT(pull) <= RIGID * own;
+}
+
+/* Symmetric part of the scaled Jacobian by the free unknowns, at the point of room->jacobian; unknowns that yield follow. */
 static void gather_hessian(memory *room) {
   for (int j = 0; j < FREE; j++) {
     for (int i = 0; i <= j; i++) {
@@ -83,23 +97,30 @@ static void gather_hessian(memory *room) {
       room->hessian[j * FREE + i] = room->hessian[i * FREE + j] = (upper + lower) / 2;
     }
   }
+  for (int k = 0; k < HELD; k++) {
+    const int row = HELD_UNKNOWNS[k];
+    if (!yields(room, row)) continue;
+    const real own = room->jacobian[row * N + row];
+    for (int j = 0; j < FREE; j++) {
+      for (int i = 0; i < FREE; i++) {
+        const real pull = ROOTS[i] * room->jacobian[row * N + FREE_UNKNOWNS[i]] / own;
+        const real followed = pull * room->jacobian[FREE_UNKNOWNS[j] * N + row] / ROOTS[j];
+        room->hessian[j * FREE + i] -= followed / 2;
+        room->hessian[i * FREE + j] -= followed / 2;
+      }
+    }
+  }
 }
 
-/* Linearised constraints that restrict the variations, one a column; returns their number. A slack cable asks nothing of
-   the rod: its equation is about its tension alone. */
+/* Linearised constraints that restrict the variations, one a column; returns their number. */
 static int gather_constraints(memory *room) {
   int count = 0;
   for (int k = 0; k < HELD; k++) {
     const int row = HELD_UNKNOWNS[k];
-    const real own = ABSOLUTE(room->jacobian[row * N + row]);
+    if (yields(room, row)) continue;
     real *column = room->constraints + count * FREE;
-    real largest = 0;
-    for (int i = 0; i < FREE; i++) {
-      const real entry = room->jacobian[FREE_UNKNOWNS[i] * N + row];
-      if (ABSOLUTE(entry) > largest) largest = ABSOLUTE(entry);
-      column[i] = entry / ROOTS[i];
-    }
-    if (largest > own) count++;
+    for (int i = 0; i < FREE; i++) column[i] = room->jacobian[FREE_UNKNOWNS[i] * N + row] / ROOTS[i];
+    count++;
   }
   return count;
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -21,6 +22,12 @@ def distance_from(obstacle: scenes.ObstacleRecord) -> ca.Function:
 
 
 @lru_cache(maxsize=64)
+def _distances_from(obstacle: scenes.ObstacleRecord, count: int) -> ca.Function:
+    """So many points ↦ their distances."""
+    return distance_from(obstacle).map(count)
+
+
+@lru_cache(maxsize=64)
 def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
     """Point ↦ distance from an obstacle, its gradient and its second derivative."""
     function: ca.Function = SURFACES[obstacle.kind].function(obstacle)
@@ -29,7 +36,7 @@ def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
 
 def distances(obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
     """Distances of points of shape (k, 3) from an obstacle, shape (k,), m."""
-    found = distance_from(obstacle).map(len(positions))(positions.T)
+    found = _distances_from(obstacle, len(positions))(positions.T)
     return np.asarray(found.full()[0])
 
 
@@ -62,7 +69,12 @@ def distance_along(
         first: derivative of the curve with its parameter, shape (3,), m.
         second: second derivative, shape (3,), m.
     """
-    distance, gradient, curvature = (part.full() for part in surface(obstacle)(position))
+    return along_curve([part.full() for part in surface(obstacle)(position)], first, second)
+
+
+def along_curve(parts: Sequence[FloatArray], first: FloatArray, second: FloatArray) -> DistanceAlong:
+    """The same from the results of :func:`surface`, matrices."""
+    distance, gradient, curvature = parts
     normal = gradient[:, 0]
     slope = float(normal @ first)
     bend = float(first @ curvature @ first + normal @ second)

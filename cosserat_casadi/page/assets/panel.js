@@ -23,6 +23,7 @@ class Panel {
     this.buildLayers();
     document.getElementById("reset").onclick = () => this.reset();
     document.getElementById("fit").onclick = () => this.scenery.lookAtAll();
+    document.getElementById("save").onclick = () => this.scenery.save();
     document.getElementById("scale").textContent = `grid ${quantity(scenery.cell, "m")}`;
     document.getElementById("note").textContent = facts.note || "";
     scenery.controls.addEventListener("change", () => this.placeLabels());

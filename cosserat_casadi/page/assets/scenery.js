@@ -63,6 +63,22 @@ class Scenery {
     this.controls.update();
   }
 
+  // Print the picture on a sheet, a canvas of its size, over the ground that the page has.
+  printOn(sheet) {
+    this.painter.paintStill();
+    const { width, height } = this.canvas;
+    if (sheet.width !== width || sheet.height !== height) Object.assign(sheet, { width, height });
+    const pen = sheet.getContext("2d");
+    pen.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--light");
+    pen.fillRect(0, 0, width, height);
+    pen.drawImage(this.canvas, 0, 0);
+    return sheet;
+  }
+
+  save() {
+    this.printOn(document.createElement("canvas")).toBlob((content) => offer(content, "robot.png"));
+  }
+
   // A grid whose cells are a round length, under the scene or, of a planar one, behind it.
   addGround() {
     const rough = this.size / 8;
@@ -379,4 +395,11 @@ class Scenery {
     // The picture's size has changed: what was painted is gone.
     this.painter.paintStill();
   }
+}
+
+// Hand a file to the browser, to be saved.
+function offer(content, name) {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(content), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }

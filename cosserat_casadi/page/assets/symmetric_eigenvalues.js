@@ -70,6 +70,9 @@ function nullSpace(rows, n) {
   return basis;
 }
 
+// Stiffness of a cable or a stop, in units of EI/L, above which it counts as one that does not yield.
+const RIGID = 1e4;
+
 // Eigenvalues of the second variation over the admissible variations, ascending: docs/theory.md, section 9.
 // jacobian: entry (i, j) as a function; allowed: free and held unknowns, and the energy unit of each free one.
 function secondVariation(jacobian, allowed) {
@@ -78,10 +81,15 @@ function secondVariation(jacobian, allowed) {
   const roots = units.map((unit) => Math.sqrt(unit / largest));
   const hessian = free.map((i, p) => free.map((j, q) => (roots[p] * jacobian(i, j)) / roots[q]));
   const constraints = [];
-  for (const i of held) {
-    const row = free.map((j) => jacobian(i, j));
-    // A slack cable asks nothing of the rod: its equation is about its tension alone.
-    if (Math.max(...row.map(Math.abs), 0) > Math.abs(jacobian(i, i))) constraints.push(row.map((value, q) => value / roots[q]));
+  for (const k of held) {
+    const row = free.map((j, q) => jacobian(k, j) / roots[q]);
+    const pull = free.map((i, p) => roots[p] * jacobian(i, k));
+    const own = jacobian(k, k);
+    const sizes = Math.hypot(...free.map((j) => jacobian(k, j))) * Math.hypot(...free.map((i) => jacobian(i, k)));
+    // A cable that is slack, or that stretches, and an elastic stop follow the variations; what is stiffer is held.
+    if (own !== 0 && sizes <= RIGID * Math.abs(own)) {
+      for (let p = 0; p < free.length; p++) for (let q = 0; q < free.length; q++) hessian[p][q] -= (pull[p] * row[q]) / own;
+    } else constraints.push(row);
   }
   const basis = nullSpace(constraints, free.length);
   const images = basis.map((vector) => hessian.map((row) => row.reduce((sum, value, i) => sum + value * vector[i], 0)));

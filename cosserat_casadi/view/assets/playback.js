@@ -1,6 +1,7 @@
 // Motions and modes, played with a time bar.
 
 const PERIOD = 1.6; // Seconds that one period of a mode takes on the screen.
+const FILM_RATE = 30; // Pictures a second of a film in a file.
 const SPEEDS = [1, 0.5, 0.1, 0.02];
 
 class Theatre {
@@ -42,6 +43,7 @@ class Theatre {
     this.speed = element("select", this.transport);
     this.speed.setAttribute("aria-label", "Speed");
     for (const speed of SPEEDS) this.speed.add(new Option(`× ${speed}`, speed));
+    this.button(this.transport, "● Film", () => this.record());
     this.button(this.transport, "✕", () => this.close()).setAttribute("aria-label", "Back to the equilibrium");
   }
 
@@ -94,8 +96,28 @@ class Theatre {
     if (this.paused || !this.film) return;
     const elapsed = ((now - this.last) / 1000) * Number(this.speed.value);
     this.last = now;
-    this.seek((this.share + elapsed / this.film.duration) % 1);
+    const share = this.share + elapsed / this.film.duration;
+    if (this.recorder && share >= 1) this.recorder.stop();
+    this.seek(share % 1);
+    if (this.recorder) this.panel.scenery.printOn(this.sheet);
     requestAnimationFrame((later) => this.tick(later));
+  }
+
+  // One run from its beginning, in a file: the format is that of the browser.
+  record() {
+    if (this.recorder) return;
+    this.sheet = this.panel.scenery.printOn(document.createElement("canvas"));
+    const pieces = [];
+    this.recorder = new MediaRecorder(this.sheet.captureStream(FILM_RATE));
+    this.recorder.ondataavailable = (event) => pieces.push(event.data);
+    this.recorder.onstop = () => {
+      const { mimeType } = this.recorder;
+      this.recorder = null;
+      offer(new Blob(pieces, { type: mimeType }), mimeType.includes("mp4") ? "robot.mp4" : "robot.webm");
+    };
+    this.recorder.start();
+    this.share = 0;
+    if (this.paused) this.pause(false);
   }
 
   // Show the picture at a share of the time.
@@ -111,6 +133,7 @@ class Theatre {
 
   close() {
     if (!this.film) return;
+    if (this.recorder) this.recorder.stop();
     this.film = null;
     this.transport.hidden = true;
     document.body.classList.remove("playing");

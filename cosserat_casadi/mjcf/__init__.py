@@ -1,0 +1,1 @@
+"""Scenes as models of MuJoCo: rods become chains of rigid links."""

@@ -1,0 +1,688 @@
+"""A scene as a model of MuJoCo, in its XML format MJCF.
+
+Rods are chains of rigid links (links.py). Hinges and slides in the middle of a piece have the order of the strains in
+every other piece, and the reverse in the next: rotations do not commute, and what an order adds to the strain of one
+piece the next one takes away. Bodies hang on the links that carry them; joints that close a loop are constraints.
+
+Inputs of the scene are controls of the same names, with the values of the scene in the keyframe ``scene``.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.actuators.routing import holes, offset_at
+from cosserat_casadi.constraints.tip_holder import place_of
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.pose import IDENTITY, NumericPose
+from cosserat_casadi.maths.rotation import matrix_to_quaternion, quaternion_from_tangent
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.mjcf.links import Inertia, Link, links_of, nodes_along, poses_along
+from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.constraint_records import AxisJoint
+
+SUFFIXES = (".xml", ".mjcf")
+"""Suffixes of the file."""
+
+LINKS = 20
+"""Pieces of a rod by default."""
+
+INTERVALS = 40
+"""Intervals of the grid that gives the unloaded shape of a rod."""
+
+STIFF = 1e3
+"""Stiffness of a drive, or of a cable of given length, over that of the rod that it moves."""
+
+LEAST = 1e-9
+"""Least mass and inertia of a body over those of the whole scene: MuJoCo moves nothing that has none."""
+
+STEP = 1e-3
+"""Time step, s: the integrator ``discrete`` is implicit in springs, whose frequencies any longer step would exceed."""
+
+CLOSING_TIME = 2 * STEP
+"""Time in which constraints close their gaps, s: the least that MuJoCo takes."""
+
+HARD = "0.9999 0.9999 0.001 0.5 2"
+"""Impedance of constraints: the largest that MuJoCo takes."""
+
+NO_STOP = 1e6
+"""Coordinate of the stop on the side that has none, rad or m."""
+
+MOST_OBSTACLES = 31
+"""Obstacles that MuJoCo can tell apart, which numbers them by bits."""
+
+
+@dataclass(frozen=True)
+class Mjcf:
+    """A model of MuJoCo.
+
+    Attributes:
+        text: of the XML file.
+        left_out: a sentence for each thing of the scene that the model does not have, or has in another way.
+    """
+
+    text: str
+    left_out: tuple[str, ...]
+
+    def write(self, path: str | Path) -> None:
+        """Write the file, whole or not at all.
+
+        Raises:
+            ExportError: the name does not end in one of SUFFIXES.
+            SceneError: the path is a folder, or its folder cannot be written to.
+            WriteError: the file cannot be written.
+        """
+        check_mjcf(path)
+        write_atomically(Path(path), self.text.encode())
+
+
+def check_mjcf(path: str | Path) -> None:
+    """Refuse a file that could not be written, before any work is done for it.
+
+    Raises:
+        ExportError: the name does not end in one of SUFFIXES.
+        SceneError: the path is a folder, or its folder cannot be written to.
+    """
+    if Path(path).suffix.lower() not in SUFFIXES:
+        raise ExportError(Problem("--mjcf", f"{path} does not end in {' or '.join(SUFFIXES)}", "name the file so"))
+    check_writable(Path(path), "--mjcf")
+
+
+def mjcf_of(scene: scenes.Scene, links: int = LINKS) -> Mjcf:
+    """A scene as a model of MuJoCo.
+
+    Args:
+        scene: a validated scene, whose parameters have their values.
+        links: pieces of each rod, about: one ends at every disk, hole of a tendon, joint and wrench.
+
+    Raises:
+        SceneError: a rod has no mass, or the scene has tubes.
+    """
+    refuse_tubes(scene)
+    return _Robot(scene.baked(), links).written()
+
+
+MjcfJoint = tuple[str, dict[str, str]]
+"""Tag and attributes of a joint."""
+
+
+def _numbers(values: Sequence[float] | FloatArray | float) -> str:
+    """Numbers as an attribute has them."""
+    return " ".join(f"{value + 0.0:.12g}" for value in np.atleast_1d(np.asarray(values, dtype=float)))
+
+
+def _place(pose: NumericPose) -> dict[str, str]:
+    """Attributes of a pose."""
+    return {"pos": _numbers(pose.position), "quat": _numbers(pose.quaternion)}
+
+
+def _turned(position: FloatArray) -> NumericPose:
+    """A pose without rotation."""
+    return NumericPose(position, IDENTITY.quaternion)
+
+
+@dataclass(frozen=True)
+class _Carrier:
+    """An element that others hang on: the world, a link or a body.
+
+    Attributes:
+        element: of XML.
+        frame: its pose in the unloaded scene, world axes.
+        name: of its body in MuJoCo.
+    """
+
+    element: ET.Element
+    frame: NumericPose
+    name: str
+
+
+@dataclass
+class _Robot:
+    """A model that is being written."""
+
+    scene: scenes.Scene
+    links: int
+    left_out: list[str] = field(default_factory=list)
+    controls: list[float] = field(default_factory=list)
+    rods: dict[str, list[Link]] = field(default_factory=dict)
+    carriers: dict[tuple[str, float], _Carrier] = field(default_factory=dict)
+    bodies: dict[str, _Carrier] = field(default_factory=dict)
+    used: set[int] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.root = ET.Element("mujoco", model=self.scene.title or "scene")
+        ET.SubElement(self.root, "compiler", angle="radian", autolimits="true")
+        self.option = ET.SubElement(self.root, "option", integrator="discrete", timestep=_numbers(STEP))
+        world = ET.SubElement(self.root, "worldbody")
+        ET.SubElement(world, "light", pos="0 0 3", dir="0 0 -1")
+        ET.SubElement(world, "site", name="world", group="4")
+        self.world = _Carrier(world, IDENTITY, "world")
+        self.tendons = ET.SubElement(self.root, "tendon")
+        self.equalities = ET.SubElement(self.root, "equality")
+        self.actuators = ET.SubElement(self.root, "actuator")
+        self.unloaded = self._unloaded()
+
+    def _unloaded(self) -> UnloadedScene:
+        """The unloaded scene, on elements that end where links do."""
+        discrete = {}
+        for rod in self.scene.rods:
+            ends = element_ends(self.scene, rod.name)
+            grid = Discretisation((1,) * len(rod.admitted), max(6, INTERVALS // len(ends)), ends)
+            discrete[rod.name] = DiscreteRod(rod_properties(rod), grid)
+        return UnloadedScene(self.scene, discrete)
+
+    def written(self) -> Mjcf:
+        """The whole model."""
+        for rod in self.scene.rods:
+            nodes = nodes_along(self.unloaded.rods[rod.name].grid.known_places, self.links)
+            self.rods[rod.name] = links_of(self.unloaded, rod, nodes)
+        self._put_gravity()
+        self._put_tree()
+        for index, joint in enumerate(self.scene.joints):
+            if index not in self.used:
+                self._close(joint, index)
+        for index, support in enumerate(self.scene.supports):
+            self._hold(support, index)
+        self._put_obstacles()
+        for record in self.scene.causes:
+            writer = WRITERS.get(record.kind)
+            if writer is None:
+                self._leave_out(record.name, f"MuJoCo has no {record.kind.replace('_', ' ')}")
+            else:
+                writer(self, record)
+        self._tell_the_rest()
+        for equality in self.equalities:
+            equality.set("solref", _numbers([CLOSING_TIME, 1.0]))
+            equality.set("solimp", HARD)
+        keys = ET.SubElement(self.root, "keyframe")
+        ET.SubElement(keys, "key", name="scene", ctrl=_numbers(self.controls))
+        self.root.insert(0, ET.Comment(_comment(self.left_out)))
+        ET.indent(self.root)
+        return Mjcf(ET.tostring(self.root, encoding="unicode") + "\n", tuple(self.left_out))
+
+    def _leave_out(self, name: str | None, reason: str) -> None:
+        self.left_out.append(f"{name}: {reason}.")
+
+    # The tree of rods and bodies
+
+    def _put_tree(self) -> None:
+        """Hang rods and bodies on the world and on each other, carriers first."""
+        rods = list(self.scene.rods)
+        bodies = list(self.scene.bodies)
+        while rods or bodies:
+            before = len(rods) + len(bodies)
+            rods = [rod for rod in rods if not self._put_rod(rod)]
+            bodies = [body for body in bodies if not self._put_body(body)]
+            if len(rods) + len(bodies) == before:
+                # Rods that start on a body which nothing else holds: it floats.
+                body = bodies.pop(0)
+                frame = self.unloaded.frames[FrameName("body", body.name)].start
+                self._body(self.world, frame, body, (("freejoint", {}),))
+
+    def _carried(self, rod: scenes.Rod) -> tuple[_Carrier | None, int | None]:
+        """Carrier of the base of a rod, None where it is missing yet, and the place of the joint between them."""
+        for index, joint in enumerate(self.scene.joints):
+            if joint.rod == rod.name and joint.holds_base:
+                if joint.body is not None:
+                    return self.bodies.get(joint.body), index
+                return self._base_carrier(rod), index
+        return self._base_carrier(rod), None
+
+    def _base_carrier(self, rod: scenes.Rod) -> _Carrier | None:
+        if rod.base.rod is None:
+            return self.world
+        return self._link(rod.base.rod, rod.base.at) if (rod.base.rod, 0.0) in self.carriers else None
+
+    def _put_rod(self, rod: scenes.Rod) -> bool:
+        """Hang the links of a rod on what carries it; whether that is there."""
+        carrier, index = self._carried(rod)
+        if carrier is None:
+            return False
+        for number, link in enumerate(self.rods[rod.name]):
+            joints: Sequence[MjcfJoint] = ()
+            if number:
+                joints = list(self._strains(rod, link, number))
+            elif rod.base.free:
+                joints = [("freejoint", {})]
+            elif index is not None:
+                joints = self._tree_joint(index, link.frame, link.frame.position, carrier.frame, 1.0)
+            carrier = self._put_link(carrier, rod, link, number, joints)
+            self.carriers[rod.name, link.at] = carrier
+        self._site(carrier, f"{rod.name}/tip", carrier.frame)
+        return True
+
+    def _strains(self, rod: scenes.Rod, link: Link, number: int) -> Iterator[MjcfJoint]:
+        """Joints of the strains of a piece, in the axes of the link after it."""
+        piece = link.piece
+        assert piece is not None, "a link after the first"
+        middle = link.frame.inverse.then(piece.middle)
+        # Slides first, then hinges: the reverse in every other piece.
+        order = sorted(rod.admitted, key=lambda strain: (strain < 3, strain), reverse=bool(number % 2))
+        for strain in order:
+            attributes = {
+                "name": f"{rod.name}/{number}/{STRAINS[strain]}",
+                "type": "hinge" if strain < 3 else "slide",
+                "pos": _numbers(middle.position),
+                "axis": _numbers(middle.rotation[:, strain % 3]),
+                "stiffness": _numbers(piece.stiffness[strain]),
+            }
+            if piece.damping[strain]:
+                attributes["damping"] = _numbers(piece.damping[strain])
+            yield "joint", attributes
+
+    def _put_link(
+        self, carrier: _Carrier, rod: scenes.Rod, link: Link, number: int, joints: Sequence[MjcfJoint]
+    ) -> _Carrier:
+        name = f"{rod.name}/{number}"
+        put = self._element(carrier, link.frame, name, link.inertia, joints)
+        if not self.weighs_rod(rod.name):
+            put.element.set("gravcomp", "1")
+        x, y = link.half_widths
+        bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns(rod.name))
+        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0 0.45 0.7 1"}
+        length = float(np.linalg.norm(link.ends[1] - link.ends[0]))
+        if x == y:
+            size = {"type": "capsule", "fromto": _numbers(link.ends.ravel()), "size": _numbers(x)}
+        else:
+            along = quaternion_from_tangent(link.ends[1] - link.ends[0])
+            place = _place(NumericPose(link.ends.mean(axis=0), along))
+            size = {"type": "box", "size": _numbers([x, y, length / 2]), **place}
+        ET.SubElement(put.element, "geom", {**size, **style})
+        for row in self.scene.disks:
+            if row.rod == rod.name and any(abs(at - link.at) < 1e-9 for at in row.places):
+                size = {"type": "cylinder", "size": _numbers([row.radius, max(row.thickness, 1e-3 * row.radius) / 2])}
+                ET.SubElement(put.element, "geom", {**size, "contype": "0", "conaffinity": "0", "rgba": ".5 .5 .5 .4"})
+        return put
+
+    def _element(
+        self,
+        carrier: _Carrier,
+        frame: NumericPose,
+        name: str,
+        inertia: Inertia,
+        joints: Sequence[MjcfJoint],
+        in_carrier: NumericPose | None = None,
+    ) -> _Carrier:
+        """A body of MuJoCo on a carrier: where its frame is, or at another place in the carrier."""
+        place = _place(in_carrier or carrier.frame.inverse.then(frame))
+        element = ET.SubElement(carrier.element, "body", {"name": name, **place})
+        for tag, attributes in joints:
+            ET.SubElement(element, tag, attributes)
+        moments, axes = np.linalg.eigh(inertia.moments)
+        axes[:, 2] *= np.sign(np.linalg.det(axes))
+        # What has no inertia about an axis gets a little: MuJoCo moves nothing that has none.
+        moments = np.maximum(moments, LEAST * max(moments[2], inertia.mass * self.size**2 * LEAST))
+        # Of thin links the largest is the sum of the others, but for rounding, and may not be more.
+        moments[1] = max(moments[1], (1 + 1e-9) * moments[2] - moments[0])
+        place = _place(NumericPose(inertia.centre, matrix_to_quaternion(axes)))
+        ET.SubElement(element, "inertial", {**place, "mass": _numbers(inertia.mass), "diaginertia": _numbers(moments)})
+        return _Carrier(element, frame, name)
+
+    @property
+    def size(self) -> float:
+        """Length of the longest rod, m."""
+        return max(rod.length for rod in self.scene.rods)
+
+    @property
+    def mass(self) -> float:
+        """Mass of all rods, kg."""
+        return sum(link.inertia.mass for links in self.rods.values() for link in links)
+
+    def _put_body(self, body: scenes.Body) -> bool:
+        """Hang a body on the first of its joints whose rod is there; whether there is one."""
+        for index, joint in enumerate(self.scene.joints):
+            if joint.body == body.name and not joint.holds_base and (joint.rod, 0.0) in self.carriers:
+                frame = self.unloaded.frames[FrameName("body", body.name)].start
+                carrier = self._link(joint.rod, joint.at)
+                joints = self._tree_joint(index, frame, frame.then(place_of(joint)).position, frame, -1.0)
+                # Several joints may pull it away from where this one alone would have it: this one is closed.
+                closed = carrier.frame.then(place_of(joint).inverse)
+                if joint.kind == "spherical":
+                    turned = frame.rotation @ np.array(joint.position, dtype=float)
+                    closed = NumericPose(carrier.frame.position - turned, frame.quaternion)
+                self._body(carrier, frame, body, joints, carrier.frame.inverse.then(closed))
+                return True
+        return False
+
+    def _body(
+        self,
+        carrier: _Carrier,
+        frame: NumericPose,
+        body: scenes.Body,
+        joints: Sequence[MjcfJoint],
+        in_carrier: NumericPose | None = None,
+    ) -> None:
+        mass = max(body.mass, LEAST * self.mass)
+        inertia = Inertia(mass, np.array(body.centre_of_mass), body.inertia_matrix)
+        put = self._element(carrier, frame, body.name, inertia, joints, in_carrier)
+        if not self.weighs_body(body.name):
+            put.element.set("gravcomp", "1")
+        bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns_body(body.name))
+        radius = body.radius or 0.02 * self.size
+        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0.5 0.5 0.5 1"}
+        ET.SubElement(put.element, "geom", {"type": "sphere", "size": _numbers(radius), **style})
+        self.bodies[body.name] = put
+
+    def _tree_joint(
+        self, index: int, frame: NumericPose, place: FloatArray, axes: NumericPose, sense: float
+    ) -> list[MjcfJoint]:
+        """Joints of MuJoCo between a carrier and what hangs on it.
+
+        Args:
+            index: place of the joint in the scene's list.
+            frame: of what hangs on it, world axes.
+            place: of the joint, world axes, shape (3,), m.
+            axes: of the joint's axis, world axes.
+            sense: 1 where the section hangs on what holds it, −1 where that hangs on the section.
+        """
+        joint: Any = self.scene.joints[index]
+        self.used.add(index)
+        if joint.kind == "fixed":
+            return []
+        name = joint.name or f"joint/{index}"
+        attributes = {"name": name, "pos": _numbers(frame.inverse.then(_turned(place)).position)}
+        if joint.kind == "spherical":
+            return [("joint", {**attributes, "type": "ball"})]
+        if not isinstance(joint, AxisJoint):
+            self._leave_out(name, f"MuJoCo has no {joint.kind} joint: what it holds is fixed")
+            return []
+        axis = sense * frame.rotation.T @ axes.rotation @ np.array(joint.axis, dtype=float)
+        attributes |= {"type": "hinge" if joint.kind == "revolute" else "slide", "axis": _numbers(axis)}
+        for key, value in (("stiffness", joint.stiffness), ("springref", joint.rest), ("damping", joint.damping)):
+            if value:
+                attributes[key] = _numbers(value)
+        if joint.has_stops:
+            lower = -NO_STOP if joint.lower_stop is None else joint.lower_stop
+            upper = NO_STOP if joint.upper_stop is None else joint.upper_stop
+            attributes["range"] = _numbers([lower, upper])
+            self._leave_out(name, "its stops are as soft as constraints of MuJoCo are, and without restitution")
+        effort = getattr(joint, joint.effort_key)
+        if effort is not None:
+            self._control(f"{name}.{joint.effort_key}", effort, "motor", joint=name)
+        if joint.prescribed:
+            stiffness = STIFF * self._bending(joint.rod) / self._length(joint.rod)
+            unit = "N m/rad"
+            if joint.kind == "prismatic":
+                stiffness /= self._length(joint.rod) ** 2
+                unit = "N/m"
+            gains = {"kp": _numbers(stiffness), "dampratio": "1"}
+            self._control(
+                f"{name}.{joint.coordinate_key}", getattr(joint, joint.coordinate_key), "position", joint=name, **gains
+            )
+            self._leave_out(name, f"its drive is a servo of {stiffness:.3g} {unit}, not rigid")
+        return [("joint", attributes)]
+
+    def _length(self, rod: str) -> float:
+        return self.unloaded.rods[rod].properties.length
+
+    def _bending(self, rod: str) -> float:
+        return self.unloaded.rods[rod].properties.bending_stiffness
+
+    def _link(self, rod: str, at: float) -> _Carrier:
+        """The link nearest to a section of a rod, which is there."""
+        nearest = min(self.rods[rod], key=lambda link: abs(link.at - at))
+        return self.carriers[rod, nearest.at]
+
+    def _site(self, carrier: _Carrier, name: str, pose: NumericPose) -> str:
+        """A site on a carrier, by its pose in the unloaded scene; its name."""
+        place = _place(carrier.frame.inverse.then(pose))
+        ET.SubElement(carrier.element, "site", {"name": name, "group": "4", **place})
+        return name
+
+    # Loops
+
+    def _close(self, joint: Any, index: int) -> None:
+        """A joint that the tree does not have, as constraints between sites."""
+        name = joint.name or f"joint/{index}"
+        section = self._link(joint.rod, joint.at)
+        holder = self.bodies[joint.body] if joint.body else self.world
+        place = holder.frame.then(place_of(joint))
+        if joint.kind == "prismatic":
+            self._leave_out(name, "a slide that closes a loop has no constraint in MuJoCo, and is missing")
+            return
+        # The section is in the unloaded rod where the joint does not want it yet: MuJoCo draws the two together.
+        ends = [_turned(np.zeros(3))]
+        if joint.kind == "revolute":
+            axis = np.array(joint.axis, dtype=float) / np.linalg.norm(joint.axis)
+            in_place = place_of(joint).rotation.T @ axis
+            ends.append(_turned(0.1 * self._length(joint.rod) * in_place))
+            if joint.has_coordinate:
+                self._leave_out(name, "what acts along a hinge that closes a loop is missing")
+        for number, end in enumerate(ends):
+            first = self._site(section, f"{name}/section/{number}", section.frame.then(end))
+            second = self._site(holder, f"{name}/holder/{number}", place.then(end))
+            kind = "weld" if joint.kind == "fixed" else "connect"
+            ET.SubElement(self.equalities, kind, site1=second, site2=first)
+
+    def _hold(self, support: Any, index: int) -> None:
+        """A support of a tip, as a constraint between sites."""
+        kind = {"clamped": "weld", "pinned": "connect"}.get(support.kind)
+        name = f"supports[{index}]"
+        if kind is None:
+            self._leave_out(name, f"MuJoCo has no {support.kind} support, and the tip is free")
+            return
+        first = self._site(self.world, f"{name}/place", place_of(support))
+        ET.SubElement(self.equalities, kind, site1=first, site2=f"{support.rod}/tip")
+
+    # Loads and actuators
+
+    def _put_gravity(self) -> None:
+        fields = [load for load in self.scene.loads if isinstance(load, scenes.Gravity)]
+        total = np.sum([load.acceleration for load in fields if load == fields[0] or load.acts_on_all], axis=0)
+        self.gravity = fields[0] if fields else None
+        self.option.set("gravity", _numbers(total if fields else np.zeros(3)))
+        for load in fields[1:]:
+            if not (load.acts_on_all and fields[0].acts_on_all):
+                self._leave_out(load.name, "MuJoCo has one field of gravity, and this is the second")
+
+    def weighs_rod(self, rod: str) -> bool:
+        """Whether the field of gravity acts on a rod."""
+        return self.gravity is None or self.gravity.acts_on_rod(rod)
+
+    def weighs_body(self, body: str) -> bool:
+        """Whether the field of gravity acts on a body."""
+        return self.gravity is None or self.gravity.acts_on_body(body)
+
+    def _control(self, name: str, value: float, kind: str, **attributes: str) -> None:
+        """An actuator, and its value in the keyframe."""
+        ET.SubElement(self.actuators, kind, {"name": name, **attributes})
+        self.controls.append(float(value))
+
+    def put_section_wrench(self, load: Any) -> None:
+        """A force and a moment on a section."""
+        carrier = self._link(load.rod, getattr(load, "at", 1.0))
+        self._wrench(load, self._site(carrier, load.name, carrier.frame))
+
+    def put_body_wrench(self, load: scenes.BodyWrench) -> None:
+        """A force and a moment on a body."""
+        carrier = self.bodies[load.body]
+        at = carrier.frame.then(_turned(np.array(load.position, dtype=float)))
+        self._wrench(load, self._site(carrier, load.name, at))
+
+    def _wrench(self, load: Any, site: str) -> None:
+        """A control for each component of the force and the moment of a load."""
+        dead = {"refsite": "world"} if load.frame == "world" else {}
+        for offset, key in ((0, "force"), (3, "moment")):
+            if key not in load.model_fields_set:
+                continue
+            for component, value in enumerate(getattr(load, key)):
+                gear = np.eye(6)[offset + component]
+                self._control(
+                    f"{load.name}.{key}.{'xyz'[component]}", value, "motor", site=site, gear=_numbers(gear), **dead
+                )
+
+    def put_tendon(self, tendon: scenes.Tendon) -> None:
+        """A cable through sites, pulled or led to a length."""
+        if tendon.friction:
+            self._leave_out(tendon.name, "friction of a cable along its course is not in MuJoCo, and is missing")
+        length = self._course(tendon)
+        if tendon.length is None:
+            assert tendon.tension is not None, "one of the two is given"
+            self._control(f"{tendon.name}.tension", tendon.tension, "motor", tendon=tendon.name, gear="-1")
+            return
+        softness = 0.0
+        if tendon.axial_stiffness is not None:
+            softness += tendon.length / tendon.axial_stiffness
+        if tendon.winch_stiffness is not None:
+            softness += 1 / tendon.winch_stiffness
+        if softness:
+            stiffness = 1 / softness
+        else:
+            arm = max(float(np.abs(self._offsets(tendon, np.linspace(*tendon.span, 9))).max()), 1e-3 * length)
+            stiffness = STIFF * self._bending(tendon.rod) / (arm**2 * self._length(tendon.rod))
+            self._leave_out(tendon.name, f"the cable of given length is one of {stiffness:.3g} N/m, not rigid")
+        pulls_only = {"forcerange": "-1e9 0"} if tendon.slack else {}
+        wanted = tendon.length - tendon.pretension / stiffness
+        kp = {"kp": _numbers(stiffness)}
+        self._control(f"{tendon.name}.length", wanted, "position", tendon=tendon.name, **kp, **pulls_only)
+
+    def put_chamber(self, chamber: scenes.Chamber) -> None:
+        """A pressure that drives the ends of its channel apart."""
+        if chamber.wall is not None or chamber.area_growth or chamber.offset_growth:
+            self._leave_out(chamber.name, "the chamber does not widen under its pressure in MuJoCo")
+        area = chamber.area
+        if area is None:
+            assert chamber.wall is not None, "the record's rules ask for area or wall"
+            area = np.pi * chamber.wall.inner_radius**2
+        self._course(chamber)
+        gear = _numbers(area)
+        self._control(f"{chamber.name}.pressure", chamber.pressure, "motor", tendon=chamber.name, gear=gear)
+
+    def _offsets(self, actuator: Any, X: FloatArray) -> FloatArray:
+        """Places of a course in the sections, shape (k, 2), m."""
+        return known(offset_at(actuator, X)[0]).T
+
+    def _places(self, actuator: Any) -> FloatArray:
+        """Abscissae of the sites of a course: its holes; of a continuous one a quarter of each piece from its ends.
+
+        The chord past a joint of angle θ is shorter than the arc by a θ²/8, a the length that it spans: with sites at
+        the nodes twice as much.
+        """
+        through = holes(actuator)
+        if through is not None:
+            return np.array(through, dtype=float)
+        start, end = actuator.span
+        nodes = np.array([link.at for link in self.rods[actuator.rod] if start <= link.at <= end])
+        quarters = nodes[:-1, None] + np.diff(nodes)[:, None] * np.array([0.25, 0.75])
+        return np.array([start, *quarters.ravel(), end])
+
+    def _course(self, actuator: Any) -> float:
+        """The course of a cable through the links of its span; its unloaded length, m."""
+        X = self._places(actuator)
+        spatial = ET.SubElement(self.tendons, "spatial", name=actuator.name, width=_numbers(2e-3 * self.size))
+        points = []
+        sections = poses_along(self.unloaded, actuator.rod, X)
+        for number, (section, offset) in enumerate(zip(sections, self._offsets(actuator, X), strict=True)):
+            pose = section.then(_turned(np.array([*offset, 0.0])))
+            site = self._site(self._link(actuator.rod, X[number]), f"{actuator.name}/{number}", pose)
+            ET.SubElement(spatial, "site", site=site)
+            points.append(pose.position)
+        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+    # Obstacles
+
+    def _put_obstacles(self) -> None:
+        for index, obstacle in enumerate(self.scene.obstacles):
+            shape = OBSTACLES.get(obstacle.kind)
+            if shape is None or index >= MOST_OBSTACLES:
+                reason = "a lumen is no solid" if obstacle.kind == "lumen" else "MuJoCo has no such obstacle"
+                self._leave_out(obstacle.name, f"{reason}, and it is missing")
+                continue
+            carrier = self.world if obstacle.body is None else self.bodies[obstacle.body]
+            along, back, across = obstacle.coefficients
+            friction = max(along, back, across)
+            if not along == back == across:
+                self._leave_out(obstacle.name, f"friction is {friction:g} in all directions in MuJoCo")
+            if obstacle.restitution:
+                self._leave_out(obstacle.name, "restitution is not in MuJoCo, and is missing")
+            attributes = {
+                "name": obstacle.name,
+                "contype": "0",
+                "conaffinity": str(1 << index),
+                "condim": "3" if friction else "1",
+                "priority": "1",
+                "friction": _numbers([friction, 0.005, 0.0001]),
+                "rgba": "0.63 0.55 0.36 1",
+            }
+            ET.SubElement(carrier.element, "geom", {**attributes, **shape(obstacle, self.size)})
+
+    def _tell_the_rest(self) -> None:
+        """Say what of rods and inputs is not in the model."""
+        scene = self.scene
+        lost = {record.name for record in scene.causes if record.kind not in WRITERS}
+        for rod in scene.rods:
+            properties = self.unloaded.rods[rod.name].properties
+            if properties.beyond_hooke is not None:
+                self._leave_out(
+                    rod.name, "joints have the stiffness of small strains: the law of its material is missing"
+                )
+            if properties.branches:
+                self._leave_out(rod.name, "stress that relaxes is missing")
+            if properties.mass_damping is not None:
+                self._leave_out(rod.name, "damping in proportion to mass is missing")
+        if scene.velocities:
+            self._leave_out("velocities", "the model begins at rest")
+        for name in dict.fromkeys(motion.input for motion in scene.motions):
+            self._leave_out(name, "its motion is not in the model: set the control over time")
+        controls = [actuator.get("name", "") for actuator in self.actuators]
+        for entry in scene.free_inputs():
+            if isinstance(entry.record, scenes.Gravity) or entry.owner in lost:
+                continue
+            if not any(control == entry.name or control.startswith(f"{entry.name}.") for control in controls):
+                self._leave_out(entry.name, "the input has no control, and keeps its value")
+        if scene.obstacles:
+            self._leave_out("obstacles", "contacts are soft in MuJoCo, and those of the scene are not its contacts")
+
+
+def _comment(left_out: Sequence[str]) -> str:
+    lines = ["Written by cosserat_casadi. The keyframe 'scene' has the inputs of the scene as controls."]
+    if left_out:
+        lines += ["What the model does not have as the scene has it:", *left_out]
+    # Two hyphens end a comment.
+    return "\n".join(["", *(f"  {line}" for line in lines), ""]).replace("--", "−−")
+
+
+def _plane(obstacle: Any, size: float) -> dict[str, str]:
+    turned = NumericPose(np.array(obstacle.point, dtype=float), quaternion_from_tangent(obstacle.normal))
+    return {"type": "plane", "size": _numbers([5 * size, 5 * size, size]), **_place(turned)}
+
+
+def _sphere(obstacle: Any, size: float) -> dict[str, str]:
+    return {"type": "sphere", "size": _numbers(obstacle.radius), "pos": _numbers(obstacle.centre)}
+
+
+def _capsule(obstacle: Any, size: float) -> dict[str, str]:
+    return {"type": "capsule", "size": _numbers(obstacle.radius), "fromto": _numbers([*obstacle.start, *obstacle.end])}
+
+
+OBSTACLES: dict[str, Callable[[Any, float], dict[str, str]]] = {
+    "plane": _plane,
+    "sphere": _sphere,
+    "capsule": _capsule,
+}
+"""Shape of the geom of an obstacle by its kind; a kind without an entry is told in a sentence."""
+
+WRITERS: dict[str, Callable[[_Robot, Any], None]] = {
+    "gravity": lambda robot, load: None,
+    "tip_wrench": _Robot.put_section_wrench,
+    "point_wrench": _Robot.put_section_wrench,
+    "body_wrench": _Robot.put_body_wrench,
+    "tendon": _Robot.put_tendon,
+    "chamber": _Robot.put_chamber,
+}
+"""Writer of a load or an actuator by its kind; a kind without an entry is told in a sentence."""

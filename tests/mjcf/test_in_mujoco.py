@@ -1,0 +1,92 @@
+"""Chains in MuJoCo beside rods: equilibria, frequencies, constraints and contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import build, modes_of, parse_scene, solve
+from tests.mjcf.moved_chains import FINGER, ROD, SCENES, WEIGHT
+
+pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'cosserat-casadi[mujoco]'")
+
+from tests.mjcf.chains import Chain, settled
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_shape_and_frequencies_have_the_second_order(case: str) -> None:
+    scene = parse_scene(SCENES[case])
+    model = build(scene)
+    solution = solve(model)
+    assert solution.converged
+    expected = np.array([mode.frequency for mode in modes_of(model, count=2).modes])
+    of_tip = []
+    of_frequency = []
+    for links in (8, 16):
+        chain = Chain(scene, links)
+        gaps = [np.linalg.norm(chain.tip(rod.name) - solution.tip(rod.name).position[0]) for rod in scene.rods]
+        of_tip.append(max(gaps) / 0.3)
+        of_frequency.append(np.abs(chain.frequencies(2) / expected - 1.0).max())
+    assert of_tip[1] < 1e-2, of_tip
+    assert of_frequency[1] < 1e-2, of_frequency
+    for errors in (of_tip, of_frequency):
+        assert 3.3 < errors[0] / errors[1] < 8.0, (of_tip, of_frequency)
+
+
+def test_held_tips_and_cables_of_given_length_are_led_there() -> None:
+    text = (
+        FINGER.replace("kirchhoff", "planar")
+        + """
+[[supports]]
+rod = "finger"
+kind = "clamped"
+position = [0.12, 0.0, 0.26]
+quaternion = [1, 0, 0, 0]
+"""
+    )
+    scene = parse_scene(text)
+    _, data = settled(scene, 16, 1.0)
+    assert_allclose(data.site("finger/tip").xpos, [0.12, 0.0, 0.26], rtol=0, atol=2e-4)
+    middle = solve(build(scene)).pose(0.5).position[0]
+    assert_allclose(data.body("finger/8").xpos, middle, rtol=0, atol=1e-3)
+
+    text = (
+        FINGER
+        + """
+[[actuators]]
+name = "east"
+kind = "tendon"
+rod = "finger"
+length = 0.29
+slack = true
+offset = [8e-3, 0.0]
+[[actuators]]
+name = "west"
+kind = "tendon"
+rod = "finger"
+length = 0.312
+slack = true
+offset = [-8e-3, 0.0]
+"""
+    )
+    scene = parse_scene(text)
+    _, data = settled(scene, 16, 1.0)
+    solution = solve(build(scene))
+    # The second is slack, and does not push.
+    assert_allclose(data.ten_length[1], solution.actuator("west")["length"], rtol=0, atol=4e-4)
+    assert data.ten_length[1] < 0.3115 and data.actuator_force[1] == 0.0
+    assert_allclose(data.site("finger/tip").xpos, solution.tip().position[0], rtol=0, atol=3e-3)
+
+
+def test_rods_stay_out_of_the_obstacles_that_name_them() -> None:
+    table = '[[obstacles]]\nname = "table"\nkind = "plane"\npoint = [0, 0, -0.02]\nnormal = [0, 0, 1]\nrods = ["{}"]\n'
+    rods = FINGER.replace("2e9", "2e6") + "base = { tangent = [1, 0, 0] }\n"
+    rods += ROD.format(name="other", strain="planar") + "base = { position = [0, 1, 0], tangent = [1, 0, 0] }\n"
+    heights = {}
+    for name in ("finger", "other"):
+        scene = parse_scene(rods + WEIGHT + table.format(name))
+        _, data = settled(scene, 16, 0.5, damping=0.05)
+        heights[name] = min(data.body(f"finger/{number}").xpos[2] for number in range(1, 17))
+    assert heights["finger"] == pytest.approx(-0.02 + 3e-3, abs=1e-3)
+    assert heights["other"] < -0.05
