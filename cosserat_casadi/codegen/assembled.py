@@ -67,7 +67,7 @@ def assembled(model: Model, names: Names) -> Assembled | None:
 
 def _jacobian(model: Model, partition: Blocks, name: str) -> tuple[Parted, list[PrintedKernel]]:
     """∂ residual / ∂x in parts, by columns where it has such a form, with the kernels that are written here."""
-    by_columns = parted_by_columns(model, partition, name)
+    by_columns = None if model.discrete.pairs else parted_by_columns(model, partition, name)
     if by_columns is not None:
         return by_columns
     jacobian = with_parameters_behind_inputs(model.path_jacobian)

@@ -1,7 +1,8 @@
 """Kernels as files in C, for a library or as functions that ``casadi.external`` loads.
 
 Functions of scalars are printed by scalars_in_c.py, functions of matrices by program_in_c.py. CasADi prints a function
-with an instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting.
+with an instruction that neither knows: the literal linear system of a rotation, which is solved with pivoting, and the
+contact of rods, which is computed where they are near.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.texts import fill, resource
 from cosserat_casadi.errors import WriteError
+from cosserat_casadi.maths.calls import chooses
 
 QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
 #ifdef __GNUC__
@@ -103,7 +105,7 @@ def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) 
 
 def in_c(kernel: Kernel) -> Kernel:
     """A kernel as printed here; the function itself where CasADi has to print it."""
-    if not isinstance(kernel, ca.Function):
+    if not isinstance(kernel, ca.Function) or chooses(kernel):
         return kernel
     try:
         if kernel.is_a("SXFunction"):

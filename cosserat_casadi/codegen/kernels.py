@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
@@ -68,6 +69,8 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
         error_sources.BALANCE: [*unknowns, *missing, *unknowns, *watched],
         error_sources.WATCHED: watched,
     }[entry.spec.name]
+    if chooses(entry.function):
+        return dense(entry.function, entry.kernel)
     straight = scalar(entry.function, entry.kernel)
     if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT_IN_SHARES:
         return dense(entry.function, entry.kernel)
@@ -87,6 +90,8 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 
 def _written(model: Model, entry: FunctionInC) -> Kernel:
     """One function of a scene that has no parts; in fours where it can be."""
+    if chooses(entry.function):
+        return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
         columned = by_columns(on_path(model), entry.function, entry.kernel)
         if columned is not None:
@@ -125,7 +130,7 @@ def _literal(model: Model) -> bool:
 
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
     """A function under its name in C: of scalars within so many instructions, else of matrices, which become loops."""
-    if not _literal(model):
+    if not _literal(model) and not chooses(function):
         straight = scalar(function, name)
         if straight.n_instructions() <= straight_within:
             return straight

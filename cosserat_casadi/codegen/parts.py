@@ -17,6 +17,7 @@ from cosserat_casadi.codegen.numbered import Program, function_of
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
+from cosserat_casadi.maths.calls import chooses
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
@@ -76,6 +77,8 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         the parts as straight-line code; where one is too long for that, long ones in loops. A function that is not
         known as a program is a single part then.
     """
+    if chooses(function):
+        return _whole(function, f"{name}_0")
     places = places_by_owner(owners)
     programs = _programs(function, places)
     # A scene without inputs has no derivative by them, and no part.

@@ -101,12 +101,15 @@ def check_scalar(model: Model) -> None:
     """Refuse a model that cannot be written as scalar instructions.
 
     Raises:
-        ExportError: the rotation of a rod is integrated by the literal linear system.
+        ExportError: the rotation of a rod is integrated by the literal linear system, or rods touch rods.
     """
     literal = [rod for rod, chosen in model.discretisation.items() if chosen.transport == "permuted"]
     if literal:
         problem = "the literal linear system of the rotation is solved with pivoting, which has no scalar form"
         raise ExportError(*[Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal])
+    if model.discrete.pairs:
+        problem = "contact of rods is computed where they are near, which has no scalar form"
+        raise ExportError(Problem("rod_contacts", problem, "leave it out"))
 
 
 def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_layers import thinnest
+from cosserat_casadi.model.contact_pairs import thinnest_pair
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
@@ -21,13 +22,20 @@ FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
-def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
+def continuation_limits(model: SystemFunctions, *, watched: bool = False) -> ContinuationSettings:
     """Limits of a continuation: in no step does a rod bend so much that it may pass through a smooth obstacle.
 
     A step as long as one radian of bending moves a section by half the length of the rod at most.
+
+    Args:
+        model: what to solve.
+        watched: whether steps that would take a rod through a rod are refused.
     """
     limits = ContinuationSettings()
+    pairs = model.discrete.pairs if isinstance(model, Model) and not watched else ()
     through = 2 * thinnest(model.scene)
+    if pairs:
+        through = min(through, 2 * thinnest_pair(pairs, model.scene))
     return replace(limits, longest=min(limits.longest, through))
 
 

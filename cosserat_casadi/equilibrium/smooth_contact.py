@@ -1,4 +1,4 @@
-"""Where rods and bodies are pressed by obstacles that have a width, and how hard."""
+"""Where rods and bodies are pressed by obstacles that have a width, or rods by rods, and how hard."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, runs
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
+from cosserat_casadi.equilibrium.rod_contacts import contacts_of_rods
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
 from cosserat_casadi.maths.grid import gauss_legendre
@@ -22,9 +23,10 @@ GAUSS_POINTS = 24
 def with_smooth_contacts(solution: Solution) -> Solution:
     """The solution with the stretches that smooth obstacles press; as it is in a scene without them."""
     layers = smooth_layers(solution)
-    if not layers or not np.all(np.isfinite(solution.x)):
+    if not (layers or solution.model.discrete.pairs) or not np.all(np.isfinite(solution.x)):
         return solution
     contacts = [contact for layer in layers for contact in _contacts(solution, layer)]
+    contacts += contacts_of_rods(solution)
     order = [*solution.model.discrete.rods, *solution.model.body]
     contacts.sort(key=lambda contact: (contact.of_body, order.index(contact.owner), contact.start))
     return replace(solution, contacts=tuple(contacts), message=solution.message + _too_deep(contacts))
@@ -43,7 +45,7 @@ def _too_deep(contacts: list[Contact]) -> str:
     worst = contacts[int(np.argmax(depths))]
     return (
         f" {worst.owner!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give "
-        "the obstacle more width or stiffness."
+        "the contact more width or stiffness."
     )
 
 

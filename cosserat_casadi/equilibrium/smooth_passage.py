@@ -1,7 +1,7 @@
-"""Bars and balls with a width that no step may take a rod through.
+"""Bars, balls and other rods that no step may take a rod through, where contact is smooth.
 
 A smooth obstacle pushes where a rod is in it: a step that ends behind it has not felt it. The ends of a step are judged
-by their depth; here the straight way between them is.
+by their depth; here the straight way between them is. So it is with rods that push each other.
 """
 
 from __future__ import annotations
@@ -10,10 +10,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
+from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_pairs import ContactPair
+
+EVERY = 2
+"""Sections of rods that touch rods of which one is looked at."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +35,11 @@ class SmoothBarriers:
         scene = self.model.scene
         smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]
+
+    @property
+    def any(self) -> bool:
+        """Whether there is anything to watch."""
+        return bool(self.watched or self.model.discrete.pairs)
 
     def are_between(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
         """Whether a rod is deep inside one on the straight way between two shapes, and at neither of its ends.
@@ -45,7 +57,30 @@ class SmoothBarriers:
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
-        return False
+        return self.rods_pass(before, after, inputs)
+
+    def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
+        """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""
+        return any(self._pass_each_other(pair, before, after, inputs) for pair in self.model.discrete.pairs)
+
+    def _pass_each_other(
+        self, pair: ContactPair, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
+    ) -> bool:
+        """Whether the axes of two rods come nearer than half their thickness on the way."""
+        starts = section_positions(self.model, pair, before, inputs[0])
+        ends = section_positions(self.model, pair, after, inputs[1])
+        moved = [end - start for start, end in zip(starts, ends, strict=True)]
+        # Every other section: they are nearer each other than half the thickness.
+        meets = pair.meets[::EVERY, ::EVERY]
+        apart, way = ((own[0][::EVERY, None] - own[1][None, ::EVERY])[meets] for own in (starts, moved))
+        allowed = pair.thickness / 2
+        squares = np.einsum("ki,ki->k", apart, apart)
+        near = squares < (allowed + np.sqrt(np.max(np.einsum("ki,ki->k", way, way), initial=0.0))) ** 2
+        apart, way = apart[near], way[near]
+        lengths = np.einsum("ki,ki->k", way, way)
+        share = -np.einsum("ki,ki->k", apart, way) / np.where(lengths > 0.0, lengths, 1.0)
+        nearest = apart + np.clip(share, 0.0, 1.0)[:, None] * way
+        return bool(np.any(np.linalg.norm(nearest, axis=1) < allowed))
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

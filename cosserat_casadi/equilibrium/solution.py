@@ -68,7 +68,7 @@ class Contact:
     """Where a rod, or a body, touches an obstacle, and how it is held off.
 
     Attributes:
-        obstacle: name of the obstacle.
+        obstacle: name of the obstacle, or of the rod that presses.
         owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 of a body.
         end: abscissa at which it ends; the same for a point.
@@ -79,6 +79,8 @@ class Contact:
         of_body: whether it is a body that is pressed.
         gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
         inside: forces at sections inside a line, where loads are taken by the obstacle.
+        on_rods: where the rod and another one, which stands for the obstacle, are nearest: X of either; None of
+            contact with an obstacle.
     """
 
     obstacle: str
@@ -92,6 +94,7 @@ class Contact:
     gap: float | None = None
     of_body: bool = False
     inside: tuple[SectionForce, ...] = ()
+    on_rods: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, repr=False)

@@ -134,7 +134,7 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     model = model.at(parameters)
-    limits = settings or continuation_limits(model)
+    limits = settings or continuation_limits(model, watched=True)
     if model.scene.touches_exactly:
         values = _values_in_contact(model, values)
         solution = _in_contact(model, values, start, method, limits, progress)
@@ -278,7 +278,7 @@ def _continuation(task: _Task) -> _End:
 def _past_no_smooth_obstacle(task: _Task, path: Path) -> Path:
     """A path without steps through smooth bars and balls; the path itself in a scene that has none."""
     barriers = SmoothBarriers(task.model)
-    if not barriers.watched:
+    if not barriers.any:
         return path
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
 

@@ -1,4 +1,4 @@
-"""Which functions a scalar function calls."""
+"""Which functions a function calls."""
 
 from __future__ import annotations
 
@@ -16,3 +16,11 @@ def called_functions(function: ca.Function) -> dict[int, ca.Function]:
         return {}
     elements = function.instructions_sx().nz
     return {k: elements[k].which_function() for k in calls}
+
+
+def chooses(function: ca.Function) -> bool:
+    """Whether a function calls another one, deep inside too, or leaves it out, by a value.
+
+    Written as scalars, or as a program without branches, it would compute all that it may leave out.
+    """
+    return any(called.class_name() == "Switch" for called in function.find_functions())

@@ -47,6 +47,7 @@ from cosserat_casadi.model.discrete_scene import STOP_COMPLIANCE, CableOfLength,
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
 from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
 from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, smoothing_at, spring
+from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import CORNER
 from cosserat_casadi.model.scene_constraints import ASSEMBLED, PlacedConstraint
 from cosserat_casadi.model.system import System
@@ -203,6 +204,8 @@ class Assembly:
             self._add_turned_loads(blocks, floating.name)
         for borne in self._borne_loads:
             self._add_borne_load(blocks, borne)
+        for terms in self.system.pairs:
+            self._add_pair(blocks, terms)
         for name in self.frames:
             self._add_balance(blocks, name)
         for placed in self.discrete.free_coordinates:
@@ -323,6 +326,23 @@ class Assembly:
         deviation = self.discrete.deviation(borne.body)
         blocks.add(strains, deviation, borne.residual_with_body @ self.frame_poses[borne.body].motion)
 
+    def _add_pair(self, blocks: BlockMatrix, terms: PairTerms) -> None:
+        """Blocks of two rods that push each other in the rows of their strains."""
+        for (rod, other), stiffness in terms.stiffness.items():
+            rows = self.unknowns.strain(rod)
+            work = stiffness[: rows.stop - rows.start, :] / self.discrete.rods[rod].energy_unit
+            for columns, block in self._by_side(other, work):
+                blocks.add(rows, columns, block)
+
+    def _by_side(self, rod: str, derivative: Matrix) -> Iterator[tuple[slice, Matrix]]:
+        """A derivative with the coordinates of a side of a pair, parted into strains and the base of the rod."""
+        strains = self.unknowns.strain(rod)
+        count = strains.stop - strains.start
+        yield strains, derivative[:, :count]
+        base = self.discrete.unloaded.floating_base(rod)
+        if base is not None:
+            yield self.discrete.deviation(base), derivative[:, count:] @ self.frame_poses[base].motion
+
     # Rows of floating frames
 
     @cached_property
@@ -402,6 +422,10 @@ class Assembly:
                 by_motion[moved] = by_motion[moved] + derivative
             if borne.body == name:
                 variations.append((self.unknowns.strain(borne.rod), borne.wrench_with_strain))
+        for terms in self.system.pairs:
+            for (rod, other), stiffness in terms.stiffness.items():
+                if self.discrete.unloaded.floating_base(rod) == name:
+                    variations += self._by_side(other, -stiffness[self.discrete.rods[rod].size :, :])
         for moved, derivative in by_motion.items():
             by_deviation = derivative @ self.frame_poses[moved].motion
             variations.append((self.discrete.deviation(moved), by_deviation))

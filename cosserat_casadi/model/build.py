@@ -196,6 +196,23 @@ class Model(ModelFunctions, MotionFunctions, WithParameters):
         return np.zeros(self.size)
 
 
+def check_pairs(model: Model) -> None:
+    """Refuse rods that are inside each other where nothing acts: to which side they belong is not known.
+
+    Where constraints have to draw rods together their unloaded places say nothing.
+
+    Raises:
+        SceneError: two rods are deeper inside each other than the width of their contact.
+    """
+    if model.discrete.constraints and not model.discrete.closed_unloaded:
+        return
+    if model.contact_depth is not None and float(model.contact_depth(model.unloaded(), model.pack())) > 1.0:
+        problem = "two rods, or two stretches of one, are inside each other where nothing acts"
+        raise SceneError(
+            Problem("rod_contacts", problem, "move them apart, or name the pairs that touch: rods = [...]")
+        )
+
+
 def check_axes(nominal: DiscreteScene, parameters: ParameterLayout) -> None:
     """Refuse axes as parameters that decide which directions other joints hold.
 
@@ -237,6 +254,8 @@ def build(
     check_loads(nominal)
     if scene.obstacles:
         check_obstacles(nominal)
+    if nominal.pairs:
+        check_pairs(Model(nominal))
     if not scene.parameters:
         return Model(nominal)
     parametric = with_parameters(nominal)

@@ -1,4 +1,4 @@
-"""How deep rods and bodies are inside obstacles that have a width."""
+"""How deep rods and bodies are inside obstacles that have a width, and rods inside each other."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from cosserat_casadi.obstacles.registry import SURFACES
 
 
 def contact_depths(system: System) -> list[Matrix]:
-    """Depth of each rod, at the node where it is deepest, and of each body, relative to the width, 1×1 each.
+    """Depth of each rod, at the section where it is deepest, and of each body, relative to the width, 1×1 each.
 
     Negative outside of an obstacle; nothing without smooth contact.
     """
-    return [_depth(system, load) for load in system.discrete.loads if isinstance(load, ContactLayer)]
+    of_obstacles = [_depth(system, load) for load in system.discrete.loads if isinstance(load, ContactLayer)]
+    return [*of_obstacles, *(terms.section_pairs.depth for terms in system.pairs)]
 
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:

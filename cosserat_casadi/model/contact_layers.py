@@ -9,6 +9,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.model.contact_pairs import pair_widths
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SURFACE_FORCE = 10.0
@@ -87,8 +88,9 @@ def _radius(body: scenes.Body) -> float:
 
 
 def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
-    """Abscissae at which elements end so that they are about as long as the stretches that obstacles press."""
+    """Abscissae at which elements end so that they are about as long as the stretches that obstacles or rods press."""
     widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and obstacle.concerns(rod.name)]
+    widths += pair_widths(scene, rod.name) if scene.rod_contacts else []
     if not widths:
         return []
     # The ratio may be beyond all range: it is bounded before it becomes a whole number.

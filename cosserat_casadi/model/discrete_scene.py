@@ -22,6 +22,7 @@ from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
 from cosserat_casadi.model.discretise import enriched, for_first_step
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
@@ -191,6 +192,13 @@ class DiscreteScene:
     def loads(self) -> tuple[scenes.LoadRecord, ...]:
         """The loads of the scene, then what its obstacles with a width press with."""
         return (*self.scene.loads, *contact_layers(self.scene, self.nominal.rods))
+
+    @cached_property
+    def pairs(self) -> tuple[ContactPair, ...]:
+        """Pairs of rods that push each other."""
+        if not self.scene.rod_contacts:
+            return ()
+        return tuple(contact_pairs(self.scene, self.nominal.rods, self.rods))
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:
@@ -437,7 +445,7 @@ class DiscreteScene:
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
         discretisation = {
-            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles))
+            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
             for name, rod in self.rods.items()
         }
         return Richer(self, self._on(discretisation))

@@ -170,6 +170,15 @@ class ModelFunctions:
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
+    @scene_function(Output("positions", "m"))
+    def contact_sections(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ positions of the sections that push each other, 3×…; None without contact of rods.
+
+        Of both rods of each pair, side by side, and of a rod and itself twice.
+        """
+        positions = [side.at_sections for terms in written.system.pairs for side in (terms.sides[0], terms.sides[-1])]
+        return [ca.horzcat(*positions)] if positions else None
+
     @scene_function(Output("steps"), kernel="richer_lack", judges_answers=True)
     def richer_lack(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ what the balance with modes and intervals added lacks at an answer; docs/theory.md, section 10.

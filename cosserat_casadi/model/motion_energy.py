@@ -52,13 +52,14 @@ class MotionEnergy:
 
     @cached_property
     def elastic(self) -> Matrix:
-        """Elastic energy of the rods, of their branches, and of springs and elastic stops of joints, 1×1, J."""
+        """Elastic energy of rods and their branches, of springs and stops of joints, and between rods, 1×1, J."""
         branches = [relaxation.energy for relaxation in self.system.relaxations.values()]
         springs = [
             effort.spring_energy(value) for effort, value, _ in self._free_joints if not is_zero(effort.stiffness)
         ]
         stops = [self.system.stop_energy(stop) for stop in self.system.discrete.stops if stop.stiffness is not None]
-        return _sum([self.system.energy(), *branches, *springs, *stops])
+        between = [terms.energy for terms in self.system.pairs]
+        return _sum([self.system.energy(), *branches, *springs, *stops, *between])
 
     @cached_property
     def load_is_dead(self) -> FloatArray:

@@ -60,10 +60,10 @@ def price_of_motion(model: Model) -> MotionPrice:
 
 
 def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None) -> dict[str, Count]:
-    """Operations that each load, actuator and obstacle with a width adds to the residual, by name.
+    """Operations that each load, actuator, obstacle with a width and contact of rods adds to the residual, by name.
 
-    The price is the residual with the effect less the residual without it; of an obstacle with a width, also without
-    the elements that it asks for.
+    The price is the residual with the effect less the residual without it; of contact also without the elements that it
+    asks for, and with all pairs of sections, as if they were near.
 
     Args:
         scene: with all effects.
@@ -72,6 +72,7 @@ def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None
     scene = scene.baked()
     without = {cause.name: without_load for cause in scene.causes}
     without |= {obstacle.name: without_obstacle for obstacle in scene.obstacles if obstacle.is_smooth}
+    without |= {contact.label: without_rod_contact for contact in scene.rod_contacts}
     residuals = [build(scene).residual]
     for done, (name, bare) in enumerate(without.items()):
         if progress is not None:
@@ -122,3 +123,9 @@ def without_obstacle(scene: scenes.Scene, name: str) -> scenes.Scene:
     """The scene without one of its obstacles."""
     obstacles = tuple(obstacle for obstacle in scene.obstacles if obstacle.name != name)
     return scene.model_copy(update={"obstacles": obstacles})
+
+
+def without_rod_contact(scene: scenes.Scene, name: str) -> scenes.Scene:
+    """The scene without one of its contacts of rods."""
+    contacts = tuple(contact for contact in scene.rod_contacts if contact.label != name)
+    return scene.model_copy(update={"rod_contacts": contacts})

@@ -105,6 +105,10 @@ def _bound(function: ca.Function, known: dict[int, int]) -> int:
     if kind == "Map":
         parts = function.info()
         return int(parts["n"]) * _most_operations(parts["f"], known)
+    if kind == "Switch":
+        # One of its functions is called, whose operations are bounded by those of the longest.
+        parts = function.info()
+        return max(_most_operations(part, known) for part in (*parts["f"], parts["f_def"]))
     total = 0
     for k in range(function.n_instructions()):
         instruction = function.instruction_id(k)

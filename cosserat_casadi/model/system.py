@@ -30,6 +30,7 @@ from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.inputs import input_value
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
+from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_rods import written_base_pose
@@ -43,7 +44,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
-from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench, WrenchAt
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
 
 DRIVE_GROWTH = 6
 """Power of the load factor by which drives of joints move: by turns of them at which their constraints are rigid."""
@@ -106,7 +107,7 @@ class System:
         balances = {}
         for name, shape_of_rod in self.shapes.items():
             wrenches = [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
-            loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
+            loads = [*self._loads(name), *wrenches, *self._pair_wrenches(name), *self._inertia_wrenches(name)]
             balances[name] = InverseGeometricModel(Statics(shape_of_rod, loads), self.actuators.on_rod(name))
         return balances
 
@@ -137,6 +138,11 @@ class System:
         return SceneActuators(
             self.discrete, self.arguments.x, self.arguments.inputs, self.arguments.load_factor, self.shapes
         )
+
+    @cached_property
+    def pairs(self) -> list[PairTerms]:
+        """Pairs of rods that push each other."""
+        return [PairTerms(self, pair) for pair in self.discrete.pairs]
 
     @cached_property
     def motions(self) -> dict[str, RodMotion]:
@@ -442,7 +448,7 @@ class System:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
         known = [term for term in terms if term is not None]
-        if self.discrete.constraints or len(known) < len(terms):
+        if self.discrete.constraints or self.discrete.pairs or len(known) < len(terms):
             return None
         return ca.sum1(ca.vertcat(*known))
 
@@ -451,7 +457,11 @@ class System:
         wrenches = [load for load in self._loads(rod) if not isinstance(load, PoseWrench)]
         dead = [wrench for wrench in wrenches if not wrench.follower]
         # What inertia is at this instant keeps its direction in the world as well.
-        return [*dead, *self._inertia_wrenches(rod)]
+        return [*dead, *self._pair_wrenches(rod), *self._inertia_wrenches(rod)]
+
+    def _pair_wrenches(self, rod: str) -> list[LineWrench]:
+        """Forces of other rods, and of other stretches of the rod, on it, base frame."""
+        return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:
         """Inertia of a rod as a wrench on its sections; none at rest."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
@@ -59,7 +60,7 @@ def _too_thin(model: Model) -> Iterator[Problem]:
 
 def too_deep(history: History, duration: float) -> str:
     """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
-    if not any(obstacle.is_smooth for obstacle in history.model.scene.obstacles):
+    if history.model.contact_depth is None:
         return ""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
@@ -68,9 +69,25 @@ def too_deep(history: History, duration: float) -> str:
     if depths[worst] <= 1.0:
         return ""
     return (
-        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle, too deep to be "
-        "contact: give the obstacle more width or stiffness."
+        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep "
+        "to be contact: give the contact more width or stiffness."
     )
+
+
+def told_passage(history: History, duration: float) -> str:
+    """A sentence on rods that pass through each other between two times that are watched; else nothing."""
+    if not history.model.discrete.pairs:
+        return ""
+    times = watched_times(history, duration)
+    x, inputs = history.rough_positions(times)
+    barriers = SmoothBarriers(history.model)
+    for row in range(len(times) - 1):
+        if barriers.rods_pass(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
+            return (
+                f"Between t = {times[row]:.6g} and {times[row + 1]:.6g} s rods pass through each other: give their "
+                "contact more width or stiffness, or take shorter steps."
+            )
+    return ""
 
 
 def told_inside(history: History, duration: float, deepest: float) -> str:

@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium.strain_limits import first_beyond
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import told_inside, too_deep
+from cosserat_casadi.motion.contact_checks import told_inside, told_passage, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
@@ -445,9 +445,13 @@ def judged(
     duration = simulator.simulation.duration
     beyond = told_beyond(history, duration)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
+    passed = told_passage(history, duration)
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
         message = message_of(history, outcome) + too_deep(history, duration)
+    elif passed:
+        outcome = MotionOutcome.UNRESOLVED
+        message = f"{outcome.value} {passed}"
     elif beyond is not None:
         outcome, message = beyond
     elif entered:

@@ -186,7 +186,7 @@ def follow_path(
 def _smooth_guard(followed: _Followed) -> Guard | None:
     """Refuses steps that take a rod through a smooth bar or ball; None in a scene that has none."""
     barriers = SmoothBarriers(followed.model)
-    if not barriers.watched:
+    if not barriers.any:
         return None
 
     def guard(arc: Arc, end: ArcPoint) -> ArcPoint | None:
@@ -201,7 +201,7 @@ def _smooth_guard(followed: _Followed) -> Guard | None:
 
 def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
     """The path; not resolved where rods are deeper inside smooth obstacles than their width on the way."""
-    if not path.converged or not path.model.scene.obstacles:
+    if not path.converged or not path.model.scene.has_contact:
         return path
     depths = depths_along(path.model, path.x, path.all_inputs)
     too_deep = np.flatnonzero(depths > 1.0)
@@ -209,8 +209,8 @@ def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
         return path
     message = (
         f"{PathOutcome.UNRESOLVED.value} From factor {path.factor[too_deep[0]]:.6g} on a rod is up to "
-        f"{depths.max():.3g} widths deep inside an obstacle, too deep to be contact: give the obstacle more width or "
-        "stiffness."
+        f"{depths.max():.3g} widths deep inside an obstacle or a rod, too deep to be contact: give the contact more "
+        "width or stiffness."
     )
     return replace(path, outcome=PathOutcome.UNRESOLVED, message=message)
 

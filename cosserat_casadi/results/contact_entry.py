@@ -12,7 +12,7 @@ from cosserat_casadi.paths.equilibrium_path import PathContact
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
-    """That contact is smooth, the widths of the obstacles, m, and how deep rods and bodies are in them, in widths.
+    """That contact is smooth, the widths of obstacles and of contacts of rods, m, and how deep things are, in widths.
 
     Args:
         model: of a scene with smooth obstacles.
@@ -21,7 +21,8 @@ def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, 
     """
     return {
         "kind": "smooth",
-        "widths": {obstacle.name: obstacle.width for obstacle in model.scene.obstacles},
+        "widths": {obstacle.name: obstacle.width for obstacle in model.scene.obstacles}
+        | {pair.name: pair.width for pair in model.discrete.pairs},
         "depth": depths_along(model, x, inputs),
     }
 

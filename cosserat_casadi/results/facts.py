@@ -37,7 +37,7 @@ MOST_OF_A_KIND = 4
 def solution_facts(solution: Solution) -> Titled:
     """Outcome, tips, error and stability of an equilibrium."""
     title, facts = _equilibrium_facts(solution, solution.smallest_eigenvalue)
-    if solution.model.scene.obstacles:
+    if solution.model.scene.has_contact:
         facts.append(("contacts", str(len(solution.contacts))))
     return title, facts
 
@@ -81,7 +81,7 @@ def motion_facts(motion: Motion) -> Titled:
         facts.append(("times", f"{motion.times[0]:g} to {motion.times[-1]:g} s, {len(motion.times)} rows"))
         facts += _first("tips", ends)
     facts.append(("steps", str(motion.statistics.steps)))
-    if scene.obstacles:
+    if scene.has_contact:
         facts.append(("events", str(len(motion.events))))
     facts.append(("error", _error(motion.error_estimate, scene.motion_tolerance)))
     return scene.title, facts

@@ -109,7 +109,7 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
     if model.joint:
         data["joints"] = {name: _joint_entry(motion, name) for name in model.joint}
-    if scene.obstacles:
+    if scene.has_contact:
         data["contact"] = _contact_entry(motion)
     elif motion.events:
         data["events"] = _events_entry(motion)

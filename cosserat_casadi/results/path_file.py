@@ -59,7 +59,7 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
         "events": [_event_entry(path, event) for event in path.events],
     }
     scene = path.model.scene
-    if scene.obstacles and not scene.touches_exactly:
+    if scene.has_contact and not scene.touches_exactly:
         data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
     plain_data: dict[str, Any] = plain(data)
     return plain_data

@@ -54,7 +54,7 @@ def result(solution: Solution) -> dict[str, Any]:
         data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
     if solution.model.joint:
         data["joints"] = {name: solution.joint(name) for name in solution.model.joint}
-    if scene.obstacles:
+    if scene.has_contact:
         data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
     plain_data: dict[str, Any] = plain(data)
     return plain_data
@@ -86,10 +86,14 @@ def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
 def _contact_entry(contact: Contact) -> dict[str, Any]:
     """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line.
 
-    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap.
+    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap. Of rods that touch
+    where they are nearest, and the resultant on the first.
     """
     entry: dict[str, Any] = {"obstacle": contact.obstacle}
-    if contact.of_body:
+    if contact.on_rods is not None:
+        entry = {"rods": [contact.owner, contact.obstacle], "at": contact.on_rods}
+        entry |= {"from": contact.start, "to": contact.end}
+    elif contact.of_body:
         entry["body"] = contact.owner
     else:
         entry |= {"rod": contact.owner, "from": contact.start, "to": contact.end}

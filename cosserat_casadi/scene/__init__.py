@@ -46,6 +46,7 @@ from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.obstacle_records import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameter_records import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene.rod_contact_record import RodContact
 from cosserat_casadi.scene.rod_records import (
     Annulus,
     Base,
@@ -125,6 +126,7 @@ __all__ = [
     "Rectangle",
     "RevoluteJoint",
     "Rod",
+    "RodContact",
     "RodDiscretisation",
     "Scene",
     "Section",

@@ -13,7 +13,18 @@ from cosserat_casadi.scene.faults import Path, shown
 from cosserat_casadi.scene.toml import keys_are_too_deep
 from cosserat_casadi.spelling import close_matches
 
-NAMED_LISTS = ("obstacles", "supports", "joints", "disks", "bodies", "rods", "actuators", "loads", "tubes")
+NAMED_LISTS = (
+    "obstacles",
+    "rod_contacts",
+    "supports",
+    "joints",
+    "disks",
+    "bodies",
+    "rods",
+    "actuators",
+    "loads",
+    "tubes",
+)
 """Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
 
 MOST_NAMES = 12

@@ -30,6 +30,7 @@ from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.obstacle_records import OBSTACLES
 from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, holders_of, parameter_faults, tie_faults
 from cosserat_casadi.scene.records import Entry, sound
+from cosserat_casadi.scene.rod_contact_record import RodContact
 from cosserat_casadi.scene.rod_records import Rod, admitted_strains
 from cosserat_casadi.scene.target_records import TARGETS, Bound
 from cosserat_casadi.scene.tube_records import Tube, tube_faults
@@ -47,6 +48,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "bodies": Body,
     "disks": Disks,
     "obstacles": OBSTACLES,
+    "rod_contacts": RodContact,
     "tubes": Tube,
     "targets": TARGETS,
     "bounds": Bound,
@@ -69,6 +71,7 @@ SINGULAR = {
     "bodies": "body",
     "disks": "row of disks",
     "obstacles": "obstacle",
+    "rod_contacts": "contact of rods",
     "tubes": "tube",
 }
 """One of what a list holds, in the words of an error."""
@@ -108,6 +111,7 @@ def repeated_names(scene: SceneTables) -> Iterator[Fault]:
         "joints",
         "disks",
         "obstacles",
+        "rod_contacts",
         "tubes",
         "measurements",
     ):

@@ -22,6 +22,7 @@ from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.obstacle_records import Obstacle
 from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, tied_numbers
 from cosserat_casadi.scene.records import HashedTable, Record, refusal
+from cosserat_casadi.scene.rod_contact_record import RodContact
 from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import TOLERANCE, Simulation
@@ -105,6 +106,7 @@ inputs = ["push.force", "cable.tension"]
     joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
     disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
+    rod_contacts: tuple[RodContact, ...] = Field((), description="rods that may not enter each other, or themselves")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
     )
@@ -211,6 +213,11 @@ inputs = ["push.force", "cable.tension"]
     def jointed_bases(self) -> set[str]:
         """Names of the rods whose bases joints hold, be it to bodies: they float."""
         return {joint.rod for joint in self.joints if joint.holds_base}
+
+    @property
+    def has_contact(self) -> bool:
+        """Whether rods may touch anything: obstacles, or rods."""
+        return bool(self.obstacles or self.rod_contacts)
 
     @property
     def touches_exactly(self) -> bool:

@@ -204,4 +204,7 @@ def _load_table(model: Model, of_effects: Mapping[str, Count]) -> Table:
         if obstacle.is_smooth:
             cost = of_effects[obstacle.name]
             table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost} operations")
+    for contact in model.scene.rod_contacts:
+        cost = of_effects[contact.label]
+        table.add_row(escape(contact.label), "contact of rods", "none", f"{cost} operations")
     return table

@@ -42,7 +42,7 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
     console.print(_rod_table(solution))
     if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
-    if solution.model.scene.obstacles:
+    if solution.model.scene.has_contact:
         console.print(_contact_table(solution))
     print_plain(console, _merit_sentence(solution, work))
     print_written(console, written)
@@ -141,13 +141,15 @@ def _rod_table(solution: Solution) -> Table:
 
 def _contact_table(solution: Solution) -> Table:
     """Where rods touch obstacles, with the resultant on the rod in world axes; a row that says so where none does."""
-    table = table_of("obstacle", "rod", "contact")
+    table = table_of("obstacle or rod", "on", "contact")
     for axis in ("x", "y", "z"):
         table.add_column(f"force {axis}, N", justify="right")
     for contact in solution.contacts:
         where = f"at X = {contact.start:.6g}"
         if contact.of_body:
             where = "body"
+        elif contact.on_rods is not None:
+            where = "at X = {1:.6g} and {0:.6g}".format(*contact.on_rods)
         elif contact.start < contact.end:
             where = f"X = {contact.start:.6g} to {contact.end:.6g}"
         if contact.width is not None:

@@ -1,0 +1,367 @@
+"""The push between two rods, or between two stretches of one: an energy of each pair of their sections.
+
+Two sections whose centres are d apart, of rods with the radii ρ, σ, and D = ρ + σ, store per length of either rod
+
+    u = c (R² − d²)₊³,    R = D + w,    c = 5 k / (32 Δ^{3/2} (5 D² − Δ)),    Δ = R² − D²
+
+with the width w and the stiffness k. Only the distance counts: forces are opposite and along the line of the centres,
+so that neither a sum nor a moment of them remains. Of two straight parallel rods with the gap g = d − D the integral
+over one of them is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the
+gap w on, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, where they touch, and there it grows by k for each metre of
+gap: the regularisation that an obstacle with a width has, too. Rods that cross at the angle α press each other with
+2π c d (R² − d²)₊³ / sin α.
+
+Everything is a function of squared distances: value, gradient and second derivatives are finite and continuous where
+rods are parallel, cross, or coincide. Sections stand for as much rod as lies between them, and their sum converges as
+the third derivative of u is bounded: half as far apart, the ripple along a rod falls by 2⁴.
+
+A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
+the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of
+both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for
+each pair of panels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+
+PANEL = 32
+"""Sections of a panel."""
+
+DATA = 3
+"""Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
+
+LAW = 3
+"""Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
+
+It is so far at least. Of two rods every pair counts; of one and itself each pair once.
+"""
+
+FAR = -1.0
+"""Depth, in widths, of sections that do not meet."""
+
+
+def coefficient(width: Matrix | float, stiffness: Matrix | float, touching: Matrix | float) -> Matrix | float:
+    """Coefficient c of the energy, N/m⁷.
+
+    Args:
+        width: w, m.
+        stiffness: k, N/m².
+        touching: distance D of centres that touch, m.
+    """
+    square = (touching + width) ** 2 - touching**2
+    return 5 * stiffness / (32 * square**1.5 * (5 * touching**2 - square))
+
+
+@dataclass(frozen=True)
+class PairKernels:
+    """Functions of two sections: (position, data, position, data, law), 3×1, DATA×1 each, LAW×1.
+
+    Attributes:
+        energy: 1×1, J.
+        depth: D − d over the width, counted from FAR, 1×1; zero where the sections do not meet.
+        gradient: derivative of the energy with the first position, 3×1, N; with the second it is the opposite.
+        hessian: second derivative with one position, 3×3, N/m; with both it is the opposite.
+    """
+
+    energy: ca.Function
+    depth: ca.Function
+    gradient: ca.Function
+    hessian: ca.Function
+
+
+@cache
+def pair_kernels() -> PairKernels:
+    """The functions of two sections, which all rods share."""
+    places = [ca.SX.sym(name, 3) for name in ("first", "second")]
+    data = [ca.SX.sym(name, DATA) for name in ("first_data", "second_data")]
+    law = ca.SX.sym("law", LAW)
+    width, stiffness, nearest = ca.vertsplit(law)
+    (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own) for own in data)
+    touching = radius + other_radius
+    square = ca.sumsqr(places[0] - places[1])
+    meets = other_along - along >= nearest
+    inside = ca.fmax((touching + width) ** 2 - square, 0.0)
+    energy = meets * length * other_length * coefficient(width, stiffness, touching) * inside**3
+    depth = ca.fmax(meets * ((touching - ca.sqrt(square)) / width - FAR), 0.0)
+    hessian, gradient = ca.hessian(energy, places[0])
+    arguments = [places[0], data[0], places[1], data[1], law]
+
+    def function(name: str, result: ca.SX) -> ca.Function:
+        return ca.Function(f"contact_{name}", arguments, ca.cse([ca.densify(result)]))
+
+    return PairKernels(
+        function("energy", energy),
+        function("depth", depth),
+        function("gradient", gradient),
+        function("hessian", hessian),
+    )
+
+
+def _panels() -> list[ca.MX]:
+    """Symbols of the positions and the data of two panels, and of the law."""
+    sizes = {"positions": 3, "data": DATA}
+    symbols = [ca.MX.sym(f"{name}_{kind}", rows, PANEL) for name in ("first", "second") for kind, rows in sizes.items()]
+    return [*symbols, ca.MX.sym("law", LAW)]
+
+
+def _by_pair(kernel: ca.Function, arguments: Sequence[Matrix]) -> Matrix:
+    """Results of a kernel for every pair of sections of two panels, side by side, the first running faster."""
+    owners = ("first", "first", "second", "second", "law")
+    arranged = [_arranged(field, owner, PANEL, PANEL) for field, owner in zip(arguments, owners, strict=True)]
+    result: Matrix = kernel.map(PANEL**2)(*arranged)
+    return result
+
+
+def _over_second(results: Matrix) -> Matrix:
+    """Sum over the sections of the second panel of results of all pairs, side by side for the first."""
+    rows, columns = results.shape
+    summed = ca.sum2(ca.reshape(results, rows * columns // PANEL, PANEL))
+    by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
+    return by_section
+
+
+def _over_first(results: Matrix) -> Matrix:
+    """Sum over the sections of the first panel, side by side for the second."""
+    rows, columns = results.shape
+    summed = ca.repsum(ca.reshape(results, rows * columns // PANEL, PANEL), PANEL, 1)
+    by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
+    return by_section
+
+
+@cache
+def panel_energy() -> ca.Function:
+    """(positions, data, positions, data, law) of two panels ↦ their energy, 1×1, J."""
+    arguments = _panels()
+    return ca.Function("energy", arguments, [ca.sum2(_by_pair(pair_kernels().energy, arguments))])
+
+
+@cache
+def panel_depth() -> ca.Function:
+    """The same ↦ largest depth, counted from FAR."""
+    arguments = _panels()
+    return ca.Function("depth", arguments, [ca.mmax(_by_pair(pair_kernels().depth, arguments))])
+
+
+@cache
+def panel_gradient() -> ca.Function:
+    """The same ↦ derivatives of the energy with the positions of both panels, 3×PANEL each, N."""
+    arguments = _panels()
+    gradients = _by_pair(pair_kernels().gradient, arguments)
+    return ca.Function("gradient", arguments, [_over_second(gradients), -_over_first(gradients)])
+
+
+@cache
+def panel_stiffness(count: int) -> ca.Function:
+    """The same, and a motion of the second panel ↦ second derivatives of the energy.
+
+    Args:
+        count: coordinates n of the motion: three components, one row for each coordinate, 3n×PANEL.
+
+    Returns:
+        function whose results are the derivatives with each section of the first panel twice, and of the second,
+        9×PANEL each, and with the coordinates and the positions of the first, n×(3 PANEL).
+    """
+    arguments = _panels()
+    motion = ca.MX.sym("motion", 3 * count, PANEL)
+    blocks = _by_pair(pair_kernels().hessian, arguments)
+    # Below each other for the sections of the second panel, whose motion has its components side by side.
+    mixed = -ca.vertcat(*ca.horzsplit(blocks, 3 * PANEL))
+    by_coordinates = ca.reshape(motion, count, 3 * PANEL) @ mixed
+    entries = ca.reshape(blocks, 9, PANEL**2)
+    return ca.Function("stiffness", [*arguments, motion], [_over_second(entries), _over_first(entries), by_coordinates])
+
+
+@cache
+def _ball() -> ca.Function:
+    """(positions, data) of a panel ↦ centre of a ball about it, its radius, and its ends along the rod, 6×1, m."""
+    places, data = ca.SX.sym("places", 3, PANEL), ca.SX.sym("data", DATA, PANEL)
+    centre = ca.sum2(places) / PANEL
+    reach = ca.sqrt(ca.sum1((places - ca.repmat(centre, 1, PANEL)) ** 2)) + data[1, :]
+    return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach), data[2, 0], data[2, -1])])
+
+
+def called_near(function: ca.Function) -> ca.Function:
+    """(near, arguments…) ↦ results of a function; zeros, without a call, where near is zero."""
+    symbols = [ca.MX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    nothing = [ca.MX.zeros(function.sparsity_out(i)) for i in range(function.n_out())]
+    far = ca.Function(f"no_{function.name()}", symbols, nothing)
+    return ca.Function.if_else(f"near_{function.name()}", function, far)
+
+
+@dataclass(frozen=True)
+class SectionsInContact:
+    """Sections of a rod, in panels, whose positions are known.
+
+    Attributes:
+        positions: world axes, 3×S, m, with S a multiple of PANEL.
+        data: DATA×S.
+    """
+
+    positions: Matrix
+    data: Matrix
+
+    @property
+    def panels(self) -> int:
+        """Number of panels."""
+        count: int = self.positions.shape[1] // PANEL
+        return count
+
+    @cached_property
+    def balls(self) -> Matrix:
+        """Centre and radius of a ball about each panel, and its ends along the rod, 6×panels, m."""
+        balls: Matrix = _ball().map(self.panels)(self.positions, self.data)
+        return balls
+
+    @cached_property
+    def ball(self) -> Matrix:
+        """The same of all of them, 6×1, m."""
+        centre = ca.sum2(self.balls[:3, :]) / self.panels
+        reach = ca.sqrt(ca.sum1((self.balls[:3, :] - ca.repmat(centre, 1, self.panels)) ** 2)) + self.balls[3, :]
+        ball: Matrix = ca.vertcat(centre, ca.mmax(reach), self.balls[4, 0], self.balls[5, -1])
+        return ball
+
+
+def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
+    """Whether sections in balls, 6×k each, may push each other, 1×k."""
+    near = ca.sum1((first[:3, :] - second[:3, :]) ** 2) < (first[3, :] + second[3, :] + law[0]) ** 2
+    meet: Matrix = near * (second[5, :] - first[4, :] >= law[2])
+    return meet
+
+
+@dataclass(frozen=True)
+class SectionPairs:
+    """All pairs of sections of two rods, or of one.
+
+    Attributes:
+        first: sections.
+        second: those of the other rod; the same where a rod touches itself.
+        law: LAW×1.
+    """
+
+    first: SectionsInContact
+    second: SectionsInContact
+    law: Matrix
+
+    @cached_property
+    def energy(self) -> Matrix:
+        """Energy, 1×1, J."""
+        (energies,) = self._over_pairs(panel_energy())
+        return ca.sum2(energies)
+
+    @cached_property
+    def depth(self) -> Matrix:
+        """Depth where it is largest, in widths, 1×1; FAR where nothing touches."""
+        (depths,) = self._over_pairs(panel_depth())
+        return ca.mmax(depths) + FAR
+
+    @cached_property
+    def gradient(self) -> tuple[Matrix, Matrix]:
+        """Derivatives of the energy with the positions of both, 3×S each, N."""
+        first, second = self._over_pairs(panel_gradient())
+        return self._of_first(first), self._of_second(second)
+
+    def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+        """Second derivatives of the energy with coordinates: of the first twice, second and first, of the second twice.
+
+        Args:
+            first: motion of the sections of the first rod with its n coordinates, 3n×S: three components, one row for
+                each coordinate.
+            second: the same of the second, 3m×S.
+
+        Returns:
+            n×n, m×n and m×m.
+        """
+        by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), second)
+        sections = self.first.positions.shape[1]
+        across = self._of_first(mixed, width=3) @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
+        own = _with_coordinates(self._of_first(by_first), first)
+        other = _with_coordinates(self._of_second(by_second), second)
+        return own, across, other
+
+    def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
+        """Results of a function of two panels for all pairs, the first running faster; zeros where rods are apart."""
+        of_all = _all_pairs(function, self.first.panels, self.second.panels)
+        sections = [self.first.positions, self.first.data, self.second.positions, self.second.data]
+        arguments = [*sections, self.law, *motion, self.first.balls, self.second.balls]
+        near = _meet(self.first.ball, self.second.ball, self.law)
+        return list(called_near(of_all).call([near, *arguments]))
+
+    def _of_first(self, field: Matrix, width: int = 1) -> Matrix:
+        """Sum over the panels of the second of what each pair gives to the first, width columns for each section."""
+        rows, columns = field.shape[0], width * self.first.positions.shape[1]
+        by_panel = ca.reshape(field, rows * columns, self.second.panels)
+        summed: Matrix = ca.reshape(ca.sum2(by_panel), rows, columns)
+        return summed
+
+    def _of_second(self, field: Matrix) -> Matrix:
+        """Sum over the panels of the first of what each pair gives to the second, one column for each section."""
+        rows, columns = field.shape[0], self.first.positions.shape[1]
+        by_panel = ca.reshape(field, rows * columns, self.second.panels)
+        summed: Matrix = ca.reshape(ca.repsum(by_panel, self.first.panels, 1), rows, self.second.positions.shape[1])
+        return summed
+
+
+@cache
+def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
+    """A function of two panels for all pairs of so many panels, the first running faster.
+
+    Args:
+        function: of two panels, the law, and a motion of the second where there is one.
+        first: panels of the first rod.
+        second: panels of the second.
+
+    Returns:
+        the arguments for all panels, and their balls ↦ its results side by side.
+    """
+    counts = {"first": first, "second": second, "motion": second, "law": 1}
+    symbols = []
+    arguments = []
+    for i in range(function.n_in()):
+        rows, columns = function.size_in(i)
+        owner = ARGUMENTS[min(i, len(ARGUMENTS) - 1)]
+        symbol = ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
+        symbols.append(symbol)
+        arguments.append(_arranged(symbol, owner, first, second))
+    balls = [ca.MX.sym(name, 6, counts[name]) for name in ("first", "second")]
+    first_balls, second_balls = (
+        _arranged(ball, name, first, second) for ball, name in zip(balls, counts, strict=False)
+    )
+    near = _meet(first_balls, second_balls, symbols[LAW_ARGUMENT])
+    results = called_near(function).map(first * second).call([near, *arguments])
+    return ca.Function(f"{function.name()}_of_pairs", [*symbols, *balls], results)
+
+
+ARGUMENTS = ("first", "first", "second", "second", "law", "motion")
+"""Owners of the arguments of a function of two panels."""
+
+LAW_ARGUMENT = ARGUMENTS.index("law")
+"""Place of the law among them."""
+
+
+def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
+    """A field of the panels of one rod, or of neither, for all pairs of panels, the first running faster."""
+    if owner == "first":
+        return ca.repmat(field, 1, second)
+    if owner == "law":
+        return ca.repmat(field, 1, first * second)
+    rows, columns = field.shape
+    panels = ca.reshape(field, rows * columns // second, second)
+    return ca.reshape(ca.repmat(panels, first, 1), rows, columns * first)
+
+
+def _with_coordinates(hessian: Matrix, motion: Matrix) -> Matrix:
+    """Second derivative with n coordinates, n×n, from the derivatives with each section, 9×S, and its motion, 3n×S."""
+    components = ca.vertsplit(motion, motion.shape[0] // 3)
+    entries = ca.vertsplit(hessian)
+    rows = []
+    for i in range(3):
+        terms = [components[j] @ ca.diag(entries[3 * i + j]) for j in range(3)]
+        rows.append(components[i] @ (terms[0] + terms[1] + terms[2]).T)
+    return rows[0] + rows[1] + rows[2]

@@ -1,0 +1,179 @@
+"""Pairs of rods that may not enter each other: the law by which they push, and the sections that it is summed over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import ceil, inf, sqrt
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.rod_contact_record import RodContact, are_tied
+
+WIDTH_OF_RADIUS = 0.2
+"""Width relative to the smallest radius of both rods, of a contact that is given none."""
+
+SURFACE_STIFFNESS = 30.0
+"""Stiffness relative to EI/(L² width²) of the stiffer rod, of a contact that is given none."""
+
+SPACING = 0.25
+"""Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
+
+FROM_ITSELF = 2.0
+"""Distance along a rod, relative to its diameter and the width, below which its sections do not touch.
+
+Bent to a circle of more than 0.53 times diameter and width, a rod keeps such sections apart by more than these.
+"""
+
+ANYWHERE = 1e100
+"""A distance along a rod, m, that no two sections have."""
+
+MOST_SECTIONS = 2000
+"""Sections of a rod beyond which a contact is refused."""
+
+LOOKED_AT = np.linspace(0.0, 1.0, 201)
+"""Abscissae whose radii are looked at."""
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """Two rods that push each other, or one that pushes itself.
+
+    Attributes:
+        name: of the contact, for people.
+        rods: their names; the same twice of a rod and itself.
+        width: gap from which on they push, m.
+        stiffness: rate of the force per length with the gap where parallel rods touch, N/m².
+        apart: how far the second section is along the rod from the first at least, m; far below zero for two rods.
+        sections: number of sections of each rod.
+        thickness: distance of the centres of sections that touch, where it is least, m.
+        length: of the first rod, m.
+    """
+
+    name: str
+    rods: tuple[str, str]
+    width: float
+    stiffness: float
+    apart: float
+    sections: tuple[int, int]
+    thickness: float
+    length: float
+
+    @property
+    def itself(self) -> bool:
+        """Whether a rod touches itself."""
+        return self.rods[0] == self.rods[1]
+
+    @property
+    def lookup(self) -> tuple[FloatArray, FloatArray]:
+        """Abscissae of the sections of both rods."""
+        first, second = ((np.arange(count) + 0.5) / count for count in self.sections)
+        return first, second
+
+    @property
+    def meets(self) -> npt.NDArray[np.bool_]:
+        """Which sections may touch each other, shape (sections of the first, sections of the second)."""
+        first, second = self.lookup
+        return (second - first[:, None]) * self.length >= self.apart
+
+    @property
+    def law(self) -> ca.DM:
+        """Numbers of the law, as loads/rod_contact.py takes them."""
+        return ca.DM([self.width, self.stiffness, self.apart])
+
+
+def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
+    """The contacts of a scene with the rods of each pair; a pair that several name belongs to the first of these."""
+    ties: list[tuple[Any, Any]] = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
+    ties += [(joint.rod, ("body", joint.body)) for joint in scene.joints if joint.body is not None]
+    taken = set()
+    # A table that names its rods goes before one that stands for all.
+    for contact in sorted(scene.rod_contacts, key=lambda record: record.rods is None):
+        if contact.rods is None:
+            every = combinations([rod.name for rod in scene.rods], 2)
+            pairs = [(one, other) for one, other in every if not are_tied(one, other, ties)]
+        else:
+            pairs = [(contact.rods[0], contact.rods[-1])]
+        for pair in pairs:
+            if frozenset(pair) not in taken:
+                taken.add(frozenset(pair))
+                yield contact, pair
+
+
+def contact_pairs(
+    scene: scenes.Scene, nominal: Mapping[str, DiscreteRod], rods: Mapping[str, DiscreteRod]
+) -> Iterator[ContactPair]:
+    """The pairs of a scene.
+
+    Args:
+        scene: the scene.
+        nominal: its rods with the numbers that scale the equations.
+        rods: the same on the grids that are asked for.
+
+    Raises:
+        SceneError: a contact would take too many sections.
+    """
+    for contact, pair in named_pairs(scene):
+        radii = [section_radius(nominal[name].properties, LOOKED_AT) for name in pair]
+        width = _width(contact, radii)
+        stiffness = contact.stiffness
+        if stiffness is None:
+            bending = max(nominal[name].energy_unit / nominal[name].properties.length for name in pair)
+            stiffness = SURFACE_STIFFNESS * bending / width**2
+        thinnest = float(radii[0].min() + radii[1].min())
+        thickest = float(radii[0].max() + radii[1].max())
+        itself = pair[0] == pair[1]
+        spacing = SPACING * sqrt((thinnest + width) ** 2 - thinnest**2)
+        name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
+        yield ContactPair(
+            name=name,
+            rods=pair,
+            width=width,
+            stiffness=stiffness,
+            apart=FROM_ITSELF * (thickest + width) if itself else -ANYWHERE,
+            sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
+            thickness=thinnest,
+            length=nominal[pair[0]].properties.length,
+        )
+
+
+def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:
+    """Widths of the contacts of a rod, m."""
+    records = {record.name: record for record in scene.rods}
+    pairs = [(contact, pair) for contact, pair in named_pairs(scene) if rod in pair]
+    return [
+        _width(contact, [section_radius(rod_properties(records[name]), LOOKED_AT) for name in pair])
+        for contact, pair in pairs
+    ]
+
+
+def _width(contact: RodContact, radii: Sequence[FloatArray]) -> float:
+    """Width of a contact of rods with these radii, m."""
+    if contact.width is not None:
+        return contact.width
+    return WIDTH_OF_RADIUS * min(float(own.min()) for own in radii)
+
+
+def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
+    """Number of sections so near each other; on another grid they stand elsewhere, so that their error shows."""
+    wanted = rod.properties.length / spacing
+    if wanted > MOST_SECTIONS:
+        problem = f"the contact {name!r} takes {wanted:.0f} sections of {rod.properties.name!r}, above {MOST_SECTIONS}"
+        raise SceneError(Problem("rod_contacts", problem, "give it more width, or leave thin and long rods out"))
+    intervals = len(rod.grid.left_ends)
+    return ceil(wanted + intervals)
+
+
+def thinnest_pair(pairs: tuple[ContactPair, ...], scene: scenes.Scene) -> float:
+    """Distance of centres that touch, of the thinnest pair, over the length of the shortest rod; else infinite."""
+    return min((pair.thickness for pair in pairs), default=inf) / min((rod.length for rod in scene.rods), default=1.0)

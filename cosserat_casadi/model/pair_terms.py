@@ -1,0 +1,203 @@
+"""Terms of two rods that push each other: forces on both, and the second variation of their energy.
+
+The centres of the sections of both are known, and so are the forces, minus the derivatives of one energy. On each rod
+they are a dead force per length, which statics and tangents know already. The rest of the
+derivative with the unknowns is Gᵀ H G, with the second derivative H of the energy and the motions G of the sections by
+the strains of their rod and by its base, where that floats.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil
+from typing import TYPE_CHECKING
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
+from cosserat_casadi.maths.numbers import as_matrix, repeated
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.wrenches import LineWrench
+
+if TYPE_CHECKING:
+    from cosserat_casadi.model.system import System
+
+
+@dataclass(frozen=True)
+class ContactSide:
+    """The sections of one rod of a pair.
+
+    Attributes:
+        system: the scene.
+        rod: name of the rod.
+        count: number of sections that stand for a part of the rod. Sections at the tip that stand for none fill the
+            last panel; with them there are S.
+    """
+
+    system: System
+    rod: str
+    count: int
+
+    @property
+    def discrete(self) -> DiscreteRod:
+        """The constant matrices of the rod."""
+        return self.system.discrete.rods[self.rod]
+
+    @property
+    def at_sections(self) -> Matrix:
+        """Positions of the sections that stand for a part of the rod, world axes, 3×count, m."""
+        return self.sections.positions[:, : self.count]
+
+    @property
+    def columns(self) -> int:
+        """Number of sections S."""
+        return PANEL * ceil(self.count / PANEL)
+
+    @cached_property
+    def interpolation(self) -> ca.DM:
+        """Matrix from values at the nodes to values at the sections, S×M; of each section those of its element."""
+        # Sections stay where they are in their elements: none is moved into another.
+        matrix = replace(self.discrete.grid, ends=None).interpolation_matrix(self._coordinates)
+        return ca.sparsify(ca.DM(matrix))
+
+    @cached_property
+    def sections(self) -> SectionsInContact:
+        """The sections at their places, each for an equal part of the rod between element ends."""
+        rod = self.discrete
+        elements = replace(rod.grid, ends=None).element_of(self._coordinates)
+        X = rod.grid.on_rod(self._coordinates, elements)
+        rates = rod.grid.rates_in(elements)
+        ratio = self.system.shapes[self.rod].ratio
+        lengths = as_matrix(np.where(np.arange(self.columns) < self.count, rod.properties.length / self.count, 0.0))
+        if rates is not None:
+            lengths = lengths * as_matrix(rates)
+        if ratio is not None:
+            lengths = ratio * lengths
+        radii = as_matrix(repeated(section_radii(rod.properties, X), self.columns))
+        along = rod.properties.length * as_matrix(X)
+        data = ca.horzcat(lengths, radii, along).T
+        origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.columns)
+        return SectionsInContact(origin + self._arms, data)
+
+    def wrench(self, gradient: Matrix, factor: Matrix | float) -> LineWrench:
+        """Forces on the nodes that do the work of those on the sections, as a force per length, base axes.
+
+        Args:
+            gradient: derivative of the energy with the positions, 3×S, N, world axes.
+            factor: of the energy.
+        """
+        at_nodes = -factor * gradient @ self.interpolation
+        lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
+        return LineWrench(self._rotation.T @ at_nodes / lengths, None, None, follower=False)
+
+    @cached_property
+    def base_frame(self) -> FrameName | None:
+        """The frame that the base of the rod is; None where it rests in the world."""
+        return self.system.discrete.unloaded.floating_base(self.rod)
+
+    @cached_property
+    def motion(self) -> Matrix:
+        """Motion of the sections, world axes, 3n×S: three components, each with a row for each coordinate.
+
+        The coordinates are the strains of the rod, then the motion [δθ; δr] of its base where that floats.
+        """
+        tangent = self.system.tangents[self.rod]
+        grid = self.discrete.grid
+        integrate = ca.DM(grid.integration_matrix).T
+        moved = [component.T @ integrate for component in ca.vertsplit(tangent.tangent, grid.size)]
+        local = [component @ self.interpolation.T for component in moved]
+        rotation = self._rotation
+        components = [sum(rotation[i, j] * local[j] for j in range(3)) for i in range(3)]
+        if self.base_frame is None:
+            return ca.vertcat(*components)
+        x, y, z = ca.vertsplit(self._arms)
+        none = ca.DM(1, self.columns)
+        # δθ × arm, one row for each component of δθ, and δr.
+        turned = [(none, z, -y), (-z, none, x), (y, -x, none)]
+        shifted = [[ca.DM.ones(1, self.columns) if i == j else none for j in range(3)] for i in range(3)]
+        parts = zip(components, turned, shifted, strict=True)
+        return ca.vertcat(*[ca.vertcat(own, *turn, *shift) for own, turn, shift in parts])
+
+    @property
+    def _coordinates(self) -> FloatArray:
+        """Places of the sections in the coordinate of the grid, shape (S,)."""
+        return np.minimum((np.arange(self.columns) + 0.5) / self.count, 1.0)
+
+    @property
+    def _rotation(self) -> Matrix:
+        """world_R_base, 3×3."""
+        return self.system.base(self.rod).rotation
+
+    @cached_property
+    def _arms(self) -> Matrix:
+        """Sections from the base, world axes, 3×S, m."""
+        return self._rotation @ self.system.shapes[self.rod].position @ self.interpolation.T
+
+
+@dataclass(frozen=True)
+class PairTerms:
+    """The terms of one pair in given arguments.
+
+    Attributes:
+        system: the scene.
+        pair: the pair.
+    """
+
+    system: System
+    pair: ContactPair
+
+    @cached_property
+    def sides(self) -> tuple[ContactSide, ...]:
+        """The sections of both rods; of a rod that touches itself once."""
+        names = dict(zip(self.pair.rods, self.pair.sections, strict=True))
+        return tuple(ContactSide(self.system, name, count) for name, count in names.items())
+
+    @cached_property
+    def section_pairs(self) -> SectionPairs:
+        """All pairs of sections."""
+        sections = [side.sections for side in self.sides]
+        return SectionPairs(sections[0], sections[-1], self.pair.law)
+
+    @cached_property
+    def energy(self) -> Matrix:
+        """Energy that the pair stores, 1×1, J."""
+        return self._factor * self.section_pairs.energy
+
+    def wrenches(self, rod: str) -> list[LineWrench]:
+        """The push on a rod, base axes; none on a rod that is not of the pair."""
+        first, second = self.section_pairs.gradient
+        gradients = [first + second] if self.pair.itself else [first, second]
+        factor = self._factor
+        return [
+            side.wrench(gradient, factor)
+            for side, gradient in zip(self.sides, gradients, strict=True)
+            if side.rod == rod
+        ]
+
+    @cached_property
+    def stiffness(self) -> dict[tuple[str, str], Matrix]:
+        """Gᵀ H G by rods, in the coordinates of each side, J."""
+        motions = [side.motion for side in self.sides]
+        own, across, other = self.section_pairs.stiffness(motions[0], motions[-1])
+        first, second = self.pair.rods
+        factor = self._factor
+        if self.pair.itself:
+            return {(first, first): factor * (own + across + across.T + other)}
+        return {
+            (first, first): factor * own,
+            (first, second): factor * across.T,
+            (second, first): factor * across,
+            (second, second): factor * other,
+        }
+
+    @property
+    def _factor(self) -> Matrix | float:
+        """Factor of the push on the way from the unloaded scene: it grows as the loads do."""
+        load_factor = self.system.arguments.load_factor
+        return 1.0 if load_factor is None else load_factor

@@ -1,0 +1,115 @@
+"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.rod_records import is_round
+from cosserat_casadi.scene.values import Name, Names, Positive
+
+MOST_RODS = 2
+"""Rods of a pair."""
+
+
+class RodContact(Entry):
+    """Two rods that may not enter each other, or one that may not enter itself; without the table they do."""
+
+    example: ClassVar[str] = """\
+[[rod_contacts]]
+rods = ["finger"]
+width = 5e-4
+"""
+
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods"}
+
+    name: Name | None = Field(None, description="name of the contact, a letter, then letters, digits and underscores")
+    rods: Names | None = Field(
+        None,
+        description="names of two rods, or of one that touches itself; every two rods when left out, but those of "
+        "which one starts on the other or that are joined to one body",
+    )
+    width: Positive | None = Field(
+        None,
+        description="gap from which on they push, smoothly, m; a fifth of the smallest radius of both when left out",
+    )
+    stiffness: Positive | None = Field(
+        None,
+        description="rate of the force per length with the gap where the gap of parallel rods is zero, N/m²; "
+        "30 EI/(L² width²) of the stiffer rod when left out",
+    )
+
+    @property
+    def label(self) -> str:
+        """The contact for people: its name, else its rods."""
+        if self.name is not None:
+            return self.name
+        if self.rods is None:
+            return "rods on rods"
+        return f"{self.rods[0]} on {self.rods[1] if len(self.rods) == MOST_RODS else 'itself'}"
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """One rod, or two."""
+        rods = given.get("rods")
+        if isinstance(rods, list | tuple) and len(rods) > MOST_RODS:
+            problem = f"must be one rod or two, got {len(rods)}"
+            yield Fault(("rods",), problem, "give a table for each pair, or leave rods out: every two rods then")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """Rods without a radius, rods that always touch, and obstacles that are touched exactly."""
+        named = given.get("rods")
+        known = scene.named("rods")
+        names = [name for name in named if name in known] if isinstance(named, list | tuple) else list(known)
+        for name in names:
+            yield from _without_radius(name, known[name][1], given.get("width"))
+        if isinstance(named, list | tuple) and len(names) == MOST_RODS and are_tied(names[0], names[1], _ties(scene)):
+            problem = f"{names[0]!r} and {names[1]!r} are tied to each other, where they would always touch"
+            yield Fault(("rods",), problem, "leave this pair out")
+        if named is None and len(known) < MOST_RODS:
+            problem = "missing: the scene has no two rods"
+            yield Fault(("rods",), problem, "name the rod that touches itself, as in rods = ['finger']")
+        if any("width" not in other for _, other in scene.tables("obstacles")):
+            problem = "contact of rods is smooth, and an obstacle of the scene is touched exactly"
+            yield Fault((), problem, "give each obstacle a width, m, or leave one of the two out")
+
+
+def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:
+    """A rod that is not round, or not thicker than the width."""
+    section = rod.get("section")
+    if not isinstance(section, Mapping) or not is_round(section):
+        problem = f"the rod {name!r} has no radius to keep"
+        yield Fault((), problem, "take a round section, with a material")
+        return
+    radius = section.get("radius", section.get("outer_radius"))
+    radii = radius if isinstance(radius, list | tuple) else [radius]
+    numbers = [entry for entry in radii if isinstance(entry, int | float) and entry > 0]
+    if numbers and isinstance(width, int | float) and width >= min(numbers):
+        problem = f"must be < the radius of {name!r}, {min(numbers):g} m, got {width:g}"
+        yield Fault(("width",), problem, "take a small part of the radius")
+
+
+def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
+    """Ties: of rods to the rods that they start on, and to the bodies of their joints."""
+    for name, (_, rod) in scene.named("rods").items():
+        base = rod.get("base")
+        if isinstance(base, Mapping) and isinstance(base.get("rod"), str):
+            yield name, base["rod"]
+    for _, joint in scene.tables("joints"):
+        if isinstance(joint.get("body"), str):
+            yield joint.get("rod"), ("body", joint["body"])
+
+
+def are_tied(first: str, second: str, ties: Iterable[tuple[Any, Any]]) -> bool:
+    """Whether one of two rods is tied to the other, or both to one thing."""
+    held: dict[str, set[Any]] = {first: set(), second: set()}
+    for one, other in ties:
+        for rod, holder in ((one, other), (other, one)):
+            if rod in held:
+                held[rod].add(holder)
+    return second in held[first] or bool(held[first] & held[second])

@@ -1,0 +1,307 @@
+"""Rods that touch rods, and themselves: the law, its derivatives, beams, a closed elastica, motion and C."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, fsolve
+
+from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.scene import Simulation
+
+RADIUS = 5e-3
+WIDTH = 2e-3
+TOUCHING = 2 * RADIUS
+STIFFNESS = 1e6
+SECTIONS = 6 * PANEL
+
+
+def pushed(positions: FloatArray, other: FloatArray) -> tuple[float, FloatArray]:
+    """Energy and force on the second of two straight rods of unit length."""
+    along = (np.arange(SECTIONS) + 0.5) / SECTIONS
+    data = ca.DM(np.vstack([np.full(SECTIONS, 0.2 / SECTIONS), np.full(SECTIONS, RADIUS), along]))
+    sections = [SectionsInContact(ca.MX(ca.DM(own)), data) for own in (positions, other)]
+    pairs = SectionPairs(*sections, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    energy, first, second = (ca.evalf(value).full() for value in (pairs.energy, *pairs.gradient))
+    assert_allclose(first.sum(axis=1), -second.sum(axis=1), rtol=0, atol=1e-12)
+    return float(energy[0, 0]), -second.sum(axis=1)
+
+
+def straight(angle: float, gap: float) -> tuple[FloatArray, FloatArray]:
+    """Sections of two rods of 0.2 m whose middles lie above each other."""
+    along = 0.2 * ((np.arange(SECTIONS) + 0.5) / SECTIONS - 0.5)
+    none = 0 * along
+    return np.array([along, none, none]), np.array(
+        [along * np.cos(angle), along * np.sin(angle), none + TOUCHING + gap]
+    )
+
+
+@pytest.mark.parametrize("gap", [-0.5e-3, 0.0, 0.8e-3])
+@pytest.mark.parametrize("angle", [np.pi / 2, 0.6])
+def test_crossed_rods_press_with_the_force_of_the_page(angle: float, gap: float) -> None:
+    distance = TOUCHING + gap
+    inside = (TOUCHING + WIDTH) ** 2 - distance**2
+    factor = coefficient(WIDTH, STIFFNESS, TOUCHING) / np.sin(angle)
+    energy, force = pushed(*straight(angle, gap))
+    assert_allclose(energy, np.pi / 4 * factor * inside**4, rtol=2e-3, atol=0)
+    assert_allclose(force, [0, 0, 2 * np.pi * factor * distance * inside**3], rtol=2e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("gap", [-0.5e-3, 0.0, 0.8e-3])
+def test_parallel_rods_press_with_the_force_of_the_page(gap: float) -> None:
+    distance = TOUCHING + gap
+    inside = (TOUCHING + WIDTH) ** 2 - distance**2
+    factor = 2 * distance * coefficient(WIDTH, STIFFNESS, TOUCHING)
+    # The second term is of the ends, which feel one half of the other rod.
+    wanted = factor * (16 / 5 * 0.2 * inside**2.5 - inside**3)
+    assert_allclose(pushed(*straight(0.0, gap))[1], [0, 0, wanted], rtol=1e-3, atol=1e-9)
+
+
+def test_parallel_rods_have_the_stiffness_that_was_given() -> None:
+    factor = coefficient(WIDTH, STIFFNESS, TOUCHING)
+
+    def per_length(distance: float) -> float:
+        return 32 / 5 * factor * distance * ((TOUCHING + WIDTH) ** 2 - distance**2) ** 2.5
+
+    step = 1e-7
+    slope = (per_length(TOUCHING - step) - per_length(TOUCHING + step)) / (2 * step)
+    assert_allclose(slope, STIFFNESS, rtol=1e-6, atol=0)
+    square = (TOUCHING + WIDTH) ** 2 - TOUCHING**2
+    wanted = STIFFNESS * TOUCHING * square / (5 * TOUCHING**2 - square)
+    assert_allclose(per_length(TOUCHING), wanted, rtol=1e-12, atol=0)
+
+
+def test_rods_that_are_apart_do_not_touch() -> None:
+    energy, force = pushed(*straight(0.3, WIDTH))
+    assert energy == 0.0
+    assert not np.any(force)
+    # Where axes coincide all is finite.
+    energy, force = pushed(*straight(0.0, -TOUCHING))
+    assert np.isfinite(energy)
+    assert_allclose(force, 0.0, rtol=0, atol=1e-9)
+
+
+CROSSED = """
+schema = 1
+accuracy = {{ modes = 3, nodes = 8 }}
+[[rods]]
+name = "lower"
+length = 0.3
+strain = "kirchhoff"
+material = {{ youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }}
+section = {{ shape = "circle", radius = 5e-3 }}
+base = {{ position = [-0.15, 0, 0], tangent = [1, 0, 0] }}
+[[rods]]
+name = "upper"
+length = 0.3
+strain = "kirchhoff"
+material = {{ youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }}
+section = {{ shape = "circle", radius = 5e-3 }}
+damping = {{ retardation_time = 0.01 }}
+base = {{ position = [0, -0.15, 0.013], tangent = [0, 1, 0] }}
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "upper"
+force = [0, 0, {push}]
+[[rod_contacts]]
+rods = ["lower", "upper"]
+width = 2e-3
+{more}
+"""
+
+
+def crossed(push: float = -1.0, more: str = "", *changes: str) -> Model:
+    """Two crossed cantilevers, the upper one pushed down at its tip."""
+    return build(parse_scene(CROSSED.format(push=push, more=more), list(changes)))
+
+
+def test_crossed_cantilevers_bend_as_beams_do() -> None:
+    push, length = 0.4, 0.3
+    model = crossed(-push)
+    solution = solve(model)
+    assert solution.converged
+    assert solution.stable
+    (contact,) = solution.contacts
+    (pair,) = model.discrete.pairs
+    stiffness = 2e9 * np.pi / 4 * RADIUS**4
+    factor = coefficient(WIDTH, pair.stiffness, TOUCHING)
+
+    def distance(force: float) -> float:
+        """Of the axes, where the middles of both are bent by the contact, and that of the upper by the push too."""
+        by_push = push * 5 * length**3 / 48
+        return 0.013 - (by_push - 2 * force * length**3 / 24) / stiffness
+
+    def excess(force: float) -> float:
+        inside = max((TOUCHING + WIDTH) ** 2 - distance(force) ** 2, 0.0)
+        return 2 * np.pi * factor * distance(force) * inside**3 - force
+
+    force = brentq(excess, 0.0, 2 * push)
+    assert contact.owner == "lower"
+    assert contact.on_rods is not None
+    assert contact.gap is not None
+    assert_allclose(contact.force, [0, 0, -force], rtol=5e-3, atol=0.02 * force)
+    assert_allclose(contact.on_rods, 0.5, rtol=0, atol=2e-3)
+    assert_allclose(contact.gap, distance(force) - TOUCHING, rtol=0, atol=0.02 * WIDTH)
+    # The clamps bear the push, and nothing of the contact.
+    borne = sum(solution.base_wrench(rod).force for rod in ("lower", "upper"))
+    assert_allclose(borne, [0, 0, push], rtol=0, atol=1e-9)
+
+
+CARRIED = """
+[[rods]]
+name = "post"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 5e-3 }
+base = { position = [0.0, -0.15, -0.187], tangent = [0, 0, 1] }
+"""
+
+ON_POST = 'upper.base={ rod = "post", quaternion = [0.7071067811865476, -0.7071067811865476, 0, 0] }'
+
+
+def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> None:
+    model = crossed(-2.0, CARRIED, ON_POST, "accuracy.modes=1", "accuracy.nodes=5")
+    solution = solve(model, estimate_error=False)
+    assert solution.contacts
+    x = solution.x + 1e-5 * np.random.default_rng(0).normal(size=model.size)
+    jacobian = model.jacobian(x, solution.inputs)[0].full()
+    step = 1e-7
+    differences = [
+        (model.residual(x + step * e, solution.inputs) - model.residual(x - step * e, solution.inputs)).full()[:, 0]
+        for e in np.eye(model.size)
+    ]
+    wanted = np.column_stack(differences) / (2 * step)
+    assert_allclose(jacobian, wanted, rtol=0, atol=1e-7 * np.abs(wanted).max())
+    (terms,) = System(model.discrete, Arguments(ca.MX(ca.DM(x)), ca.DM(solution.inputs))).pairs
+    gradients = [ca.evalf(gradient).full().T for gradient in terms.section_pairs.gradient]
+    places = [ca.evalf(side.sections.positions).full().T for side in terms.sides]
+    size = np.abs(gradients[0]).sum()
+    assert size > 1.0
+    assert_allclose(gradients[0].sum(axis=0) + gradients[1].sum(axis=0), 0.0, rtol=0, atol=1e-13 * size)
+    moments = [np.cross(place, gradient).sum(axis=0) for place, gradient in zip(places, gradients, strict=True)]
+    assert_allclose(moments[0] + moments[1], 0.0, rtol=0, atol=1e-13 * size)
+
+
+LOOP = """
+schema = 1
+accuracy = { modes = 4, nodes = 10 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+material = { youngs_modulus = 2.0e7, poisson_ratio = 0.4 }
+section = { shape = "circle", radius = 0.02 }
+base = { position = [0, 0, 0], tangent = [0, 0, 1] }
+[[loads]]
+name = "turn"
+kind = "tip_wrench"
+rod = "rod"
+moment = [0, 17.0, 0]
+[[rod_contacts]]
+rods = ["rod"]
+width = 8e-3
+"""
+
+
+def test_an_elastica_that_closes_on_itself() -> None:
+    solution = solve(build(parse_scene(LOOP)))
+    assert solution.outcome is Outcome.CONVERGED
+    (contact,) = solution.contacts
+    assert contact.on_rods is not None
+    # It ends at its own base, and presses the centre of the end that is clamped.
+    assert_allclose(contact.on_rods, [0.0, 1.0], rtol=0, atol=0.02)
+    stiffness = 2e7 * np.pi / 4 * 0.02**4
+    tip = solution.tip().position[0]
+
+    def shot(unknowns: FloatArray) -> FloatArray:
+        """Of a planar elastica with the moment and a force at the tip: how far its tip is from where it is."""
+        along_x, along_z = unknowns
+
+        def rates(_: float, state: FloatArray) -> list[float]:
+            x, z, angle = state
+            # What is beyond a section turns it: the moment at the tip and the force on its arm.
+            bending = 17.0 + (tip[2] - z) * along_x - (tip[0] - x) * along_z
+            return [np.sin(angle), np.cos(angle), bending / stiffness]
+
+        end = solve_ivp(rates, (0.0, 1.0), [0.0, 0.0, 0.0], rtol=1e-10, atol=1e-12).y[:, -1]
+        return end[:2] - tip[[0, 2]]
+
+    force = fsolve(shot, [0.0, 0.0], xtol=1e-12)
+    assert np.hypot(*force) > 1.0
+    assert_allclose(contact.force[[0, 2]], -force, rtol=0, atol=5e-3 * np.hypot(*force))
+    assert_allclose(contact.force[1], 0.0, rtol=0, atol=1e-12)
+
+
+def test_what_is_deeper_than_the_width_or_passes_through_is_told() -> None:
+    weak = crossed(-2.0, "stiffness = 1e3")
+    solution = solve(weak, estimate_error=False)
+    assert not solution.converged
+    # The upper rod above and below the lower one: on the straight way between them they meet.
+    strong = crossed(-0.5)
+    inputs = strong.pack()
+    above = solve(strong, estimate_error=False)
+    below = solve(crossed(-3.0, "stiffness = 1e-6"), method="rootfinder", estimate_error=False)
+    barriers = SmoothBarriers(strong)
+    assert above.converged
+    assert barriers.are_between(above.x, below.x, (inputs, inputs))
+    assert not barriers.are_between(above.x, above.x, (inputs, inputs))
+
+
+def test_rods_inside_each_other_from_the_start_are_refused() -> None:
+    with pytest.raises(SceneError, match="inside each other where nothing acts"):
+        crossed(-1.0, "", "upper.base.position=[0, -0.15, 0.005]")
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ('rod_contacts=[{ rods = ["lower", "lowest"] }]', "lowest"),
+        ('rod_contacts=[{ rods = ["lower", "upper"], width = 0.006 }]', "must be < the radius of 'lower'"),
+        ('rod_contacts=[{ rods = ["lower", "upper"], depth = 0.006 }]', "depth"),
+        ('upper.base={ rod = "lower", tangent = [1, 0, 0] }', "are tied to each other"),
+        ('obstacles=[{ name = "floor", kind = "plane", point = [0, 0, -1], normal = [0, 0, 1] }]', "touched exactly"),
+    ],
+)
+def test_contacts_that_cannot_be_are_refused(change: str, sentence: str) -> None:
+    with pytest.raises(SceneError, match=sentence):
+        crossed(-1.0, "", change)
+
+
+def test_all_pairs_are_those_of_rods_that_are_not_tied() -> None:
+    model = crossed(-1.0, CARRIED, ON_POST, "rod_contacts=[{ width = 1e-3 }]")
+    assert [pair.rods for pair in model.discrete.pairs] == [("lower", "upper"), ("lower", "post")]
+
+
+def test_rods_that_are_apart_cost_no_pair() -> None:
+    """Bounds of the operations: without the pairs they grow as the sections do."""
+    along = np.linspace(0.0, 1.0, 4 * PANEL)
+    far = [SectionsInContact(ca.MX.sym("x", 3, count * PANEL), ca.DM(3, count * PANEL)) for count in (4, 4)]
+    pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    gradient = ca.Function("gradient", [own.positions for own in far], list(pairs.gradient))
+    calls = [function for function in gradient.find_functions() if function.class_name() == "Switch"]
+    # One for the rods, one for the panels: nothing of either is called where rods are apart.
+    assert len(calls) == 2
+    places = np.vstack([along, 0 * along, 0 * along])
+    force, _ = gradient(places, places + 5.0)
+    assert not np.any(force.full())
+
+
+@pytest.mark.slow  # ten seconds: each step takes its own Jacobians
+def test_rods_that_touch_move_and_keep_their_energy() -> None:
+    scene = parse_scene(
+        CROSSED.format(push=-2.0, more=""),
+        ["accuracy.modes=1", "accuracy.nodes=4", "lower.damping={ retardation_time = 0.01 }"],
+    )
+    motion = simulate(scene.model_copy(update={"simulation": Simulation(duration=0.06, frames=7, start="unloaded")}))
+    assert motion.converged, motion.message
+    assert np.abs(motion.energy.imbalance).max() < 2e-3
