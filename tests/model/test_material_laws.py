@@ -410,6 +410,8 @@ def test_law_of_ones_own_is_one_class() -> None:
     [
         ("polynomial", "rod.material.terms[0].coefficient"),
         ("yeoh", "rod.material.c2"),
+        ("mooney_rivlin", "rod.material.c01"),
+        ("ogden", "rod.material.ogden.1.1"),
         ("superelastic", "rod.material.plateau_modulus"),
         ("superelastic", "rod.section.radius"),
         ("table", "rod.material.youngs_modulus"),
