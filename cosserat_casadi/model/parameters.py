@@ -135,7 +135,7 @@ class ParameterLayout(StackedLayout[Parameter]):
             SceneError: a name is unknown, or a scene with these values is refused.
         """
         p = self.pack(values).tolist()
-        changed = self.written(scene, p).baked()
+        changed = self.written(scene, p).in_proportion().baked()
         # Ranges, and what two numbers have to do with each other, are the scene's to judge.
         return scenes.scene_from_dict(scene_tables(changed))
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field
 
@@ -45,6 +45,10 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
     )
     shear_modulus: Positive | None = Field(None, description="shear modulus G, Pa; instead of poisson_ratio")
     density: Positive | None = Field(None, description="density, kg/m³; needed where gravity acts")
+
+    def in_proportion(self) -> Self:
+        """The material whose coefficients have its Young's modulus, where they are the shape of a law."""
+        return self
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -210,7 +214,13 @@ material.terms = [{ bending_y = 4, coefficient = 1.0e-6 }, { torsion = 1, extens
 
 
 class IncompressibleMaterial(Material):
-    """A material of rubber elasticity that keeps its volume: fibres stretch by its uniaxial law."""
+    """A material of rubber elasticity that keeps its volume: fibres stretch by its uniaxial law.
+
+    Attributes:
+        moduli: keys of the coefficients in Pa, which Young's modulus scales.
+    """
+
+    moduli: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -229,6 +239,22 @@ class IncompressibleMaterial(Material):
     def small_strain_modulus(cls, given: Table) -> float | None:
         """Young's modulus that the coefficients of a table have, Pa; None where they are faulty, or there are none."""
         return None
+
+    def in_proportion(self) -> Self:
+        """Coefficients times the ratio of Young's modulus to that of theirs; as they are where theirs is none."""
+        given = self.model_dump(exclude_unset=True)
+        small = self.small_strain_modulus(given)
+        if small is None or not small > 0.0:
+            return self
+        scale = self.youngs_modulus / small
+        return self.model_copy(update={key: _scaled(given[key], scale) for key in self.moduli if key in given})
+
+
+def _scaled(modulus: Any, scale: float) -> Any:
+    """A coefficient times a scale; of pairs, their first numbers."""
+    if isinstance(modulus, tuple):
+        return tuple((first * scale, exponent) for first, exponent in modulus)
+    return modulus * scale
 
 
 @MATERIALS.register
@@ -250,6 +276,8 @@ class MooneyRivlin(IncompressibleMaterial):
 material = { law = "mooney_rivlin", youngs_modulus = 1.2e6, c10 = 0.15e6, c01 = 0.05e6 }
 """
 
+    moduli: ClassVar[tuple[str, ...]] = ("c10", "c01")
+
     law: Literal["mooney_rivlin"] = Field(description="rubber by two coefficients")
     c10: Number = Field(description="coefficient of I₁ − 3, Pa")
     c01: Number = Field(description="coefficient of I₂ − 3, Pa; E = 6 (c10 + c01)")
@@ -268,6 +296,8 @@ class Yeoh(IncompressibleMaterial):
     example: ClassVar[str] = """\
 material = { law = "yeoh", youngs_modulus = 0.66e6, c1 = 0.11e6, c2 = 0.02e6 }
 """
+
+    moduli: ClassVar[tuple[str, ...]] = ("c1", "c2", "c3")
 
     law: Literal["yeoh"] = Field(description="rubber that stiffens")
     c1: Positive = Field(description="coefficient of I₁ − 3, Pa; E = 6 c1")
@@ -292,8 +322,10 @@ class Ogden(IncompressibleMaterial):
 material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
 """
 
+    moduli: ClassVar[tuple[str, ...]] = ("ogden",)
+
     law: Literal["ogden"] = Field(description="rubber by powers of stretches")
-    ogden: Annotated[tuple[OgdenPair, ...], NotEmpty()] = Field(description="pairs of μ, Pa, and α; E = 3/2 Σ μ α")
+    ogden: Annotated[tuple[OgdenPair, ...], NotEmpty()] = Field(description="pairs of μ, in Pa, and α; E = 3/2 Σ μ α")
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -321,12 +353,6 @@ material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
                 return None
             products.append(numbers[0] * numbers[1])
         return 1.5 * sum(products)
-
-    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """The pairs are the shape of the law; its size is Young's modulus."""
-        if key == "ogden":
-            return "is the shape of the law", "name youngs_modulus, by which the law is scaled"
-        return super().parameter_refusal(key)
 
 
 # Shape-memory alloys

@@ -282,7 +282,8 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     rows = len(lengths)
     columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
-    if remaining and rows > 1:
+    # A matrix of one row may get more.
+    if remaining and (rows > 1 or form is Form.MATRIX):
         row = _part(remaining.pop(0), _component_words(form, rows), rows, "component")
         chosen_rows = [row]
         columns = lengths[row]

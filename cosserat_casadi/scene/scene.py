@@ -224,6 +224,14 @@ inputs = ["push.force", "cable.tension"]
         """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)
 
+    def in_proportion(self) -> Scene:
+        """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""
+        rods = []
+        for rod in self.rods:
+            material = None if rod.material is None else rod.material.in_proportion()
+            rods.append(rod if material is rod.material else rod.model_copy(update={"material": material}))
+        return self.model_copy(update={"rods": tuple(rods)})
+
     def baked(self) -> Scene:
         """The scene without parameters: every number is a constant of its model."""
         if not self.parameters:

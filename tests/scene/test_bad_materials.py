@@ -101,15 +101,8 @@ def test_matrix_is_symmetric_and_positive() -> None:
     assert scene(None, stiffness_matrix=MATRIX.tolist()).rods[0].stiffness_matrix[3][3] == 10.0
 
 
-@pytest.mark.parametrize(
-    ("material", "key"),
-    [
-        (table(torsion=[[1, 2]]), "table"),
-        ({"law": "ogden", "youngs_modulus": 1.2e6, "ogden": [[0.4e6, 2.0]]}, "ogden"),
-    ],
-)
-def test_shapes_of_laws_are_no_parameters(material: dict[str, Any], key: str) -> None:
-    made_of = {"material": material, "section": {"shape": "circle", "radius": 2e-3}}
+def test_points_of_a_curve_are_no_parameters() -> None:
+    made_of = {"material": table(torsion=[[1, 2]]), "section": {"shape": "circle", "radius": 2e-3}}
     rods = [{"name": "a", "length": 0.1, "strain": "reissner", **made_of}]
-    with pytest.raises(SceneError, match=f"'a.material.{key}'"):
-        scene_from_dict({"schema": 1, "parameters": [f"a.material.{key}"], "rods": rods})
+    with pytest.raises(SceneError, match=r"'a\.material\.table'"):
+        scene_from_dict({"schema": 1, "parameters": ["a.material.table"], "rods": rods})
