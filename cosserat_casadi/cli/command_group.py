@@ -24,7 +24,7 @@ LINES = {
     "estimate": "Find in every measured row what the robot feels: unknown inputs, with their standard deviations.",
     "sweep": "Solve a scene for every row of a grid or a table of inputs and parameters.",
     "check": "Validate a scene, say which effects were chosen and what the model and each effect will cost.",
-    "export": "Write a scene as C sources, a page for a browser, or an FMU.",
+    "export": "Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.",
     "tune": "Find one discretisation for ranges of inputs, or for load cases.",
     "bench": "Measure error against time: the work-precision curve of a scene.",
 }
