@@ -230,6 +230,9 @@ inputs = ["push.force", "cable.tension"]
         for rod in self.rods:
             material = None if rod.material is None else rod.material.in_proportion()
             rods.append(rod if material is rod.material else rod.model_copy(update={"material": material}))
+        # A scene of tubes names no rods, and may not.
+        if all(changed is rod for changed, rod in zip(rods, self.rods, strict=True)):
+            return self
         return self.model_copy(update={"rods": tuple(rods)})
 
     def baked(self) -> Scene:
