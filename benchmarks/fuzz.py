@@ -2,7 +2,7 @@
 
 Counts outcomes, the longest solve and the worst violation of an independent weak form. `--write` puts the figures
 into docs/hard-cases.md. `--log FILE` keeps one line a scene, and goes on from there. `--robots` draws robots: bases on
-hinges and slides with springs, motors and stops, disks, straight tendons.
+hinges and slides with springs, motors and stops, disks, straight tendons, laws of materials, chambers, muscles.
 """
 
 from __future__ import annotations

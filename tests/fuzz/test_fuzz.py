@@ -23,6 +23,8 @@ TEXT = (ROOT / "examples" / "planar_strip.toml").read_text()
 WORDS = sorted({word for word in TEXT.replace("=", " ").replace(",", " ").split() if not word.startswith("#")})
 JOINTED = 2
 """Seed of a robot on a joint without stops."""
+INFLATED = 14
+"""Seed of a robot of rubber with a chamber."""
 
 SPOILT = [
     "0",
@@ -50,9 +52,9 @@ def test_extreme_scenes_end_truly(first: int) -> None:
     assert sum(v.outcome == "converged" for v in found.values()) >= 4
 
 
-@pytest.mark.parametrize("seed", mostly_slow(range(20), quick=[1]))
+@pytest.mark.parametrize("seed", mostly_slow(range(20), quick=[INFLATED]))
 def test_robots_end_truly(seed: int) -> None:
-    """Joints with springs, motors and stops, disks and straight tendons, as the clamped rods that they come to."""
+    """Joints, disks, tendons, laws of materials, chambers and muscles, as the clamped rods that they come to."""
     assert robot_verdict(seed).faults == ()
 
 
@@ -63,6 +65,18 @@ def test_a_joint_out_of_balance_is_seen() -> None:
     (joint,) = tables["joints"]
     softer = {**tables, "joints": [{**joint, "stiffness": 0.999 * joint["stiffness"]}]}
     assert joint_faults(softer, solution, 1e-8) != []
+
+
+def test_another_law_and_another_pressure_are_seen() -> None:
+    tables = robot_scene(INFLATED)
+    solution = solve(scene_from_dict(tables))
+    assert evaluate(tables, solution).weak < 1e-8
+    (rod,) = tables["rods"]
+    stiffer = {**rod, "material": {**rod["material"], "c10": 1.1 * rod["material"]["c10"]}}
+    assert evaluate({**tables, "rods": [stiffer]}, solution).weak > 1e-4
+    (chamber,) = tables["actuators"]
+    wider = {**chamber, "pressure": 1.1 * chamber["pressure"]}
+    assert evaluate({**tables, "actuators": [wider]}, solution).weak > 1e-4
 
 
 @pytest.mark.slow

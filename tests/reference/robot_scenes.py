@@ -1,7 +1,10 @@
 """Seeded robots of one rod: a base on a hinge or a slide with spring, motor and stops, disks, a straight tendon.
 
+Rods of materials that are not linear, chambers and muscles are among them.
+
 In equilibrium each is a clamped rod under point loads: the base is where the joint has come to, disks are their
-weights, and a tendon is a force at each hole. So what holds for rods of a scene holds for them.
+weights, and a tendon is a force at each hole; laws, and what is active, are stresses in its sections. So what holds for
+rods of a scene holds for them.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from cosserat_casadi import Solution
+from tests.reference.material_scenes import make_of_matter, with_materials
 from tests.reference.random_scenes import directed, random_scene
 from tests.reference.rods import Array, RodData, Table, rod_of, rotation_from_quaternion
 
@@ -38,6 +42,7 @@ def robot_scene(seed: int) -> Table:
         tables["actuators"] = [{**tendon, "tension": tension}]
     if rng.random() < 0.8:
         tables["joints"] = [_joint(rng, length, bending)]
+    make_of_matter(np.random.default_rng([seed, 13]), tables, bending)
     return tables
 
 
@@ -72,7 +77,7 @@ def as_clamped(tables: Table, solution: Solution) -> tuple[RodData, Array, Array
         points += [_point(at, disks["mass"] * _gravity(tables), np.zeros(3)) for at in disks["at"]]
     wrench = solution.base_wrench()
     force, moment = wrench.force.copy(), wrench.moment.copy()
-    for tendon in tables.get("actuators", []):
+    for tendon in (entry for entry in tables.get("actuators", []) if entry["kind"] == "tendon"):
         # It starts at the base and is anchored at the tip.
         places = [*tendon["holes"], 1.0]
         pose = solution.pose([0.0, *places], "rod")
@@ -83,7 +88,7 @@ def as_clamped(tables: Table, solution: Solution) -> tuple[RodData, Array, Array
         force, moment = force + pulls[0], moment + np.cross(arms[0], pulls[0])
         for at, arm, (before, after) in zip(places, arms[1:], pairwise([*pulls, np.zeros(3)]), strict=True):
             points.append(_point(at, after - before, np.cross(arm, after - before)))
-    rod = rod_of({**tables, "loads": points})
+    rod = with_materials(rod_of({**tables, "loads": points}), tables)
     for joint in tables.get("joints", []):
         rod = _moved(rod, joint, solution)
     return rod, force, moment

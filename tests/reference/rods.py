@@ -45,6 +45,7 @@ class RodData:
         points: loads on single sections, the tip included.
         base_position: 3 coordinates, m.
         base_rotation: columns are the section's axes in the world.
+        beyond: changes of strain (k, 6) and abscissae (k,) ↦ stress beside that of the compliance (k, 6); None of none.
     """
 
     length: float
@@ -56,6 +57,7 @@ class RodData:
     points: tuple[PointLoad, ...]
     base_position: Array
     base_rotation: Array
+    beyond: Callable[[Array, Array], Array] | None = None
 
 
 def rod_of(scene: Table) -> RodData:

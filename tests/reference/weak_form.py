@@ -1,9 +1,9 @@
 """The weak form of equilibrium, evaluated anew: numpy alone, on the strain field and clamp wrench that are claimed.
 
 From the base: rotation matrices by Magnus steps of fourth order on a fine even grid, positions and the world balance
-n' = −f̄, m' = −r' × n − l̄ by Simpson's rule. The stress that the strain asks for, H Δξ, must equal the section's
-wrench in the mean over every polynomial that the strain may have; what is left at the tip must be its load. No
-Chebyshev grid, no quaternion, no code of the package.
+n' = −f̄, m' = −r' × n − l̄ by Simpson's rule. The stress that the strain asks for, H Δξ and what is beside it, must
+equal the section's wrench in the mean over every polynomial that the strain may have; what is left at the tip must be
+its load. No Chebyshev grid, no quaternion, no code of the package.
 """
 
 from __future__ import annotations
@@ -168,10 +168,12 @@ def _beyond(rod: RodData, X: float, state: tuple[Array, ...]) -> tuple[Array, ..
 
 
 def _stresses(rod: RodData, piece: _Piece) -> tuple[Array, Array]:
-    """H Δξ, zero where a strain is not admitted, and the section's wrench, both (k, 6) in section axes."""
+    """Stress of the strain, zero where it is not admitted, and the section's wrench, both (k, 6) in section axes."""
     compliance = np.array([rod.compliance(x) for x in piece.X])
     moved = piece.strain - np.array([rod.intrinsic(x) for x in piece.X])
     elastic = np.divide(moved, compliance, out=np.zeros_like(moved), where=rod.admitted)
+    if rod.beyond is not None:
+        elastic += np.where(rod.admitted, rod.beyond(moved, piece.X), 0.0)
     back = np.swapaxes(piece.R, 1, 2)
     wrench: NDArray[Any] = np.concatenate(
         [(back @ piece.m[:, :, None])[..., 0], (back @ piece.n[:, :, None])[..., 0]], 1
