@@ -39,7 +39,7 @@ def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout,
             fields += [owner.name for owner, span in model.inputs if span.start <= entry.indices[0] < span.stop]
         else:
             scene = scene.with_numbers(numbers[entry.record.name], entry.values(found).tolist())
-    tables = scene_tables(scene)
+    tables = scene_tables(scene.in_proportion())
     values = model.inputs.unpack(inputs)
     for name in fields:
         _set_input(tables, name, values[name])

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import Identification, build, identify, scene_from_dict, solve
 from cosserat_casadi.model.materials import LAWS
@@ -132,6 +133,11 @@ def test_numbers_are_found_within_their_intervals(name: str) -> None:
     truth = np.array([MADE_UP[name][2][label] for label in found.labels])
     assert np.abs((found.shared - truth) / found.sigma).max() < 3.5
     assert np.all(found.sigma < 0.1 * np.abs(truth))
+    # The scene that is written has the law that was found, whatever its coefficients are in proportion to.
+    bent = {"push.force": [0.1, 0.0, 6.0], "push.moment": [0.0, 1e-3, 0.0]}
+    of_scene = solve(build(found.fitted_scene(found.model.scene)).at(), bent, raise_on_failure=True)
+    of_model = solve(found.model.at(found.parameters), bent, raise_on_failure=True)
+    assert_allclose(of_scene.tip().position, of_model.tip().position, rtol=0, atol=1e-9)
 
 
 def test_every_law_with_numbers_is_made_up() -> None:
