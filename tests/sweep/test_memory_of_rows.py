@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import mmap
 import pickle
 import subprocess
@@ -126,12 +127,14 @@ def test_four_times_the_rows_take_no_more_memory(
     peaks = []
     for rows in (FEW, 4 * FEW):
         over = written(rows, tmp_path / f"over-{rows}{suffix}")
+        # What the sweep before has left in cycles is no memory of this one.
+        gc.collect()
         tracemalloc.reset_peak()
         assert swept(rows, over, tmp_path / f"{rows}.csv") == rows
         peaks.append(peak())
     few, many = peaks
     assert many - few < 8 * 3 * FEW
-    assert many < 1.5 * few
+    assert many < 1.1 * few
     assert not list(tmp_path.glob("*.part"))
 
 
