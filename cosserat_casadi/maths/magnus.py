@@ -21,8 +21,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.polynomial import legendre
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.rotation import cross, dot, hat
 from cosserat_casadi.maths.typing import AnyMatrix, FloatArray, Matrix
 
@@ -51,7 +51,7 @@ def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray
         the points, shape (points,), and the matrix, shape (count, points); neither may be written to.
     """
     # Gauss–Legendre on [−1, 1], halved.
-    x, weights = legendre.leggauss(points)
+    x, weights = gauss_legendre(points)
     tau = np.asarray(x / 2, dtype=np.float64)
     powers = np.arange(count)
     samples_of_powers = tau ** powers[:, None]

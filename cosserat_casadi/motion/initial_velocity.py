@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
@@ -61,7 +62,7 @@ def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
 
 def _strain_rates(rod: DiscreteRod, velocity: InitialVelocity) -> FloatArray:
     """Rates of the strain coordinates of a rod that fit those of its strains, shape (n,), for its own length."""
-    X = np.polynomial.legendre.leggauss(POINTS)[0] / 2.0 + 0.5
+    X = gauss_legendre(POINTS)[0] / 2.0 + 0.5
     rates = velocity.strain_rates(X)
     q = np.zeros(rod.size)
     for component, columns in rod.columns.items():

@@ -14,13 +14,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.neutral import TIE, direction_in
 from cosserat_casadi.numerics.newton import length_of, relative_norm
 
-_GAUSS_NODES, _GAUSS_WEIGHTS = leggauss(4)
+_GAUSS_NODES, _GAUSS_WEIGHTS = gauss_legendre(4)
 
 WORK_NODES = (_GAUSS_NODES + 1) / 2
 """Quadrature nodes of the work along a step, shares of it."""

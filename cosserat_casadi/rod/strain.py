@@ -24,7 +24,7 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
-from cosserat_casadi.maths.grid import Grid, Indices
+from cosserat_casadi.maths.grid import Grid, Indices, gauss_legendre
 from cosserat_casadi.maths.numbers import (
     Numbers,
     Scalar,
@@ -376,7 +376,7 @@ class DiscreteRod:
     def _element_samples(self, axis: int) -> Matrix:
         """Unloaded curvature about an axis at as many Gauss points of each element as determine it, times its rate."""
         count = len(self.properties.intrinsic[axis])
-        points, _ = legendre.leggauss(count)
+        points, _ = gauss_legendre(count)
         breaks = np.asarray(self.grid.breaks)
         places = breaks[:-1, None] + np.diff(breaks)[:, None] * (points + 1) / 2
         element = np.repeat(np.arange(self.grid.elements), count)
@@ -386,7 +386,7 @@ class DiscreteRod:
 
     def _turn_of_samples(self, count: int) -> list[Array]:
         """Taylor coefficients of all intervals by so many samples of each element, (intervals, E·count) for each l."""
-        points, _ = legendre.leggauss(count)
+        points, _ = gauss_legendre(count)
         to_coefficients = np.linalg.inv(legendre.legvander(points, count - 1))
 
         def local_polynomials(X: Array, element: Indices) -> Array:
