@@ -15,6 +15,9 @@ from cosserat_casadi.errors import Problem, SceneError, WriteError
 BLOCK = 1 << 20
 """Bytes that are copied at a time."""
 
+MESHES = (".glb", ".usda")
+"""Suffixes of files of meshes, which need no matplotlib."""
+
 
 def check_writable(path: Path, option: str, *, folder: bool = False) -> None:
     """Refuse a path that cannot become a file, before any work is done for it.

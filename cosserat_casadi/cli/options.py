@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import are_one_file, check_writable
+from cosserat_casadi.files import MESHES, are_one_file, check_writable
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.reading import files_read
@@ -39,10 +39,6 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
     if not ranges:
         return {}
     return ends_by_column(ranges, case_layout(scene))
-
-
-MESHES = (".glb", ".usda")
-"""Suffixes of files of meshes, which need no matplotlib."""
 
 
 def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json", *, meshes: bool = False) -> None:

@@ -16,20 +16,21 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import UnloadedScene
 from cosserat_casadi.model.scene_rods import fixed_masses
-from cosserat_casadi.model.sections import SHAPES, sizes_along
+from cosserat_casadi.model.sections import half_widths_along
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 
 THIN = 2e-3
 """Radius over length at which rods without a section are drawn."""
 
-GAUSS = np.polynomial.legendre.leggauss(3)
-"""Points in [−1, 1] and weights by which the mass of half a piece is added up."""
+MASS_POINTS = 3
+"""Points of the quadrature by which the mass of half a piece is added up."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Inertia:
 
 @dataclass(frozen=True)
 class RodPiece:
-    """The piece of a rod between two nodes, whose strains are those of a joint in its middle.
+    """The piece of a rod between two nodes; a joint in its middle has its strains.
 
     Attributes:
         middle: pose of the section in its middle, world axes, unloaded.
@@ -135,13 +136,11 @@ def links_of(unloaded: UnloadedScene, rod: scenes.Rod, nodes: FloatArray) -> lis
 
 
 def _half_widths(rod: scenes.Rod, nodes: FloatArray) -> list[tuple[float, float]]:
-    """Half widths of the sections at the nodes, m; of a rod without a section those of a thin one."""
-    widths = None
-    if rod.section is not None:
-        widths = SHAPES[rod.section.shape].half_widths(sizes_along(rod.section, nodes))
+    """Half widths of the sections at the nodes, m; a rod without a section is drawn as a thin round one."""
+    widths = half_widths_along(rod.section, nodes)
     if widths is None:
         return [(THIN * rod.length, THIN * rod.length)] * len(nodes)
-    return list(zip(known(widths[0]).tolist(), known(widths[1]).tolist(), strict=True))
+    return list(zip(*(width.tolist() for width in widths), strict=True))
 
 
 Lump = tuple[float, NumericPose, FloatArray]
@@ -150,7 +149,7 @@ Lump = tuple[float, NumericPose, FloatArray]
 
 def _lumps(unloaded: UnloadedScene, properties: RodProperties, bounds: FloatArray) -> list[Lump]:
     """Masses of the rod between abscissae, at the points of a quadrature in each interval."""
-    points, weights = GAUSS
+    points, weights = gauss_legendre(MASS_POINTS)
     lumps: list[Lump] = []
     assert properties.linear_density is not None, "refused before"
     for start, end in pairwise(bounds.tolist()):

@@ -13,8 +13,8 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.grid import gauss_legendre
-from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, repeated
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, known, repeated
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
 from cosserat_casadi.rod.properties import Field
 from cosserat_casadi.rod.section import SectionShape
@@ -93,6 +93,20 @@ def linear(value: Scalar | Sequence[Scalar]) -> Field:
 def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:
     """Sizes of a section at abscissae, shape (k,) each, m, by their keys."""
     return {key: along(linear(size), X) for key, size in sizes_of(record).items()}
+
+
+def half_widths_along(record: scenes.Section | None, X: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+    """Half of the widths along x and y at abscissae, shape (k,) each, m; of a round section its radius.
+
+    None without a section, or of one that is drawn by its centre line alone.
+    """
+    if record is None:
+        return None
+    widths = SHAPES[record.shape].half_widths(sizes_along(record, X))
+    if widths is None:
+        return None
+    x, y = widths
+    return known(x), known(y)
 
 
 def along(field: Field, X: Numbers) -> Numbers:

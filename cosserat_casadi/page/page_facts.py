@@ -20,7 +20,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.sections import SHAPES, sizes_along
+from cosserat_casadi.model.sections import half_widths_along
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
@@ -118,12 +118,10 @@ def _rod(scene: scenes.Scene, rod: scenes.Rod, index: int) -> dict[str, Any]:
 
 def _section(section: scenes.Section | None) -> dict[str, Any]:
     """Shape and half widths of the sections that are drawn; nothing of a rod that is drawn by its centre line."""
-    if section is None:
+    half_widths = half_widths_along(section, SECTIONS)
+    if section is None or half_widths is None:
         return {}
-    half_widths = SHAPES[section.shape].half_widths(sizes_along(section, SECTIONS))
-    if half_widths is None:
-        return {}
-    x, y = (rounded(known(half_width)) for half_width in half_widths)
+    x, y = (rounded(half_width) for half_width in half_widths)
     return {"shape": "rectangle" if section.radius_key is None else "circle", "x": x, "y": y}
 
 

@@ -17,19 +17,17 @@ import numpy.typing as npt
 from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import Solution, rotations
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically
+from cosserat_casadi.files import MESHES, write_atomically
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.sections import SHAPES, sizes_along
+from cosserat_casadi.model.sections import half_widths_along
 from cosserat_casadi.motion.pose_series import Poses, body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.obstacles.capsule import capsule_net
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.plots.colours import BODIES, OBSTACLES, actuator_colour, disk_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners
-
-FORMATS = (".glb", ".usda")
-"""Suffixes of films."""
 
 SECTIONS = np.linspace(0.0, 1.0, 41)
 """Abscissae of the frames of a rod."""
@@ -88,10 +86,10 @@ def check_film_path(path: str | Path) -> None:
     """Refuse a film that cannot be written, before any work is done for it.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of MESHES.
     """
-    if Path(path).suffix.lower() not in FORMATS:
-        raise SceneError(Problem("path", f"{path} has no suffix of a film", f"use one of {', '.join(FORMATS)}"))
+    if Path(path).suffix.lower() not in MESHES:
+        raise SceneError(Problem("path", f"{path} has no suffix of a film", f"use one of {', '.join(MESHES)}"))
 
 
 def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) -> None:
@@ -99,15 +97,15 @@ def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) 
 
     Args:
         result: of rods.
-        path: the file; its suffix is one of FORMATS.
+        path: the file; its suffix is one of MESHES.
         speed: 1 shows a motion as fast as it is, 0.1 ten times slower.
 
     Raises:
-        SceneError: the suffix is none of FORMATS, or the motion has no state.
+        SceneError: the suffix is none of MESHES, or the motion has no state.
         WriteError: the file cannot be written.
     """
     check_film_path(path)
-    # Imported here: each format has a writer of its own.
+    # Imported here: a run needs one of the two writers.
     if Path(path).suffix.lower() == ".glb":
         from cosserat_casadi.plots.gltf import glb
 
@@ -166,7 +164,7 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
 
 
 def _single(poses: Poses) -> Poses:
-    """Poses of one frame, as those of a row of one."""
+    """Poses of one frame, in the shapes of a row of frames."""
     return Poses(poses.position[:, None], poses.quaternion[:, None])
 
 
@@ -185,12 +183,10 @@ def _ring(radius: Any) -> FloatArray:
 
 def _outlines(rod: Any, least: float) -> FloatArray:
     """Outlines of the sections of a rod at SECTIONS, shape (len(SECTIONS), k, 2), m."""
-    widths = None
-    if rod.section is not None:
-        widths = SHAPES[rod.section.shape].half_widths(sizes_along(rod.section, SECTIONS))
+    widths = half_widths_along(rod.section, SECTIONS)
     if widths is None:
         return _ring(np.full(len(SECTIONS), least))
-    x, y = (np.maximum(known(width), least) for width in widths)
+    x, y = (np.maximum(width, least) for width in widths)
     if rod.section.radius_key is not None:
         return _ring(x)
     corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
@@ -231,28 +227,13 @@ def _body(name: str, corners: FloatArray, radius: float | None, least: float, po
     """A ball where the body has a radius, else the prism on the polygon of its joints, or a bar."""
     if radius is not None or len(corners) < 3:
         start, end = (np.zeros(3), np.zeros(3)) if radius is not None else (corners[0], corners[-1])
-        grid = _capsule(start, end, least if radius is None else radius)
-        return _net(name, grid, poses, BODIES)
+        net = capsule_net(start, end, least if radius is None else radius)
+        return _net(name, net, poses, BODIES)
     normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     normal *= least / 2 / max(float(np.linalg.norm(normal)), 1e-300)
     points = np.concatenate([corners - normal, corners + normal])
     frame = np.zeros(len(points), dtype=int)
     return FilmPart(name, _colour(BODIES), points, frame, _rings(2, len(corners)), poses)
-
-
-def _capsule(start: FloatArray, end: FloatArray, radius: float) -> FloatArray:
-    """A net about a bar, or about a point, shape (m, n, 3), m."""
-    axis = end - start
-    length = float(np.linalg.norm(axis))
-    along = axis / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
-    first = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along)))])
-    first /= np.linalg.norm(first)
-    second = np.cross(along, first)
-    heights = np.concatenate([np.linspace(-np.pi / 2, 0, 7), np.linspace(0, np.pi / 2, 7)])
-    around = np.linspace(0.0, 2 * np.pi, SIDES + 1)
-    circle = np.cos(around)[:, None] * first + np.sin(around)[:, None] * second
-    centres = np.where(np.arange(14)[:, None] < 7, start, end) + radius * np.sin(heights)[:, None] * along
-    return np.asarray(centres[:, None] + radius * np.cos(heights)[:, None, None] * circle)
 
 
 def _net(name: str, net: FloatArray, poses: Poses, colour: str = OBSTACLES) -> FilmPart:

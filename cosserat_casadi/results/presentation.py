@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
-from cosserat_casadi.files import write_atomically
+from cosserat_casadi.files import MESHES, write_atomically
 from cosserat_casadi.results.json_text import json_text
 
 PICTURES = (".png", ".pdf", ".svg")
@@ -60,7 +60,7 @@ PRESENTATIONS = {
         data="results.solution_file:result",
         facts="results.facts:solution_facts",
         figure="plots.scene_plot:plot_solution",
-        tables={".glb": _FILM, ".usda": _FILM},
+        tables=dict.fromkeys(MESHES, _FILM),
     ),
     "EquilibriumPath": Presentation(
         data="results.path_file:path_result",
@@ -72,7 +72,7 @@ PRESENTATIONS = {
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
-        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, ".glb": _FILM, ".usda": _FILM},
+        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
     ),
     "Modes": Presentation(
         data="results.modes_file:modes_result",

@@ -10,7 +10,6 @@ from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
-    MESHES,
     SceneFile,
     Settings,
     check_inputs_stay,
@@ -23,7 +22,7 @@ from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable
+from cosserat_casadi.files import MESHES, check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome

@@ -11,7 +11,6 @@ from rich.console import Console
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
-    MESHES,
     SceneFile,
     Settings,
     check_inputs_stay,
@@ -23,7 +22,7 @@ from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically, write_whole
+from cosserat_casadi.files import MESHES, write_atomically, write_whole
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import read_scene, with_exact_contact
 
