@@ -21,10 +21,10 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.rod_contact_record import RodContact, are_tied
 
 WIDTH_OF_RADIUS = 0.2
-"""Width relative to the smallest radius of both rods, of a contact that is given none."""
+"""Width relative to the smallest radius of both rods, of a contact without a width."""
 
 SURFACE_STIFFNESS = 30.0
-"""Stiffness relative to EI/(L² width²) of the stiffer rod, of a contact that is given none."""
+"""Stiffness relative to EI/(L² width²) of the stiffer rod, of a contact without a stiffness."""
 
 SPACING = 0.25
 """Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""

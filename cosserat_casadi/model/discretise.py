@@ -134,13 +134,13 @@ def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacl
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)
 
 
-def for_first_step(rich: Discretisation, own: Discretisation) -> Discretisation:
+def for_first_step(rich: Discretisation, answer: Discretisation) -> Discretisation:
     """A discretisation on which the first step of missing modes is known to a few per cent, at less cost.
 
     The rest is in the balance on the richer discretisation, which comes after it.
 
     Args:
         rich: the richer discretisation of a rod.
-        own: that of the answer.
+        answer: the discretisation of the answer on that rod.
     """
-    return replace(rich, transport=PREVIOUS_ORDER.get(own.transport, own.transport))
+    return replace(rich, transport=PREVIOUS_ORDER.get(answer.transport, answer.transport))

@@ -142,7 +142,7 @@ class ContactSide:
 
 @dataclass(frozen=True)
 class PairTerms:
-    """The terms of one pair in given arguments.
+    """The terms of one pair at the arguments of a system.
 
     Attributes:
         system: the scene.

@@ -282,7 +282,7 @@ class History:
 
 @dataclass(frozen=True)
 class FreeFlight:
-    """Helpers of steps of what nothing holds; they take time to be made, and are those of all motions of a model.
+    """Coordinates and momentum of the steps of rods that nothing holds: built once, for all motions of a model.
 
     Attributes:
         coordinates: coordinates of the steps; None for the unknowns of the model.

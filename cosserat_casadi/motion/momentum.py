@@ -28,6 +28,9 @@ from cosserat_casadi.scene import Scene
 MOMENTA = 6
 """Entries of momentum and angular momentum."""
 
+OF_A_BODY = [0, 3, 4, 5]
+"""Rigid motions whose momenta are those of all six: mass times speed is the same along any axis."""
+
 CORRECTIONS = 2
 """Corrections of the velocities after one step: momentum is linear in them, so that the second is one of rounding."""
 
@@ -82,11 +85,11 @@ class MomentumKeeper:
                 model.discrete.unknowns.of_kind(BlockKind.POSE), model.discrete.frames.values(), strict=True
             )
         ]
-        momentum, rate = _functions(model)
         # As scalars they take a third to half of the time.
-        self._rate = RepeatedCall(rate.expand())
-        self._momentum = RepeatedCall(momentum.expand())
-        self._momenta = momentum.expand().map(4)
+        momentum, rate = (function.expand() for function in _functions(model))
+        self._rate = RepeatedCall(rate)
+        self._momentum = RepeatedCall(momentum)
+        self._momenta = momentum.map(len(OF_A_BODY))
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
@@ -138,7 +141,7 @@ class MomentumKeeper:
     def _momenta_of(self, motions: FloatArray, instant: Instant, piece: Piece) -> FloatArray:
         """Momentum of rigid motions, in which it is linear, shape (6, 6): that of a rigid body, symmetric."""
         value = piece.at(instant.time).value
-        momenta = self._momenta(instant.x, motions[:, [0, 3, 4, 5]], value, np.zeros(len(value))).full()
+        momenta = self._momenta(instant.x, motions[:, OF_A_BODY], value, np.zeros(len(value))).full()
         mass, of_turns = momenta[0, 0], momenta[:, 1:]
         return np.block([[mass * np.eye(3), of_turns[:3]], [of_turns[:3].T, of_turns[3:]]])
 

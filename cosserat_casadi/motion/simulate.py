@@ -445,11 +445,10 @@ def judged(
     duration = simulator.simulation.duration
     beyond = told_beyond(history, duration)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
-    passed = told_passage(history, duration)
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
         message = message_of(history, outcome) + too_deep(history, duration)
-    elif passed:
+    elif passed := told_passage(history, duration):
         outcome = MotionOutcome.UNRESOLVED
         message = f"{outcome.value} {passed}"
     elif beyond is not None:
