@@ -295,13 +295,9 @@ class ModelFunctions:
         World frame but for the internal wrench [moment; force], N m and N, which is in the section's.
         """
         rod = written.system.rods[written.owner]
-        base = written.system.base(written.owner)
-        count = written.discrete.rods[written.owner].grid.size
-        rotation = quaternion_to_matrix(base.quaternion)
-        quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+        rotation = quaternion_to_matrix(written.system.base(written.owner).quaternion)
         return [
-            ca.repmat(base.position, 1, count) + rotation @ rod.shape.position,
-            quaternion_product(quaternions, ca.densify(rod.shape.quaternion)),
+            *_nodal_poses(written),
             rod.statics.internal_wrench(),
             rotation @ rod.statics.held_force,
             rotation @ rod.statics.held_moment,
@@ -313,7 +309,7 @@ class ModelFunctions:
 
         World frame.
         """
-        position, quaternion = self.fields[written.owner].call(list(written.symbols.values()))[:2]
+        position, quaternion = _nodal_poses(written)
         by_position = ca.jacobian(ca.vec(position), written["x"])
         by_quaternion = ca.jacobian(ca.vec(quaternion), written["x"])
         return [quaternion, by_position, by_quaternion]
@@ -392,6 +388,16 @@ class ModelFunctions:
         """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
         potential = written.system.potential()
         return None if potential is None else [potential]
+
+
+def _nodal_poses(written: Expressions) -> tuple[Matrix, Matrix]:
+    """Positions, 3×M, and quaternions, 4×M, at the nodes of a rod, world frame."""
+    shape = written.system.shapes[written.owner]
+    base = written.system.base(written.owner)
+    count = written.discrete.rods[written.owner].grid.size
+    positions = ca.repmat(base.position, 1, count) + quaternion_to_matrix(base.quaternion) @ shape.position
+    quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+    return positions, quaternion_product(quaternions, ca.densify(shape.quaternion))
 
 
 def _enriched(written: Expressions, richer: Richer, known: Matrix, missing: Matrix) -> System:

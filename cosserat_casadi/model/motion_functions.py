@@ -10,6 +10,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
@@ -44,9 +45,10 @@ class MotionFunctions:
     def inverse_dynamics_in_scalars(self) -> ca.Function:
         """Inverse dynamics as instructions on scalars, which a virtual machine runs in half to nine tenths of the time.
 
-        Derivatives are not to be taken of it.
+        Derivatives are not to be taken of it. A function that leaves computations out by a value stays as it is.
         """
-        return self.inverse_dynamics.expand()
+        function: ca.Function = self.inverse_dynamics
+        return function if chooses(function) else function.expand()
 
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:

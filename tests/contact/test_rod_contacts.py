@@ -13,6 +13,7 @@ from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.scene import Simulation
@@ -296,7 +297,15 @@ def test_rods_that_are_apart_cost_no_pair() -> None:
     assert not np.any(force.full())
 
 
-@pytest.mark.slow  # ten seconds: each step takes its own Jacobians
+def test_what_does_not_push_has_no_pairs_in_it() -> None:
+    """Nodal poses and their derivatives; and inverse dynamics leaves pairs out where they are apart."""
+    model = crossed()
+    assert not chooses(model.field_jacobian["lower"])
+    assert chooses(model.inverse_dynamics)
+    assert chooses(model.inverse_dynamics_in_scalars)
+
+
+@pytest.mark.slow  # five seconds: each step takes its own Jacobians
 def test_rods_that_touch_move_and_keep_their_energy() -> None:
     scene = parse_scene(
         CROSSED.format(push=-2.0, more=""),
