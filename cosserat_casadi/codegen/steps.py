@@ -137,11 +137,8 @@ class _Reading:
             return [self._elementwise(code, node, operands)]
         if code in ADDING:
             return [self._added(node, *operands)]
-        before = [node.dep(i) for i in range(node.n_dep())]
-        if any(operand.is_output() for operand in before):
-            raise UnknownInstructionError
         symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
-        as_it_is = ca.Function("instruction", symbols, ca.graph_substitute([node], before, symbols))
+        as_it_is = ca.Function("instruction", symbols, [_with_operands(code, node, symbols)])
         try:
             scalar = as_it_is.expand()
         except RuntimeError as error:
@@ -378,6 +375,23 @@ def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
     elif code not in SAME_ENTRIES:
         return []
     return [Value(node.sparsity(), numbers)]
+
+
+def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
+    """The result of an instruction for other operands.
+
+    Raises:
+        UnknownInstructionError: CasADi has no way to put them there.
+    """
+    result: ca.MX
+    if code == ca.OP_DOT:
+        result = ca.dot(*operands)
+        return result
+    before = [node.dep(i) for i in range(node.n_dep())]
+    if any(operand.is_output() for operand in before):
+        raise UnknownInstructionError
+    (result,) = ca.graph_substitute([node], before, operands)
+    return result
 
 
 def _taken(node: ca.MX) -> Numbers:

@@ -105,6 +105,7 @@ def test_every_kind_of_instruction() -> None:
     added = ca.MX(x)
     added[ca.Slice(0, 4), 1] += x[:, 0]
     left, right = ca.horzsplit(ca.repmat(x, 1, 2), 3)
+    low, _, high = ca.vertsplit(v, 15)
     first, second = ca.diagsplit(ca.diagcat(x, s), [0, 4, 8], [0, 3, 7])
     results = [
         changed,
@@ -115,6 +116,9 @@ def test_every_kind_of_instruction() -> None:
         s + s.T,
         s - ca.project(s, ca.Sparsity.diag(4)),
         x.T @ s @ x,
+        # CasADi cannot put other operands in the place of results of a split.
+        ca.dot(low[:10], high) * ca.dot(left, x),
+        ca.dot(left, right),
         ca.mac(s, x, x),
         x / ca.norm_2(ca.vec(x)),
         ca.sumsqr(x) - ca.mmax(s),
