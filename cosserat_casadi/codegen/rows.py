@@ -16,11 +16,11 @@ from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import in_lanes, lanes_files
-from cosserat_casadi.codegen.library import VERBATIM, library_sources
+from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
-from cosserat_casadi.codegen.texts import fill, render
+from cosserat_casadi.codegen.texts import files_in_c, fill, render
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -100,7 +100,7 @@ class RowLibrary:
     def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs and of parameters.
 
-        Other threads run meanwhile. What a row gives depends on that row alone.
+        Other threads run meanwhile. A row depends on its inputs alone, in exact contact on the rows before it too.
 
         Args:
             inputs: shape (count, inputs).
@@ -121,9 +121,17 @@ class RowLibrary:
                 raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
             tables.append(p)
         results = np.empty((len(given), self.results))
-        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), *map(pointer, tables), pointer(results)):
+        if self.compiled()[f"{NAME}_rows"](len(given), *map(pointer, tables), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
+
+    def compiled(self) -> ctypes.CDLL:
+        """The library, which is compiled once.
+
+        Raises:
+            ExportError: there is no C compiler, or it fails.
+        """
+        return loaded(NAME, self.files)
 
 
 def row_library(
@@ -244,4 +252,4 @@ def loaded(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 @cache
 def _library(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(name, dict(files), find_compiler(), VERBATIM)))
+    return ctypes.CDLL(str(compiled_texts(name, dict(files), find_compiler(), files_in_c())))

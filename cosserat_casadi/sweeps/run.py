@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.codegen.contact.rows import contact_row_library
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, row_library, row_results
+from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
@@ -33,12 +34,23 @@ from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.potential import rows_with_potential
 from cosserat_casadi.sweeps.row_model import RowModel
+from cosserat_casadi.sweeps.sampling import representative_rows
 from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.shards import Shard, named, shard_files
 from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweeps.table import Table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
-from cosserat_casadi.sweeps.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
+from cosserat_casadi.sweeps.work import (
+    COMPILED_ROWS,
+    IN_CONTACT_FROM,
+    MODELLED_ROWS,
+    Answer,
+    Chunk,
+    InContact,
+    Parametrised,
+    Part,
+    chunks,
+)
 
 IN_LANES_FROM = 1_250_000
 """Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it. For
@@ -82,7 +94,7 @@ class Plan:
             self.table.columns,
             self.samples,
             # They say which rows are solved in C: the same to the tolerance, but not to the last digit.
-            [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
+            [COMPILED_FROM, COMPILED_ROWS, IN_CONTACT_FROM, MODELLED_ROWS],
             self.stability,
             self.table.factors,
             self.estimate_errors,
@@ -110,6 +122,11 @@ class Plan:
     def results(self) -> tuple[str, ...]:
         """Names of the numbers that a row is answered with."""
         return row_results(self.scene, estimate_errors=self.estimate_errors, stability=self.stability)
+
+    @property
+    def work(self) -> list[Chunk]:
+        """All rows in chunks."""
+        return chunks(self.variants, stability=self.stability)
 
     @property
     def part(self) -> Path | None:
@@ -165,7 +182,7 @@ def plan_sweep(
     problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
-    # Rows that look for contact, and those of tubes, are solved in Python.
+    # Rows in exact contact, and those of tubes, are solved in Python where C does not.
     if not scene.touches_exactly and not scene.tubes:
         # Both raise where a library could not be generated or compiled.
         scene_names(NAME, scene)
@@ -243,7 +260,7 @@ def run_sweep(
         progress = _ignore
     # A cluster that does not answer is told of before the discretisation is chosen.
     with _machine(scheduler, cores) as machine:
-        work = chunks(plan.variants)
+        work = plan.work
         if plan.output is None or plan.part is None:
             memory = Memory()
             choice = _choice(plan, progress)
@@ -281,7 +298,7 @@ def run_shard(
         SceneError: the file of the shard is of another sweep.
     """
     assert plan.output is not None, "a shard is kept in a file"
-    work = [chunk for chunk in chunks(plan.variants) if shard.has(chunk)]
+    work = [chunk for chunk in plan.work if shard.has(chunk)]
     count = sum(len(chunk.rows) for chunk in work)
     if plan.finished:
         return count
@@ -325,7 +342,7 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
             if head is not None and head["sweep"] == plan.identity:
                 file.unlink()
         return read_sweep(plan.output)
-    work = chunks(plan.variants)
+    work = plan.work
     rows = {chunk.number: len(chunk.rows) for chunk in work}
     heads = {shard: Store(file).head() for shard, file in files.items()}
     _check_shards(plan, work, heads)
@@ -466,37 +483,60 @@ def _tasks(
     progress: Progress,
 ) -> Iterator[tuple[Chunk, list[Part]]]:
     """Chunks with what solves them; sources are generated when their first chunk comes."""
-    variants = plan.variants
-    library: RowLibrary | None = None
-    library_of: int | None = None
+    answer: Answer | None = None
+    answer_of: int | None = None
     for chunk in rest:
-        if not chunk.compiled:
+        if not chunk.compiled and not chunk.in_contact:
             yield chunk, _modelled_parts(plan, choice, chunk)
             continue
         # A compiled chunk has rows of one variant.
         ((variant, rows),) = chunk.pieces
-        if library is None or library_of != variant:
+        if answer is None or answer_of != variant:
             progress("Compiling", 0, 0)
-            scene = choice.scene(variants.entries[variant].scene)
-            many = len(variants.entries[variant].rows) >= IN_LANES_FROM
-            library = row_library(
-                build(scene), estimate_errors=plan.estimate_errors, stability=plan.stability, lanes=many
-            )
-            library_of = variant
-        answer: Answer = Parametrised(library) if variants.arguments else library
-        yield chunk, [(answer, variants.given(rows))]
+            answer = _answer_in_contact(plan, choice, variant) if chunk.in_contact else _library(plan, choice, variant)
+            answer_of = variant
+        yield chunk, [(answer, plan.variants.given(rows))]
+
+
+def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
+    """The library of a variant."""
+    entry = plan.variants.entries[variant]
+    library = row_library(
+        build(choice.scene(entry.scene)),
+        estimate_errors=plan.estimate_errors,
+        stability=plan.stability,
+        lanes=len(entry.rows) >= IN_LANES_FROM,
+    )
+    return Parametrised(library) if plan.variants.arguments else library
+
+
+def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
+    """The library of a variant in exact contact; Python alone where C does not know what the scene has."""
+    entry = plan.variants.entries[variant]
+    inputs = plan.variants.inputs[entry.rows]
+    cases = inputs[representative_rows(inputs, plan.samples, plan.scratch)]
+    in_python = _row_model(plan, choice, variant)
+    try:
+        model = build(choice.scene(entry.scene))
+        library = contact_row_library(model, cases, estimate_errors=plan.estimate_errors)
+        # Once, before many processes look for it.
+        library.compiled()
+    except ExportError:
+        return in_python
+    return InContact(library, in_python)
 
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """Solver of a chunk in Python: a model for each variant that it has rows of."""
-    parts: list[Part] = []
+    return [(_row_model(plan, choice, variant), plan.variants.inputs[rows]) for variant, rows in chunk.pieces]
+
+
+def _row_model(plan: Plan, choice: Choice, variant: int) -> RowModel:
+    """A variant in Python."""
     # Text, since models of CasADi do not travel to other processes.
     measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
-    for variant, rows in chunk.pieces:
-        scene = choice.scene(plan.variants.entries[variant].scene)
-        model = RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
-        parts.append((model, plan.variants.inputs[rows]))
-    return parts
+    scene = choice.scene(plan.variants.entries[variant].scene)
+    return RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
 
 
 def _sweep(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
@@ -79,3 +80,21 @@ def farthest_rows(
         farthest = np.where(ahead, reached, farthest)
         rows = np.where(ahead, block.start + best, rows)
     return [int(row) for row in rows]
+
+
+def from_neighbour_to_neighbour(values: FloatArray) -> npt.NDArray[np.int64]:
+    """An order of few rows in which each is followed by the nearest of those left; the first stays first.
+
+    Args:
+        values: shape (rows, columns).
+    """
+    spread = np.ptp(values, axis=0)
+    scaled = values / np.where(spread > 0.0, spread, 1.0)
+    order = np.zeros(len(values), np.int64)
+    left = np.arange(1, len(values))
+    for place in range(1, len(values)):
+        squares = np.square(scaled[left] - scaled[order[place - 1]]).sum(axis=1)
+        nearest = int(squares.argmin())
+        order[place] = left[nearest]
+        left = np.delete(left, nearest)
+    return order

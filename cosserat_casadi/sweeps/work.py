@@ -12,10 +12,17 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.rows import RowLibrary
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.row_model import RowModel
+from cosserat_casadi.sweeps.sampling import from_neighbour_to_neighbour
 from cosserat_casadi.sweeps.variants import Variants
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""
+
+IN_CONTACT_FROM = 512
+"""Rows of one scene in exact contact from which a library is compiled for them. To find its contacts, to generate and
+to compile it took 60 to 90 s of processor time for a rod of 15 unknowns, and a row in Python 0.25 s, in C 1 ms
+(``benchmarks/contact_rows.py``)."""
 
 MODELLED_ROWS = 16
 """Rows of a chunk that is solved in Python."""
@@ -41,6 +48,29 @@ class Parametrised:
         return self.library.solve(inputs[:, :split], inputs[:, split:])
 
 
+@dataclass(frozen=True)
+class InContact:
+    """A library of rods in exact contact, which knows some arrangements of contacts; Python for rows that it leaves.
+
+    Attributes:
+        library: solves a row from the one before it.
+        model: the same scene in Python.
+    """
+
+    library: RowLibrary
+    model: RowModel
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results for rows of inputs, which are solved from neighbour to neighbour."""
+        order = from_neighbour_to_neighbour(inputs)
+        results = np.empty((len(inputs), self.library.results))
+        results[order] = self.library.solve(inputs[order])
+        left = order[results[order, 0] != 0]
+        if left.size:
+            results[left] = self.model.solve(inputs[left])
+        return results
+
+
 Part = tuple[Answer, FloatArray]
 """Rows of inputs, and what solves them."""
 
@@ -52,12 +82,14 @@ class Chunk:
     Attributes:
         number: counted from 0.
         pieces: for each scene the chunk has rows of, its index among the variants and its rows in the table.
-        compiled: whether one compiled library solves them.
+        compiled: whether one compiled library solves them all.
+        in_contact: whether one compiled library solves most of them, and Python the others.
     """
 
     number: int
     pieces: tuple[tuple[int, npt.NDArray[np.int64]], ...]
     compiled: bool
+    in_contact: bool = False
 
     @property
     def rows(self) -> npt.NDArray[np.int64]:
@@ -66,23 +98,26 @@ class Chunk:
         return np.concatenate(pieces)
 
 
-def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk]:
+def chunks(variants: Variants, compiled_from: int = COMPILED_FROM, *, stability: bool = False) -> list[Chunk]:
     """All work of a table; the same table gives the same chunks.
 
     Args:
         variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
+        stability: whether each row says whether its equilibrium is stable, which C does not say in exact contact.
     """
     listed: list[Chunk] = []
     modelled = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
-        # Compiled C does not look for contact; tubes choose their steps row by row.
-        if few or entry.scene.touches_exactly or entry.scene.tubes:
+        exact = entry.scene.touches_exactly
+        in_contact = exact and not stability and len(entry.rows) >= IN_CONTACT_FROM
+        # Tubes choose their steps row by row.
+        if few or entry.scene.tubes or (exact and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):
-            listed.append(Chunk(len(listed), ((index, rows),), compiled=True))
+            listed.append(Chunk(len(listed), ((index, rows),), not in_contact, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):
         pieces = _pieces(modelled[first : first + MODELLED_ROWS])

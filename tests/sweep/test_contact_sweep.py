@@ -1,4 +1,4 @@
-"""Sweeps of scenes with obstacles: rows in Python, each from the contacts of the row before it."""
+"""Sweeps of scenes with obstacles: rows in Python and in C, each from the contacts of a row before it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, choose, parse_scene, solve, sweep
+from cosserat_casadi import build, choose, discretise, parse_scene, solve, sweep
 from cosserat_casadi.codegen.rows import row_library, row_results
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM
 from cosserat_casadi.sweeps.outcome_file import read_sweep
@@ -18,7 +19,8 @@ from cosserat_casadi.sweeps.outcome_table import LABELS
 from cosserat_casadi.sweeps.row_model import RowModel, result_row
 from cosserat_casadi.sweeps.table import table_of
 from cosserat_casadi.sweeps.variants import variants_of
-from cosserat_casadi.sweeps.work import chunks
+from cosserat_casadi.sweeps.work import IN_CONTACT_FROM, InContact, chunks
+from tests.codegen.contact_libraries import over_bar
 from tests.paths.test_contact_path import BAR
 
 SCENE = BAR.replace('inputs = ["rod.base.position"]\n', "").replace("tolerance = 1e-6", "modes = 4")
@@ -47,14 +49,59 @@ def test_rows_hold_their_contacts(tmp_path: Path) -> None:
     assert_allclose(read_sweep(file).values, swept.values, rtol=0, atol=0, equal_nan=True)
 
 
-def test_rows_with_obstacles_are_not_compiled() -> None:
-    """However many there are, and whatever varies: C would let rods pass through."""
+def test_which_rows_in_contact_are_compiled() -> None:
+    """Many that differ in their inputs alone, by a library that looks for contact, and leaves what it does not find."""
     scene = parse_scene(SCENE)
     many = np.linspace(0.4, 0.6, COMPILED_FROM)
     variants = variants_of(scene, table_of({"rods.rod.stiffness.bending_y": many, "push.force.z": -np.ones(len(many))}))
-    assert not any(chunk.compiled for chunk in chunks(variants))
+    assert not any(chunk.compiled or chunk.in_contact for chunk in chunks(variants))
     inputs_alone = variants_of(scene, table_of({"push.force.z": many}))
-    assert not any(chunk.compiled for chunk in chunks(inputs_alone))
+    assert all(chunk.in_contact and not chunk.compiled for chunk in chunks(inputs_alone))
+    # Stability in contact is not written in C.
+    assert not any(chunk.in_contact for chunk in chunks(inputs_alone, stability=True))
+    few = variants_of(scene, table_of({"push.force.z": many[: IN_CONTACT_FROM - 1]}))
+    assert not any(chunk.in_contact for chunk in chunks(few))
+
+
+@pytest.mark.slow
+def test_compiled_rows_in_contact_are_those_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = over_bar()
+    model = build(scene, discretise(scene, 2, 4))
+    table = {"push.force.z": PUSHES}
+    in_python = sweep(model, table, cores=1)
+    monkeypatch.setattr("cosserat_casadi.sweeps.work.IN_CONTACT_FROM", len(PUSHES))
+    in_c = sweep(model, table, cores=1)
+    assert in_c.columns == in_python.columns
+    assert_allclose(in_c["rod.bar.contacts"], [0, 0, 1, 1], rtol=0, atol=0)
+    # Iterations and residuals are those of another solver, errors are judged by the tips alone.
+    judged = [in_c.columns.index(name) for name in ("iterations", "residual", "error_estimate")]
+    same = [k for k in range(len(in_c.columns)) if k not in judged]
+    assert_allclose(in_c.values[:, same], in_python.values[:, same], rtol=0, atol=1e-8, equal_nan=True)
+    assert_allclose(in_c["error_estimate"], in_python["error_estimate"], rtol=0.1, atol=1e-12)
+
+
+def test_rows_that_c_leaves_are_solved_in_python() -> None:
+    """And rows go to C from neighbour to neighbour, and come back in their order."""
+    scene = parse_scene(SCENE)
+    pushes = np.zeros((4, 3))
+    pushes[:, 2] = [-0.02, -0.5, -0.1, -0.3]
+    seen = []
+
+    class Left:
+        results = len(row_results(scene, estimate_errors=True))
+
+        def solve(self, inputs: FloatArray) -> FloatArray:
+            seen.extend(inputs[:, 2].tolist())
+            rows = np.full((len(inputs), self.results), np.nan)
+            rows[:, 0] = [0, LABELS.index("contact_unsettled"), 0, 0]
+            return rows
+
+    rows = InContact(Left(), RowModel(SCENE, estimate_errors=True)).solve(pushes)  # type: ignore[arg-type]
+    assert seen == [-0.02, -0.1, -0.3, -0.5]
+    assert_allclose(rows[:, 0], np.zeros(4), rtol=0, atol=0)
+    (expected,) = RowModel(SCENE, estimate_errors=True).solve(pushes[[2]])
+    assert_allclose(rows[2], expected, rtol=0, atol=0, equal_nan=True)
+    assert np.isnan(rows[[0, 1, 3], 1:]).all()
 
 
 @pytest.mark.slow

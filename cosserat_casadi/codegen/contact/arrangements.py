@@ -93,13 +93,16 @@ class _Met:
         return state.signature, tuple(ends)
 
 
-def chosen_arrangements(model: Model, load_cases: FloatArray | None, *, estimate_errors: bool) -> Chosen:
+def chosen_arrangements(
+    model: Model, load_cases: FloatArray | None, *, estimate_errors: bool, leave_out: bool = False
+) -> Chosen:
     """The arrangements that a scene meets, and no contact.
 
     Args:
         model: of a scene with obstacles.
         load_cases: stacked inputs, a row for each case, shape (k, m).
         estimate_errors: whether the library estimates the errors of its answers.
+        leave_out: whether load cases without an equilibrium are left out, instead of refused.
 
     Raises:
         ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
@@ -110,14 +113,18 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None, *, estimate
     layout = input_layout(scene)
     given = layout.pack(None)
     met = _Met(scene, grids)
-    own = _solved(scene, grids, given, "the scene's own inputs")
+    own = solve_contact(scene, grids, layout.unpack(given))
+    _check(own, "the scene's own inputs")
     first = state_in(own.model.scene)
     met.add(first)
     free = build(scene, grids.discretisation(scene))
     before = given
     for number, row in enumerate(np.zeros((0, layout.size)) if load_cases is None else load_cases, start=1):
         # Where a path ends early, at a fold or a change that it does not find, the load case is solved all the same.
-        case = _solved(scene, grids, row, f"load case {number}")
+        case = solve_contact(scene, grids, layout.unpack(row))
+        if leave_out and not case.converged:
+            continue
+        _check(case, f"load case {number}")
         if not np.array_equal(row, before):
             met.add_path(follow_contact_path(free, free.inputs.names[0], before, row - before))
         met.add(state_in(case.model.scene))
@@ -136,16 +143,14 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None, *, estimate
     return Chosen(scene, layout, given, equations, richer_equations, start, _z_of(equations[start], own))
 
 
-def _solved(scene: scenes.Scene, grids: Grids, inputs: FloatArray, what: str) -> Solution:
-    """The equilibrium for some inputs.
+def _check(solution: Solution, what: str) -> None:
+    """Refuse inputs without an equilibrium.
 
     Raises:
         ExportError: there is none.
     """
-    solution = solve_contact(scene, grids, input_layout(scene).unpack(inputs))
     if not solution.converged:
         raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out, or lead there by others"))
-    return solution
 
 
 def _refuse_split_lines(states: Sequence[ContactState]) -> None:

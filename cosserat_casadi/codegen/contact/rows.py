@@ -1,0 +1,72 @@
+"""Rods in exact contact as C that answers rows of inputs with rows of results, for sweeps."""
+
+from __future__ import annotations
+
+from cosserat_casadi.codegen.contact.arrangements import Chosen, chosen_arrangements
+from cosserat_casadi.codegen.contact.checks import check_contact
+from cosserat_casadi.codegen.contact.sources import contact_files
+from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.codegen.rows import CONTACT, ERRORS, JUDGED, NAME, RowLibrary, row_results, to_compile
+from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene import Scene
+
+
+def contact_row_library(model: Model, load_cases: FloatArray, *, estimate_errors: bool) -> RowLibrary:
+    """Sources of the solver of a scene in exact contact with a function for rows.
+
+    Args:
+        model: on the discretisation of all rows.
+        load_cases: stacked inputs, a row for each case, shape (k, m): the library knows the arrangements of contacts
+            that it meets on the way from the scene's own inputs to each of them that has an equilibrium, one after
+            the other.
+        estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
+
+    Raises:
+        ExportError: C does not know what the scene has, or its contacts; or the scene has no equilibrium.
+    """
+    check_contact_rows(model.scene)
+    columns = row_results(model.scene, estimate_errors=estimate_errors)
+    chosen = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, leave_out=True)
+    names = scene_names(NAME, without_contacts(model.scene))
+    files = contact_files(model, chosen, names, None)
+    files[f"{NAME}_rows.c"] = _rows_source(chosen, names, columns)
+    return RowLibrary(to_compile(files), model.inputs.size, 0, len(columns))
+
+
+def check_contact_rows(scene: Scene) -> None:
+    """Refuse what rows in C do not have of a scene in exact contact.
+
+    Raises:
+        ExportError: with every fault.
+    """
+    check_contact(scene, {})
+    if scene.actuators:
+        raise ExportError(Problem("actuators", "their efforts are not among the results of rows in exact contact in C"))
+
+
+def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
+    """The function for rows."""
+    rods = [rod.name for rod in chosen.scene.rods]
+    obstacles = [obstacle.name for obstacle in chosen.scene.obstacles]
+    touching = list(pairs(chosen.scene))
+    entries = [f"{{{rods.index(rod)}, {obstacles.index(obstacle.name)}}}" for rod, obstacle in touching]
+    first_pair = columns.index(f"{touching[0][0]}.{touching[0][1].name}.{CONTACT[0]}")
+    estimate = ERRORS[0]
+    words = {
+        "name": names.name,
+        "MACRO": names.macro,
+        "results": len(columns),
+        "first_pose": len(JUDGED),
+        "first_pair": first_pair,
+        "of_pair": len(CONTACT),
+        "pairs": len(touching),
+        "pair_entries": ", ".join(entries),
+        "estimates_errors": int(estimate in columns),
+        "estimate": columns.index(estimate) if estimate in columns else 0,
+    }
+    return render("contact_rows.c.in", words)
