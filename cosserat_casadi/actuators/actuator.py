@@ -58,6 +58,13 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         """The conjugate quantity for these inputs, 1×1 each; by default it does not depend on them."""
         return self.quantity(actuator, grid)
 
+    def margin(self, actuator: RecordType, values: Mapping[str, Matrix]) -> Matrix | None:
+        """How far these inputs, 1×1 each, are from the end of the actuator's law; not positive beyond it.
+
+        None of an actuator whose law has no end.
+        """
+        return None
+
     def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
         """Extension of the prescribed quantity by a unit of effort: 1/EA of each metre, and 1/k; zero if rigid."""
         return 0.0, 0.0

@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import final
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
@@ -23,6 +24,10 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, among, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import StrainSum
+from cosserat_casadi.scene.actuator_records import ChamberWall
+
+SMALL_STRAIN = 0.1
+"""Strain around the bore up to which the linear wall is believed: one of rubber has 2 to 7 % more area there."""
 
 BENDINGS_AND_EXTENSION = (0, 1, 5)
 """Strains K_x, K_y and Γ_z, on which the pressure does work."""
@@ -46,6 +51,17 @@ class ChamberActuator(Actuator[scenes.Chamber]):
         of_area = _growth_of_area(actuator, values["pressure"])
         of_moment = of_area * _polynomial(actuator.offset_growth, actuator.reference_pressure, values["pressure"])
         return replace(volume, factors=(of_moment, of_moment, of_area))
+
+    def margin(self, actuator: scenes.Chamber, values: Mapping[str, Matrix]) -> Matrix | None:
+        """Share of the area that is left, or of the small strains of the wall."""
+        pressure = values["pressure"]
+        wall = actuator.wall
+        if wall is None:
+            return ca.MX(_growth_of_area(actuator, pressure)) if actuator.area_growth else None
+        if wall.reinforced:
+            return None
+        strain = ca.MX(_widening(wall, pressure))
+        return 1 - ca.fabs(strain) / SMALL_STRAIN
 
     def quantity(self, actuator: scenes.Chamber, grid: Grid) -> StrainSum:
         """The volume without pressure: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
@@ -72,12 +88,18 @@ def _growth_of_area(actuator: scenes.Chamber, pressure: Matrix) -> Scalar:
         return _polynomial(actuator.area_growth, actuator.reference_pressure, pressure)
     if wall.reinforced:
         return 1.0
+    growth: Scalar = (1 + _widening(wall, pressure)) ** 2
+    return growth
+
+
+def _widening(wall: ChamberWall, pressure: Matrix) -> Scalar:
+    """u/a, the strain around the bore of a wall that is not reinforced."""
     inner = wall.inner_radius**2
     outer = wall.outer_radius**2
     nu = wall.poisson_ratio
     by_pressure = (1 + nu) / wall.youngs_modulus * ((1 - 2 * nu) * inner + outer) / (outer - inner)
-    growth: Scalar = (1 + by_pressure * pressure) ** 2
-    return growth
+    strain: Scalar = by_pressure * pressure
+    return strain
 
 
 def _polynomial(coefficients: Sequence[Scalar], reference: Scalar | None, pressure: Matrix) -> Scalar:

@@ -1,4 +1,4 @@
-"""States that no rod can be in: tendons whose paths have no length left, materials beyond their laws."""
+"""States that no rod can be in: tendons whose paths have no length left, materials and chambers beyond their laws."""
 
 from __future__ import annotations
 
@@ -34,9 +34,8 @@ class BeyondLimit(NamedTuple):
     @property
     def whose(self) -> str:
         """Whose limit it is, as the beginning of a sentence."""
-        if self.margin.kind == "path":
-            return f"It is the path of '{self.margin.name}'"
-        return f"It is the material of '{self.margin.name}'"
+        kind, name = self.margin
+        return f"It is the {kind} of '{name}'" if kind in ("path", "material") else f"It is the {kind} '{name}'"
 
 
 def first_beyond(model: Model, x: FloatArray, inputs: FloatArray) -> BeyondLimit | None:

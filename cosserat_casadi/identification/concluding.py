@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.strain_limits import BeyondLimit
 from cosserat_casadi.identification.case_time_steps import STEP_ERROR
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.identification_result import Identification, LeftOut, Row
@@ -14,6 +15,7 @@ from cosserat_casadi.identification.measured_modes import JointModes
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.statistics import Direction, Statistics
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
@@ -34,6 +36,7 @@ class Ending:
         left_out: cases that took no part.
         unstable: cases whose equilibrium is unstable.
         unresolved: cases that the nodes do not resolve.
+        beyond: cases that are beyond a limit of a path or a law, and which limit that is.
         joint_modes: measured modes of one frequency.
         warnings: sentences on what looks wrong.
     """
@@ -43,6 +46,7 @@ class Ending:
     left_out: list[LeftOut] = field(default_factory=list)
     unstable: list[str] = field(default_factory=list)
     unresolved: list[str] = field(default_factory=list)
+    beyond: list[tuple[str, BeyondLimit]] = field(default_factory=list)
     joint_modes: list[JointModes] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
@@ -140,6 +144,11 @@ class Ending:
         if self.unresolved:
             cases = named(self.unresolved)
             return "unresolved", f"Not found: the nodes do not resolve the rods in {cases}; allow more of them."
+        if self.beyond:
+            limit = self.beyond[0][1]
+            told = Outcome[limit.word]
+            cases = named([case for case, _ in self.beyond])
+            return told.label, f"Not found. Of {cases}: {told.value} {limit.whose}."
         if not known.settled:
             directions = "; ".join(described(direction) for direction in known.unseen)
             remedy = "Leave unknowns out, give priors, or measure more."

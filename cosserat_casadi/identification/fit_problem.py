@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.case_equilibria import Equilibria, Point
 from cosserat_casadi.identification.case_motions import StartInputs
@@ -136,8 +137,8 @@ class Task:
         ending.warnings += plausibility(self.model, self.layout, rows)
         ending.joint_modes += misfit.joint_modes(fit.state)
         ending.unstable += _unstable(misfit, fit.state.point)
-        resolved = _resolved(misfit, fit.state)
-        ending.unresolved += [case.where for case, is_so in zip(misfit.cases, resolved, strict=True) if not is_so]
+        ending.unresolved += _unresolved(misfit, fit.state)
+        ending.beyond += _beyond_limits(misfit, fit.state)
         found = ending.concluded(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
         if not misfit.motions.times:
             return found
@@ -396,17 +397,35 @@ def _stable_tubes(model: TubeFunctions, p: FloatArray) -> Callable[[FloatArray, 
     return lambda x, inputs, jacobian: bool(stability_of_tubes(bound, x, inputs).stable)
 
 
-def _resolved(misfit: Misfit, state: MisfitState) -> list[bool]:
-    """Whether the nodes resolve the rods in each case; in motions at all times that were measured."""
-    point = state.point
-    resolved = []
-    for i, (x, inputs) in enumerate(zip(point.x, point.inputs, strict=True)):
-        places = [(x, inputs)]
+def _unresolved(misfit: Misfit, state: MisfitState) -> list[str]:
+    """Cases in which the nodes do not resolve the rods."""
+    unresolved = []
+    for case, x, inputs in _states(misfit, state):
+        indices = [_index(misfit.model, *place, state.point.p) for place in zip(x, inputs, strict=True)]
+        if not np.max(indices) <= 1.0:
+            unresolved.append(case)
+    return unresolved
+
+
+def _beyond_limits(misfit: Misfit, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
+    """Cases that are beyond a limit, and which limit that is."""
+    if isinstance(misfit.model, TubeFunctions) or misfit.model.strain_margins is None:
+        return []
+    bound = misfit.model.at(state.point.p)
+    limits = [(case, first_beyond(bound, x, inputs)) for case, x, inputs in _states(misfit, state)]
+    return [(case, limit) for case, limit in limits if limit is not None]
+
+
+def _states(misfit: Misfit, state: MisfitState) -> Iterator[tuple[str, FloatArray, FloatArray]]:
+    """Each case with its equilibrium and, in motions, the states at all times that were measured."""
+    for i, case in enumerate(misfit.cases):
+        x = state.point.x[i : i + 1]
+        inputs = state.point.inputs[i : i + 1]
         run = state.runs.get(i)
         if run is not None:
-            places += list(zip(run.x, run.inputs, strict=True))
-        resolved.append(all(_index(misfit.model, *place, point.p) <= 1.0 for place in places))
-    return resolved
+            x = np.vstack([x, run.x])
+            inputs = np.vstack([inputs, run.inputs])
+        yield case.where, x, inputs
 
 
 def _index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:

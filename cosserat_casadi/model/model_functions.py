@@ -158,8 +158,8 @@ class ModelFunctions:
         """(x, inputs) ↦ how far strains are from what a rod cannot be: a number for each thing that has an end.
 
         For each tendon whose path can change the length per length of the rod that it has left where it has least: at
-        zero the rod has pressed it to nothing. Then for each rod whose material is not linear how far it is from where
-        the law ends. None where neither is there.
+        zero the rod has pressed it to nothing. Then for each rod whose material is not linear, and for each chamber
+        whose area grows, how far it is from where the law ends. None where none of them is there.
         """
         margins = strain_margins(written.system)
         return [ca.vertcat(*margins.values())] if margins else None

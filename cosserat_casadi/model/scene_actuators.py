@@ -62,6 +62,12 @@ class SceneActuators:
         actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
         return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
 
+    def margin(self, actuator: scenes.Actuator) -> Matrix | None:
+        """How far an actuator is from the end of its law, 1×1; None where that has none."""
+        values = input_values(self.discrete.layout, actuator, self.inputs)
+        margin: Matrix | None = EFFECTS[actuator.kind].margin(actuator, values)
+        return margin
+
     def pull(self, name: str) -> Matrix:
         """Generalised force of a unit of an actuator's effort on the unknowns, size×1."""
         actuator, conjugate = self.conjugate(name)

@@ -1,4 +1,4 @@
-"""How far strains are from what a rod cannot be: paths of tendons without length, materials beyond their laws.
+"""Margins to states that no rod can be in: paths of tendons without length, materials and chambers beyond their laws.
 
 A path at D(X) in the sections has the tangent T = Γ + K × D + D'/ℓ. With plane, rigid sections the determinant of the
 deformation gradient is T_z there: where it vanishes matter is pressed to nothing, and beyond it is turned inside out.
@@ -10,7 +10,7 @@ the pivots of its tangent stiffness are positive.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import casadi as ca
 
@@ -25,22 +25,23 @@ VANISHED = 1e-3
 
 
 class StrainMargin(NamedTuple):
-    """The tendon or the rod that has a margin.
+    """The actuator or the rod that has a margin.
 
     Attributes:
-        kind: the path of a tendon, or the material of a rod.
-        name: name of the tendon, or of the rod.
+        kind: "path" of a tendon, "material" of a rod, or the kind of an actuator whose law has an end.
+        name: name of the actuator, or of the rod.
     """
 
-    kind: Literal["path", "material"]
+    kind: str
     name: str
 
 
 def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
-    """Margins where they are least, 1×1 each: first those of paths, then those of materials.
+    """Margins where they are least, 1×1 each: first those of paths, then those of laws.
 
     Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a material the least
-    pivot of its tangent stiffness relative to its Hooke tensor, or how far the strain is from the ends of its law.
+    pivot of its tangent stiffness relative to its Hooke tensor, or how far the strain is from the ends of its law. Of
+    an actuator how far its inputs are from the end of its law.
     """
     margins: dict[StrainMargin, Matrix] = {}
     for actuator in system.discrete.scene.actuators:
@@ -55,6 +56,10 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
         if margin is not None:
             # A law ends where its margin is zero; what has one of paths' ends a little earlier.
             margins[StrainMargin("material", rod)] = margin + VANISHED
+    for actuator in system.discrete.scene.actuators:
+        margin = system.actuators.margin(actuator)
+        if margin is not None:
+            margins[StrainMargin(actuator.kind, actuator.name)] = margin + VANISHED
     return margins
 
 

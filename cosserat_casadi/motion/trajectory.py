@@ -61,8 +61,8 @@ class MotionOutcome(Enum):
         "has no length left in it: lessen the loads, or move the path nearer to the axis."
     )
     BEYOND_MATERIAL = (
-        "A motion of the discrete model was computed, but on its way the rod is strained beyond where the law of its "
-        "material holds: lessen the loads, or give the law for larger strains."
+        "A motion of the discrete model was computed, but on its way a strain, or the pressure in a chamber, is beyond "
+        "where its law holds: lessen the loads, or give the law for larger ones."
     )
 
     @property

@@ -34,8 +34,8 @@ class Outcome(Enum):
         "that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis."
     )
     BEYOND_MATERIAL = (
-        "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a "
-        "further strain would set energy free: lessen the loads, or give the law for larger strains."
+        "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a "
+        "further strain would set energy free: lessen the loads, or give the law for larger ones."
     )
     CONTACT_UNSETTLED = (
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "

@@ -54,8 +54,8 @@ class PathOutcome(Enum):
         "along it."
     )
     BEYOND_MATERIAL = (
-        "The rod cannot follow the path of the discrete model: it is strained beyond where the law of its material "
-        "holds."
+        "The rod cannot follow the path of the discrete model: a strain, or the pressure in a chamber, is beyond "
+        "where its law holds."
     )
 
     @property

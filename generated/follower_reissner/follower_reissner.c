@@ -242,7 +242,7 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
     case FOLLOWER_REISSNER_PATH_VANISHED:
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
     case FOLLOWER_REISSNER_BEYOND_MATERIAL:
-      return "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains.";
+      return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
   }
   return "No such status.";
 }

@@ -72,7 +72,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The end of a solve in view of the strains: paths of tendons have length left, and materials are within their laws. */
+/* The end of a solve in view of the strains: paths of tendons have length left, materials and chambers are within their laws. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   real margins[4];
   ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
@@ -288,7 +288,7 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
     case TENDON_ROBOT_PATH_VANISHED:
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
     case TENDON_ROBOT_BEYOND_MATERIAL:
-      return "No equilibrium of the rod: somewhere it is strained beyond where the law of its material holds, or where a further strain would set energy free: lessen the loads, or give the law for larger strains.";
+      return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
   }
   return "No such status.";
 }

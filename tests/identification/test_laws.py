@@ -80,9 +80,9 @@ MADE_UP: dict[str, tuple[dict[str, Any], dict[str, list[float]], dict[str, float
         {"own.offset.0": -2.2e-3, "own.area_growth.0": 0.2, "own.area_growth.1": 0.1},
     ),
     "chamber with a wall": (
-        {**CHAMBER, "wall": {"inner_radius": 1.5e-3, "outer_radius": 2.5e-3, "youngs_modulus": 2e5}},
+        {**CHAMBER, "wall": {"inner_radius": 1.5e-3, "outer_radius": 2.5e-3, "youngs_modulus": 6e5}},
         BLOWN,
-        {"own.offset.0": -1.8e-3, "own.wall.youngs_modulus": 1.5e5},
+        {"own.offset.0": -1.8e-3, "own.wall.youngs_modulus": 5e5},
     ),
     "muscle": (
         {**MUSCLE, "profile": [1.0, 0.0, 0.0]},

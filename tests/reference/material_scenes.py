@@ -94,8 +94,11 @@ def _chamber(rng: np.random.Generator, length: float, bending: float) -> Table:
     kind = rng.integers(3)
     if kind == 0:
         inner = float(np.sqrt(area / np.pi))
-        wall = {"inner_radius": inner, "outer_radius": inner * float(rng.uniform(1.05, 2.0))}
-        return {**chamber, "wall": {**wall, "youngs_modulus": pressure * float(rng.uniform(10, 100))}}
+        ratio = float(rng.uniform(1.05, 2.0))
+        wall = {"inner_radius": inner, "outer_radius": inner * ratio}
+        # Strains around the bore from 1 to 9 %.
+        modulus = pressure * float(rng.uniform(16, 150)) / (1 - ratio**-2)
+        return {**chamber, "wall": {**wall, "youngs_modulus": modulus}}
     grows = {"area_growth": rng.uniform(-0.3, 0.5, 2).tolist(), "offset_growth": [float(rng.uniform(-0.2, 0.2))]}
     return {**chamber, "area": area, **({**grows, "reference_pressure": 1.5 * pressure} if kind == 1 else {})}
 

@@ -122,14 +122,14 @@ class ArrangementKernels:
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
-        """Index of resolution, and the least margins of paths and of materials; one where there is none."""
+        """Index of resolution, and the least margins of paths and of laws; one where there is none."""
         system = self._written.system
         symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
         index = resolution_index(Expressions(system.discrete, "", symbols))
         margins = strain_margins(system)
         least = []
-        for kind in ("path", "material"):
-            own = [value for margin, value in margins.items() if margin.kind == kind]
+        for of_path in (True, False):
+            own = [value for margin, value in margins.items() if (margin.kind == "path") is of_path]
             least.append(ca.mmin(ca.vertcat(1, *own)))
         indices: Matrix = ca.vertcat(index, *least)
         return indices
