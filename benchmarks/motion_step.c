@@ -15,6 +15,9 @@ static @{name}_state states[STEPS + 1];
 static @{name}_step_memory memory;
 static double inputs[INPUTS + 1] = @{MACRO}_DEFAULTS;
 static double given[INPUTS + 1], rate[INPUTS + 1];
+static const double not_accelerated[INPUTS + 1];
+static const @{name}_step_options options = {
+  .tolerance = 1e-11, .max_iterations = 12, .max_parts = 8, .inputs_acceleration = not_accelerated};
 static double by_start[4 * N * N], by_inputs[2 * N * INPUTS + 1], by_inputs_rate[2 * N * INPUTS + 1];
 static double stiffness[N * N], damping[N * N], mass[N * N], residual[N];
 
@@ -53,10 +56,10 @@ static void run(int task, double dt, long *iterations, long *jacobians, long *pa
     } else if (task == MATRICES) {
       @{name}_linearise(&state, given, rate, stiffness, damping, mass, 0, 0, 0, &workspace);
     } else if (task == SENSITIVITY) {
-      @{name}_step_sensitivity(given, rate, dt, &state, &memory, 0, by_start, by_inputs, by_inputs_rate, 0,
+      @{name}_step_sensitivity(given, rate, dt, &state, &memory, &options, by_start, by_inputs, by_inputs_rate, 0,
                                &workspace, &info);
     } else {
-      @{name}_step(given, rate, dt, &state, &memory, 0, &workspace, &info);
+      @{name}_step(given, rate, dt, &state, &memory, &options, &workspace, &info);
     }
     best[k] = fmin(best[k], now_us() - begun);
     if (task < STEP) continue;

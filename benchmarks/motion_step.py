@@ -11,6 +11,7 @@ import json
 import re
 import subprocess
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -57,9 +58,14 @@ COLUMNS = {
 }
 
 
-def rod() -> Model:
-    """A Kirchhoff rod of 12 unknowns."""
-    scene = scene_from_dict({"schema": 1, "rods": [ROD], "loads": LOADS, "inputs": ["push.force"]})
+BRANCHES = [{"share": 0.2, "time": 0.03}, {"share": 0.15, "time": 0.4}, {"share": 0.1, "time": 3.0}]
+
+
+def rod(branches: int = 0) -> Model:
+    """A Kirchhoff rod of 12 unknowns, and as many flows for each branch of its relaxing stress."""
+    damping = {**ROD["damping"], "prony": BRANCHES[:branches]}
+    rods = [{**ROD, "damping": damping}]
+    scene = scene_from_dict({"schema": 1, "rods": rods, "loads": LOADS, "inputs": ["push.force"]})
     return build(scene, discretise(scene, 4, 10, "magnus4"), moving=True)
 
 
@@ -83,6 +89,8 @@ def platform() -> Model:
 MODELS = {
     "Kirchhoff rod, tip force": thin_rod,
     "with rotary inertia, damping and weight": rod,
+    "and a Maxwell branch": partial(rod, 1),
+    "and three of them": partial(rod, 3),
     "six-rod platform": platform,
 }
 

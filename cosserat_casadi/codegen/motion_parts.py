@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
 from cosserat_casadi.codegen.names import Names
@@ -19,7 +20,9 @@ from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.motion_checks import immovable
 
 MATRICES = ("stiffness", "damping", "mass")
@@ -32,12 +35,14 @@ class MotionInC:
 
     Attributes:
         blocks: of stiffness, damping and mass together.
+        order: the blocks in which the linear systems of a step are eliminated.
         residual: the equations in parts.
         matrices: entries of stiffness, damping and mass in parts: one after the other, in the order of the pattern.
         input_matrices: derivatives by inputs, their rates, their accelerations, in parts: by index in the dense matrix.
     """
 
     blocks: Blocks
+    order: Blocks
     residual: Parted
     matrices: Parted
     input_matrices: Parted
@@ -59,17 +64,39 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
     state, inputs, factor, arguments = _symbols(model)
     matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
     pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
-    partition = blocks(model.discrete, pattern)
+    order = partition = blocks(model.discrete, pattern)
     if partition is None:
-        # One block without an interface; all of its matrix is filled.
-        partition = Blocks([0] * model.size, ca.Sparsity.dense(model.size, model.size))
+        # One block without an interface; all of its matrix is filled but rows and columns of flows.
+        filled = np.arange(model.size - model.discrete.unknowns.count(BlockKind.FLOW)).tolist()
+        dense = ca.Sparsity.dense(len(filled), len(filled))
+        dense.enlarge(model.size, model.size, filled, filled)
+        partition = order = Blocks([0] * model.size, pattern + dense)
+        if len(filled) < model.size:
+            order = Blocks(_flows_apart(model.discrete), partition.pattern)
     residual = ca.Function("motion", [state, inputs, factor], [model.inverse_dynamics.call(arguments)[0]])
     return MotionInC(
         blocks=partition,
+        order=order,
         residual=parted(residual, partition.owners, names.kernel("motion_residual")),
         matrices=_matrices(partition, [state, inputs, factor], matrices, names.kernel("motion_matrices")),
         input_matrices=_input_matrices(model, partition, names.kernel("motion_input_matrices")),
     )
+
+
+def _flows_apart(discrete: DiscreteScene) -> list[int]:
+    """For each unknown the number of its block: flows of one strain in one branch, which meet in its stiffness alone.
+
+    Their rows are diagonal: eliminated first, they leave linear systems of the other unknowns, which are the interface.
+    """
+    owners = np.full(discrete.size, INTERFACE)
+    number = 0
+    for block, entries in discrete.unknowns.of_kind(BlockKind.FLOW):
+        rod = discrete.rods[block.owner]
+        for first in range(entries.start, entries.stop, rod.size):
+            for columns in rod.columns.values():
+                owners[first + columns.start : first + columns.stop] = number
+                number += 1
+    return [int(owner) for owner in owners]
 
 
 def check_motion(model: Model) -> None:

@@ -44,7 +44,7 @@ STAGES = 2
 
 def motion_words(render: Render, basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
     """Words of a library with motions."""
-    fronts = by_fronts(motion.blocks)
+    fronts = by_fronts(motion.order)
     whole = as_a_whole(motion.blocks)
     parteds = {
         "motion_residual": motion.residual,

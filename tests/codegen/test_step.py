@@ -10,7 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.codegen.compiled_motion import StepOptions, StepState
+from cosserat_casadi.codegen.motion_parts import motion_in_c
+from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import MotionStatus
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.consistent_start import consistent_start
 from tests import moving_scenes
 from tests.codegen.libraries import Exported
@@ -18,6 +21,7 @@ from tests.codegen.motions import (
     EXACT,
     Drive,
     MotionLibrary,
+    MovingRecipe,
     accelerated,
     compiled_steps,
     drive,
@@ -44,6 +48,19 @@ def test_steps_vs_python(motion_library: MotionLibrary, family: str) -> None:
     """The same discrete motion to rounding."""
     made = motion_library(family)
     assert_same_steps(made, drive(made.model, 2e-3, 8))
+
+
+@pytest.mark.parametrize("family", ["relaxing", RELAXING])
+def test_systems_of_a_step_meet_in_no_flows(family: str) -> None:
+    """Flows of relaxing stress are eliminated first; of one rod each block is the flows of one strain in one branch."""
+    model = MovingRecipe(family).model()
+    order = motion_in_c(model, Names("moving", ("a", "b"))).order
+    ((_, flows), *_) = model.discrete.unknowns.of_kind(BlockKind.FLOW)
+    assert order.separate
+    assert set(order.interface).isdisjoint(range(flows.start, model.size))
+    if family == "relaxing":
+        assert order.interface == list(range(flows.start))
+        assert [len(front.members) for front in order.fronts] == [2, 2]
 
 
 @pytest.mark.parametrize("family", ["kirchhoff", CABLE, DRIVEN])
