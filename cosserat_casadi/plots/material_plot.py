@@ -29,7 +29,16 @@ POINTS = 241
 """Points of a curve."""
 
 FIBRE_STRAIN = 0.15
-"""Strain of the outermost fibre, and of extension, up to which curves are drawn."""
+"""Strain of the outermost fibre, and of extension, up to which curves are drawn, unless the law ends before."""
+
+HARDLY_BENT = 0.1
+"""Distance from the line of small strains, over the largest stress, below which a curve is drawn twice as far."""
+
+PAST_THE_END = 1.3
+"""How far a curve is drawn beyond the end of its law, over the strain there."""
+
+SMALL = 1e-6
+"""Change of a strain at which its slope at zero is taken, over the largest that is drawn."""
 
 AXES = (
     *(("bending_x", "curvature $K_x$, 1/m", "moment, N m"), ("bending_y", "curvature $K_y$, 1/m", "moment, N m")),
@@ -46,7 +55,7 @@ class StressCurve(NamedTuple):
         component: index of the strain.
         change: of it, shape (k,).
         stress: shape (k,), N m or N.
-        linear: stress by the Hooke tensor, shape (k,).
+        linear: stress by the slope of the law at zero, shape (k,).
         inside: where the law of the material holds, shape (k,).
     """
 
@@ -82,7 +91,8 @@ def plot_materials(scene: scenes.Scene) -> Any:
         raise SceneError(
             Problem("--plot", "draws materials that are not linear, and the scene has none", "leave it out")
         )
-    columns = min(COLUMNS, len(curves))
+    # Four panels make a square.
+    columns = 2 if len(curves) == 4 else min(COLUMNS, len(curves))
     rows = ceil(len(curves) / columns)
     figure = figure_class()(figsize=(1.0 + 3.6 * columns, 0.8 + 3.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -107,20 +117,30 @@ def stress_curves(rod: RodProperties) -> list[StressCurve]:
     base = np.zeros(1)
     data = known(law.data(base)).T
     hooke = known(rod.hooke(base))[0]
-    stress_of = stress_beyond_hooke(law, len(data)).map(POINTS)
-    margin_of = section_margins(law, rod.admitted, len(data)).map(POINTS)
+    beyond_hooke = stress_beyond_hooke(law, len(data))
+    margins = section_margins(law, rod.admitted, len(data))
+    shares = np.linspace(-1, 1, POINTS)
+    stiffness = hooke[list(rod.admitted), None]
     curves = []
     for component in rod.admitted:
-        change = np.zeros((6, POINTS))
-        change[component] = np.linspace(-1, 1, POINTS) * _largest_change(rod, component)
-        everywhere = np.repeat(data, POINTS, axis=1)
-        beyond = stress_of(change, everywhere).full()[component]
-        linear = hooke[component] * change[component]
-        if np.allclose(beyond, 0.0, rtol=0, atol=1e-9 * np.abs(linear).max()):
+        direction = np.eye(6)[:, [component]]
+        largest = _largest_change(rod, component)
+        small = SMALL * largest
+        slope = hooke[component] + float(beyond_hooke(small * direction, data)[component]) / small
+        end = np.array([largest, -largest])
+        away = beyond_hooke(direction * end, data).full()[component] + (hooke[component] - slope) * end
+        if np.abs(away).max() < HARDLY_BENT * slope * largest:
+            largest *= 2.0
+        inside = margins(largest * direction * shares, data, stiffness).full()[0] > 0.0
+        if not np.all(inside):
+            largest *= min(1.0, PAST_THE_END * float(np.abs(shares[inside]).max()))
+            inside = margins(largest * direction * shares, data, stiffness).full()[0] > 0.0
+        change = largest * shares
+        beyond = beyond_hooke(direction * change, data).full()[component]
+        stress = hooke[component] * change + beyond
+        if np.allclose(beyond, 0.0, rtol=0, atol=1e-9 * np.abs(stress).max()):
             continue
-        stiffness = np.repeat(hooke[list(rod.admitted), None], POINTS, axis=1)
-        inside = margin_of(change, everywhere, stiffness).full()[0] > 0.0
-        curves.append(StressCurve(component, change[component], linear + beyond, linear, inside))
+        curves.append(StressCurve(component, change, stress, slope * change, inside))
     return curves
 
 
@@ -148,5 +168,6 @@ def _draw(panel: Any, rod: str, curve: StressCurve) -> None:
     panel.set_ylim(-largest, largest)
     panel.set_xlabel(abscissa)
     panel.set_ylabel(ordinate)
+    panel.locator_params(axis="x", nbins=6)
     panel.set_title(f"{rod}: {name.replace('_', ' ')}", fontsize=10)
     panel.grid(alpha=0.3)
