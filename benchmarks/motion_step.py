@@ -11,6 +11,7 @@ import json
 import re
 import subprocess
 import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -30,7 +31,6 @@ ROD = {
     "strain": "kirchhoff",
     "material": {"youngs_modulus": 8e6, "shear_modulus": 3e6, "density": 716.0},
     "section": {"shape": "circle", "radius": 0.02},
-    "damping": {"retardation_time": 0.01},
 }
 LOADS = [
     {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.9, 0.5, -0.4]},
@@ -63,7 +63,7 @@ BRANCHES = [{"share": 0.2, "time": 0.03}, {"share": 0.15, "time": 0.4}, {"share"
 
 def rod(branches: int = 0) -> Model:
     """A Kirchhoff rod of 12 unknowns, and as many flows for each branch of its relaxing stress."""
-    damping = {**ROD["damping"], "prony": BRANCHES[:branches]}
+    damping = {"retardation_time": 0.01, "prony": BRANCHES[:branches]}
     rods = [{**ROD, "damping": damping}]
     scene = scene_from_dict({"schema": 1, "rods": rods, "loads": LOADS, "inputs": ["push.force"]})
     return build(scene, discretise(scene, 4, 10, "magnus4"), moving=True)
@@ -86,7 +86,7 @@ def platform() -> Model:
     return build(scene, chosen, moving=True)
 
 
-MODELS = {
+MODELS: dict[str, Callable[[], Model]] = {
     "Kirchhoff rod, tip force": thin_rod,
     "with rotary inertia, damping and weight": rod,
     "and a Maxwell branch": partial(rod, 1),

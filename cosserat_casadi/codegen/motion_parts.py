@@ -64,12 +64,14 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
     state, inputs, factor, arguments = _symbols(model)
     matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
     pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
-    order = partition = blocks(model.discrete, pattern)
-    if partition is None:
+    partition = blocks(model.discrete, pattern)
+    if partition is not None:
+        order = partition
+    else:
         # One block without an interface; all of its matrix is filled but rows and columns of flows.
-        filled = np.arange(model.size - model.discrete.unknowns.count(BlockKind.FLOW)).tolist()
-        dense = ca.Sparsity.dense(len(filled), len(filled))
-        dense.enlarge(model.size, model.size, filled, filled)
+        filled = np.arange(model.size - model.discrete.unknowns.count(BlockKind.FLOW))
+        rows, columns = np.meshgrid(filled, filled)
+        dense = ca.Sparsity.triplet(model.size, model.size, rows.ravel().tolist(), columns.ravel().tolist())
         partition = order = Blocks([0] * model.size, pattern + dense)
         if len(filled) < model.size:
             order = Blocks(_flows_apart(model.discrete), partition.pattern)
