@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -19,6 +20,9 @@ from cosserat_casadi.maths.typing import FloatArray
 
 Jacobian: TypeAlias = FloatArray | ca.DM
 """Dense, shape (n, n); or sparse, n×n: of an assembly, whose blocks keep the work linear in the number of rods."""
+
+SparseFactors: TypeAlias = tuple[ca.DM, ca.DM, ca.DM, list[int], list[int]]
+"""Sparse QR factors of CasADi."""
 
 THIN = 1e-13
 """Share of the largest diagonal entry of the triangular factor below which a sparse Jacobian counts as singular."""
@@ -88,7 +92,7 @@ class UpdatedJacobian:
 
     def _apply_inverse(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
         """Apply −B⁻¹ and then one update for each pair of neighbouring steps; None where B gives no solution."""
-        solution = newton_step(self.jacobian, vector)
+        solution = newton_step(self.jacobian, vector, self._factors)
         if solution is None:
             return None
         # B₊⁻¹ = (I + s₊ sᵀ/(s·s)) B⁻¹ for a step s and the step s₊ that followed it.
@@ -97,8 +101,12 @@ class UpdatedJacobian:
             solution = solution + next_step * share
         return solution
 
+    @cached_property
+    def _factors(self) -> SparseFactors | None:
+        return sparse_factors(self.jacobian) if isinstance(self.jacobian, ca.DM) else None
 
-def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
+
+def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors | None = None) -> FloatArray | None:
     """Solve for the Newton step; the shortest one where the Jacobian is singular to rounding.
 
     A rod that symmetry lets turn without energy has a singular Jacobian: along that direction nothing moves.
@@ -106,6 +114,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
     Args:
         jacobian: n×n, dense or sparse.
         residual: shape (n,).
+        factors: those of a sparse Jacobian, by :func:`sparse_factors`, where they serve several steps.
 
     Returns:
         the step, shape (n,); None where it is not finite.
@@ -113,7 +122,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
     if not len(residual):
         return np.zeros(0)
     if isinstance(jacobian, ca.DM):
-        sparse_step = _sparse_step(jacobian, residual)
+        sparse_step = _sparse_step(factors or sparse_factors(jacobian), residual)
         if sparse_step is not None:
             return sparse_step
         # A sparse QR factorisation gives no shortest step.
@@ -183,18 +192,21 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
     return np.asarray(solutions[:, 0], dtype=np.float64)
 
 
-def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:
-    """The Newton step by a sparse QR factorisation; None where that cannot tell the Jacobian from a singular one."""
+def sparse_factors(jacobian: ca.DM) -> SparseFactors | None:
+    """The sparse QR factors of a Jacobian; None where they cannot tell it from a singular one."""
     if not np.all(np.isfinite(jacobian.nonzeros())):
         return None
-    if not np.all(np.isfinite(residual)):
-        return None
-    factors = ca.qr_sparse(jacobian)
+    factors: SparseFactors = ca.qr_sparse(jacobian)
     triangular = factors[1]
     diagonal = ca.diag(triangular).full()[:, 0]
     sizes = np.abs(np.array(diagonal))
     # No estimate of the condition, but free, and enough to hand doubtful ones to the dense method.
-    if sizes.min() <= THIN * sizes.max():
+    return factors if sizes.min() > THIN * sizes.max() else None
+
+
+def _sparse_step(factors: SparseFactors | None, residual: FloatArray) -> FloatArray | None:
+    """The Newton step by sparse factors; None where there are none."""
+    if factors is None or not np.all(np.isfinite(residual)):
         return None
     solution = ca.qr_solve(ca.DM(-residual), *factors)
     return _finite_or_none(np.asarray(solution.full()[:, 0]))

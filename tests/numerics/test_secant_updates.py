@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import casadi as ca
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics import broyden
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.secant_updates import SecantUpdates
 
@@ -66,3 +69,22 @@ def test_correction_without_effect_is_not_finite() -> None:
     corrections = np.ones((STAGES, 4))
     updates.take(corrections)
     assert not np.all(np.isfinite(updates.applied_to(corrections)))
+
+
+def test_a_sparse_jacobian_is_factorised_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps and a response of the same Jacobian, dense and sparse."""
+    random = np.random.default_rng(3)
+    matrix = np.eye(6) + 0.2 * random.normal(size=(6, 6))
+    factorised = []
+    of_package = broyden.sparse_factors
+    monkeypatch.setattr(broyden, "sparse_factors", lambda jacobian: factorised.append(1) or of_package(jacobian))
+    found = []
+    for jacobian in (ca.DM(matrix), matrix):
+        updated = broyden.UpdatedJacobian(jacobian)
+        for residual in np.random.default_rng(4).normal(size=(3, 6)):
+            step = updated.step(residual)
+            assert step is not None
+            updated.steps.append(step)
+        found.append([*updated.steps, updated.response(np.ones(6), np.full(6, 0.1))])
+    assert_allclose(found[0], found[1], rtol=1e-11, atol=0)
+    assert len(factorised) == 1
