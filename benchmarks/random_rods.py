@@ -8,8 +8,12 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+import numpy as np
+
 from cosserat_casadi import Scene, scene_from_dict
+from tests.reference.material_scenes import make_of_matter
 from tests.reference.random_scenes import random_scene
+from tests.reference.rods import rod_of
 
 ROD = "rod"
 
@@ -23,5 +27,14 @@ def tables(seed: int) -> dict[str, Any]:
     return scene
 
 
-def scene_at(seed: int, tolerance: float) -> Scene:
-    return scene_from_dict({**tables(seed), "accuracy": {"tolerance": tolerance}})
+def tables_of_matter(seed: int) -> dict[str, Any]:
+    """The same scene with a law of its material, a chamber and a muscle, each with some luck."""
+    scene = tables(seed)
+    compliance = rod_of(scene).compliance(0.0)[:3]
+    make_of_matter(np.random.default_rng([seed, 17]), scene, 1 / float(compliance.max()) if compliance.any() else 1.0)
+    return scene
+
+
+def scene_at(seed: int, tolerance: float, *, matter: bool = False) -> Scene:
+    scene = tables_of_matter(seed) if matter else tables(seed)
+    return scene_from_dict({**scene, "accuracy": {"tolerance": tolerance}})

@@ -77,6 +77,7 @@ STUDIES = (
         "curved_beam",
         (
             Number("beam.material.youngs_modulus", "E, GPa", 1e-9, "200"),
+            Number("beam.material.terms.0.coefficient", "energy by the fourth power of curvature, J m³"),
             Number("beam.intrinsic.curvature.y[0]", "curvature, mean, 1/m"),
             Number("beam.intrinsic.curvature.y[1]", "curvature, linear, 1/m"),
             Number("beam.intrinsic.curvature.y[2]", "curvature, quadratic, 1/m"),
@@ -113,6 +114,14 @@ STUDIES = (
             Number("wing.stiffness.bending_y", "EI, N m²", 1.0, "4.47 to 5.25"),
             Number("wing.stiffness.torsion", "GJ, N m²", 1.0, "6.5 to 7.6; 17.4 at the tip"),
             Number("wing.base.position.z", "height of the root, mm", 1e3),
+        ),
+    ),
+    Study(
+        "rubber",
+        (
+            Number("strip.material.youngs_modulus", "E, MPa", 1e-6, "1.24"),
+            Number("strip.material.c2", "c2, kPa", 1e-3),
+            Number("strip.material.c3", "c3, kPa", 1e-3),
         ),
     ),
     Study(
