@@ -279,4 +279,9 @@ def _branches(rod: scenes.Rod) -> tuple[MaxwellBranch, ...]:
     """Maxwell branches beside the elasticity of a rod."""
     if rod.damping is None:
         return ()
-    return tuple(MaxwellBranch(branch.share, branch.time) for branch in rod.damping.prony)
+    branches = []
+    for branch in rod.damping.prony:
+        named = [getattr(branch, name) for name in STRAINS]
+        shares = tuple(branch.share if share is None else share for share in named)
+        branches.append(MaxwellBranch(shares, branch.time))
+    return tuple(branches)

@@ -73,11 +73,11 @@ class MaxwellBranch:
     """A spring and a dashpot in series beside the elasticity of a rod.
 
     Attributes:
-        share: stiffness of the spring over the instantaneous one of the rod.
+        shares: stiffness of the spring over the instantaneous one of the rod, of each of the six strains.
         time: relaxation time, s.
     """
 
-    share: Scalar
+    shares: tuple[Scalar, ...]
     time: Scalar
 
 

@@ -3,8 +3,8 @@
 A branch is a spring of stiffness c_i H in series with a dashpot of relaxation time τ_i. Its spring is stretched by
 e_i = τ_i ẇ_i, w_i the strain of the dashpot, so that ė_i = ξ̇ − ẇ_i is τ_i ẅ_i + ẇ_i = ξ̇: an equation of motion like
 those of the rod, in which w_i itself does not appear. With the shares s_i of the instantaneous stiffness H/(1 − Σ s),
-c_i = s_i / (1 − Σ s). N. W. Tschoegl, *The Phenomenological Theory of Linear Viscoelastic Behavior*, Springer 1989,
-section 3.5; docs/theory.md, section 11.
+by strain, c_i = s_i / (1 − Σ s). N. W. Tschoegl, *The Phenomenological Theory of Linear Viscoelastic
+Behavior*, Springer 1989, section 3.5; docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Relaxation:
     @cached_property
     def force(self) -> Matrix:
         """ℓ ∫ Φᵀ Σ c_i H e_i dX / (EI/ℓ), n×1, without unit: a part of the residual."""
-        return self._stiffness @ (self._strain @ self._factors)
+        return self._stiffness @ ca.sum2(self._strain * self._factors)
 
     @cached_property
     def equations(self) -> Matrix:
@@ -73,7 +73,7 @@ class Relaxation:
             by_strain_rate = by_strain_rate / self.rates.shape.ratio
             by_strain = one * (self.rates.shrinking / self.rates.shape.ratio)
         return RelaxationMatrices(
-            force_by_rate=ca.kron((self._factors * self._times).T, self._stiffness),
+            force_by_rate=ca.horzcat(*[self._stiffness @ ca.diag(column) for column in ca.horzsplit(self._viscous)]),
             by_strain=ca.repmat(by_strain, branches, 1),
             by_strain_rate=ca.repmat(by_strain_rate, branches, 1),
             by_rate=ca.DM.eye(size * branches),
@@ -88,7 +88,7 @@ class Relaxation:
     @cached_property
     def dissipated_power(self) -> Matrix:
         """Power that the dashpots turn into heat, ℓ ∫ Σ ẇ_iᵀ c_i τ_i H ẇ_i dX, 1×1, W; never negative."""
-        return self._lengthened(self._sum_of_squares(self.velocity, self._factors * self._times))
+        return self._lengthened(self._sum_of_squares(self.velocity, self._viscous))
 
     @cached_property
     def lengthening_power(self) -> Matrix:
@@ -102,8 +102,8 @@ class Relaxation:
         return self.velocity @ ca.diag(self._times)
 
     def _sum_of_squares(self, columns: Matrix, factors: Matrix) -> Matrix:
-        """Σ factor_i column_iᵀ K column_i in joules over the unit of the columns, 1×1."""
-        return self.rates.shape.rod.energy_unit * ca.sum1(ca.sum2((columns * (self._stiffness @ columns)) @ factors))
+        """Σ column_iᵀ diag(factor_i) K column_i in joules over the unit of the columns, 1×1."""
+        return self.rates.shape.rod.energy_unit * ca.sum1(ca.sum2(columns * (self._stiffness @ columns) * factors))
 
     def _lengthened(self, per_reference_length: Matrix) -> Matrix:
         ratio = self.rates.shape.ratio
@@ -115,9 +115,19 @@ class Relaxation:
 
     @property
     def _factors(self) -> Matrix:
-        """c_i, B×1."""
-        shares = [branch.share for branch in self.rates.shape.rod.properties.branches]
-        return ca.vertcat(*shares) / (1 - sum(shares))
+        """c_i of each coordinate, n×B: one of all coordinates of a strain, so that it commutes with K."""
+        rod = self.rates.shape.rod
+        rows = []
+        for component, columns in rod.columns.items():
+            shares = [branch.shares[component] for branch in rod.properties.branches]
+            row = ca.horzcat(*shares) / (1 - sum(shares))
+            rows.append(ca.repmat(row, columns.stop - columns.start, 1))
+        return ca.vertcat(*rows)
+
+    @property
+    def _viscous(self) -> Matrix:
+        """c_i τ_i of each coordinate, n×B, s."""
+        return self._factors @ ca.diag(self._times)
 
     @property
     def _times(self) -> Matrix:

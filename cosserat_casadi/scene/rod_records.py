@@ -160,16 +160,25 @@ Row6 = Annotated[tuple[Number, Number, Number, Number, Number, Number], listed(6
 StiffnessMatrix = Annotated[tuple[Row6, Row6, Row6, Row6, Row6, Row6], listed(6, "6 rows of 6 numbers")]
 
 
+ShareOfStiffness = Annotated[Number, Field(gt=0, lt=1)]
+
+
 class PronyTerm(Record):
     """A spring and a dashpot in series beside the rod's own elasticity: its stress relaxes."""
 
     example: ClassVar[str] = """\
-damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, time = 0.5 }] }
+damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, torsion = 0.05, time = 0.5 }] }
 """
 
-    share: Annotated[Number, Field(gt=0, lt=1)] = Field(
+    share: ShareOfStiffness = Field(
         description="stiffness over the instantaneous one of the rod, below 1, without unit"
     )
+    bending_x: ShareOfStiffness | None = Field(None, description="share of bending about local x, if another")
+    bending_y: ShareOfStiffness | None = Field(None, description="share of bending about local y, if another")
+    torsion: ShareOfStiffness | None = Field(None, description="share of torsion, if another")
+    shear_x: ShareOfStiffness | None = Field(None, description="share of shear along local x, if another")
+    shear_y: ShareOfStiffness | None = Field(None, description="share of shear along local y, if another")
+    extension: ShareOfStiffness | None = Field(None, description="share of extension, if another")
     time: Positive = Field(description="relaxation time τ of its stress at constant strain, s")
 
 
@@ -198,7 +207,7 @@ damping = { retardation_time = 0.01 }
     shear_y: SizeOrZero | None = Field(None, description="damping of shear along local y, N s; 0 when left out")
     extension: SizeOrZero | None = Field(None, description="damping of extension, N s; 0 when left out")
     prony: tuple[PronyTerm, ...] = Field(
-        (), description="branches whose stress relaxes, each a spring and a dashpot in series; of all strains alike"
+        (), description="branches whose stress relaxes, each a spring and a dashpot in series"
     )
 
     @property
@@ -218,7 +227,9 @@ damping = { retardation_time = 0.01 }
             yield Fault(("retardation_time",), "missing", remedy)
         branches = given.get("prony", ())
         if isinstance(branches, list | tuple):
-            total = sum(sum(numbers_of(branch.get("share"))) for branch in branches if isinstance(branch, Mapping))
+            tables = [branch for branch in branches if isinstance(branch, Mapping)]
+            shares = [[numbers_of(table.get(name, table.get("share"))) for table in tables] for name in STRAINS]
+            total = max(sum(map(sum, of_strain)) for of_strain in shares)
             if total >= 1.0:
                 problem = f"must have shares that add up to less than 1, got {shown(total)}"
                 yield Fault(("prony",), problem, "what is left of the instantaneous stiffness carries loads at rest")
@@ -364,10 +375,15 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         damping = given.get("damping")
         # Without a sound choice of strains none is known to be left out.
         if isinstance(damping, Mapping) and admitted:
-            for name in STRAINS:
-                if name in damping and name not in admitted:
-                    remedy = f"its strains: {', '.join(admitted)}"
-                    yield Fault(("damping", name), "is of a strain that the rod does not admit", remedy)
+            branches = damping.get("prony")
+            tables: list[tuple[tuple[str | int, ...], Any]] = [(("damping",), damping)]
+            if isinstance(branches, list | tuple):
+                tables += [(("damping", "prony", i), branch) for i, branch in enumerate(branches)]
+            remedy = f"its strains: {', '.join(admitted)}"
+            for place, table in tables:
+                for name in STRAINS:
+                    if isinstance(table, Mapping) and name in table and name not in admitted:
+                        yield Fault((*place, name), "is of a strain that the rod does not admit", remedy)
 
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:

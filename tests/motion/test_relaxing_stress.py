@@ -211,6 +211,21 @@ def test_modes_are_roots_of_the_cubic() -> None:
     assert_allclose(nearest, 0.0, rtol=0, atol=1e-10)
 
 
+def test_every_strain_relaxes_by_its_own_share() -> None:
+    """Twist and stretch of a straight rod are two rods: the spectrum is that of both, each with its share."""
+    stiffness = {"torsion": 2.0, "extension": AXIAL}
+    shares = {"torsion": 0.1, "extension": SHARE}
+    expected = []
+    for strains in (["torsion"], ["extension"], ["torsion", "extension"]):
+        named = {name: shares[name] for name in strains if len(strains) > 1 and name == "extension"}
+        table = bar({"prony": [{"share": shares[strains[0]], "time": TIME, **named}]}, modes=3)
+        table["rods"][0].update(strain=strains, stiffness={name: stiffness[name] for name in strains})
+        table["rods"][0]["rotary_inertia"] = moving_scenes.ROTARY
+        expected.append(modes_of(solve(build(scene_from_dict(table)))).spectrum)
+    both = np.concatenate(expected[:2])
+    assert_allclose(expected[2], both[np.argsort(np.abs(both))], rtol=1e-9, atol=0)
+
+
 def test_statics_pays_nothing() -> None:
     at_rest = build(scene_from_dict(bent(damping={"prony": TWO_BRANCHES})))
     plain = build(scene_from_dict(bent(damping={"retardation_time": 0.01})))
@@ -236,6 +251,8 @@ def test_a_model_at_rest_says_that_it_has_no_stress_that_relaxes() -> None:
     ("damping", "message"),
     [
         ({"prony": [{"share": 0.6, "time": 0.1}, {"share": 0.4, "time": 0.2}]}, "add up to less than 1"),
+        ({"prony": [{"share": 0.6, "time": 0.1}, {"share": 0.1, "torsion": 0.4, "time": 0.2}]}, "less than 1"),
+        ({"prony": [{"share": 0.1, "extension": 0.4, "time": 0.2}]}, r"prony\[0\].extension: is of a strain"),
         ({"prony": [{"share": 0.0, "time": 0.1}]}, "share"),
         ({"prony": [{"share": 0.5, "time": 0.0}]}, "time"),
         ({"prony": []}, "retardation_time"),
