@@ -14,7 +14,7 @@ from scipy.integrate import dblquad, quad, solve_ivp
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from cosserat_casadi import Outcome, Scene, Solution, build, scene_from_dict, solve
+from cosserat_casadi import Outcome, PathOutcome, Scene, Solution, build, follow, modes_of, scene_from_dict, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.materials import Law, LawOfRod
 from cosserat_casadi.rod.properties import EnergyBeyondHooke
@@ -171,6 +171,18 @@ def test_pure_stretch_vs_closed_form(name: str, section: dict[str, Any]) -> None
         force = nominal_stress(name, stretch) * areas[section["shape"]]
         solution = solved(loaded(rod(LAWS[name], section, ["extension"]), modes=1, force=[0, 0, force]))
         assert_allclose(solution.tip().position[0, 2], stretch * LENGTH, rtol=1e-10, atol=0)
+
+
+@pytest.mark.parametrize("force", [-20.0, 60.0])
+def test_stretched_rubber_vibrates_by_its_tangent(force: float) -> None:
+    """Fixed and free along itself: ω = π/2 √(F'(λ)/m)/ℓ with F' = μA (1 + 2/λ³) and the unloaded length and mass."""
+    bar = rod({"law": "neo_hookean", "density": 1000.0}, CIRCLE, ["extension"])
+    solution = solve(build(loaded(bar, modes=6, nodes=10, force=[0.0, 0.0, force])))
+    area = np.pi * RADIUS**2
+    stretch = brentq(lambda value: nominal_stress("neo_hookean", value) * area - force, 0.3, 5.0)
+    tangent = E / 3 * area * (1 + 2 / stretch**3)
+    slowest = np.pi / 2 * np.sqrt(tangent / (1000.0 * area)) / LENGTH
+    assert_allclose(modes_of(solution, count=1).angular_frequencies, slowest, rtol=1e-8, atol=0)
 
 
 @pytest.mark.parametrize("name", RUBBERS)
@@ -369,6 +381,9 @@ def test_strain_beyond_a_table_is_told() -> None:
     solution = solve(scene)
     assert solution.outcome is Outcome.BEYOND_MATERIAL
     assert "material of 'rod'" in solution.message
+    path = follow(scene, "push.force", [0.2, 0, 0])
+    assert path.outcome is PathOutcome.BEYOND_MATERIAL
+    assert "material of 'rod'" in path.message
 
 
 def test_softening_material_is_told_where_it_sets_energy_free() -> None:
