@@ -40,6 +40,7 @@ SUMS = {ca.OP_ADD, ca.OP_SUB}
 SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
 SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
 ADDING = {ca.OP_SETNONZEROS, ca.OP_ADDNONZEROS}
+REDUCTIONS = {ca.OP_DOT: ca.dot, ca.OP_MMIN: ca.mmin, ca.OP_MMAX: ca.mmax}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
@@ -384,8 +385,8 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
         UnknownInstructionError: CasADi has no way to put them there.
     """
     result: ca.MX
-    if code == ca.OP_DOT:
-        result = ca.dot(*operands)
+    if code in REDUCTIONS:
+        result = REDUCTIONS[code](*operands)
         return result
     before = [node.dep(i) for i in range(node.n_dep())]
     if any(operand.is_output() for operand in before):

@@ -119,6 +119,7 @@ def test_every_kind_of_instruction() -> None:
         # CasADi cannot put other operands in the place of results of a split.
         ca.dot(low[:10], high) * ca.dot(left, x),
         ca.dot(left, right),
+        ca.mmin(low) - ca.mmax(high),
         ca.mac(s, x, x),
         x / ca.norm_2(ca.vec(x)),
         ca.sumsqr(x) - ca.mmax(s),
