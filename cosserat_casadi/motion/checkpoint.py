@@ -9,15 +9,15 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_forces import MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.one_sided import Closed
 from cosserat_casadi.numerics.integration import StepSettings
@@ -107,14 +107,9 @@ class Checkpoint:
     tips: dict[str, list[float]]
 
     def to_data(self) -> dict[str, Any]:
-        """The checkpoint as dictionaries, lists, arrays and numbers."""
-        return {
-            "time": self.time,
-            "error": self.error,
-            "energy": asdict(self.energy),
-            "tips": self.tips,
-            "strands": [_strand_data(strand) for strand in self.strands],
-        }
+        """The checkpoint as dictionaries, lists, arrays and numbers, field by field."""
+        data: dict[str, Any] = _data(self)
+        return data
 
     @staticmethod
     def from_data(data: Mapping[str, Any]) -> Checkpoint:
@@ -124,13 +119,8 @@ class Checkpoint:
             KeyError: an entry is missing.
             TypeError: one is of another type; likewise ValueError.
         """
-        return Checkpoint(
-            time=float(data["time"]),
-            strands=tuple(_strand(strand) for strand in data["strands"]),
-            error=_number(data["error"]),
-            energy=EnergyAccount(**data["energy"]),
-            tips=dict(data["tips"]),
-        )
+        checkpoint: Checkpoint = _value(Checkpoint, data)
+        return checkpoint
 
 
 def read_checkpoint(path: str | Path) -> Checkpoint | None:
@@ -155,95 +145,43 @@ def read_checkpoint(path: str | Path) -> Checkpoint | None:
         raise SceneError(Problem(WHERE, problem, "write it with cosserat simulate SCENE --output")) from error
 
 
-def _strand_data(strand: Strand) -> dict[str, Any]:
-    resume = strand.resume
-    memory = resume.memory
-    return {
-        "discretisation": {name: asdict(one) for name, one in strand.discretisation.items()},
-        "tolerance": strand.settings.tolerance,
-        "newton": strand.settings.newton,
-        "size": strand.settings.size,
-        "gauss": strand.gauss,
-        "factor": strand.factor,
-        "at": _instant_data(resume.at),
-        "phases": _phases_data(resume.phases, resume.places),
-        "guard": resume.guard,
-        "first": resume.first,
-        "memory": None if memory is None else {**vars(memory), "linearised_at": _instant_data(memory.linearised_at)},
-    }
+def _data(value: Any) -> Any:
+    """A value as plain data: records as dictionaries, by the names of their fields."""
+    if is_dataclass(value):
+        return {entry.name: _data(getattr(value, entry.name)) for entry in _written(type(value))}
+    if isinstance(value, dict):
+        return {key: _data(entry) for key, entry in value.items()}
+    if isinstance(value, tuple | list | frozenset):
+        return [_data(entry) for entry in value]
+    # Files have no number that is not finite.
+    return str(value) if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def _strand(data: Mapping[str, Any]) -> Strand:
-    memory = data["memory"]
-    phases, places = _phases(data["phases"])
-    resume = Resume(
-        at=_instant(data["at"]),
-        phases=phases,
-        places=places,
-        guard=data["guard"],
-        first=float(data["first"]),
-        memory=None if memory is None else _memory(memory),
-    )
-    settings = StepSettings(_array(data["tolerance"]), data["size"], newton=float(data["newton"]))
-    discretisation = {
-        name: Discretisation(tuple(one["modes"]), one["nodes"], tuple(one["breaks"]), one["transport"])
-        for name, one in data["discretisation"].items()
-    }
-    return Strand(discretisation, settings, bool(data["gauss"]), float(data["factor"]), resume)
+def _value(kind: Any, data: Any) -> Any:
+    """The value of a type with such data."""
+    origin, arguments = get_origin(kind), get_args(kind)
+    if origin in (Union, UnionType):
+        if data is None:
+            return None
+        (member,) = (one for one in arguments if one is not NoneType and is_dataclass(one) == isinstance(data, dict))
+        return _value(member, data)
+    if origin is np.ndarray:
+        return _array(data)
+    if origin is dict:
+        return {key: _value(arguments[1], entry) for key, entry in data.items()}
+    if origin is not None:
+        return origin(_value(arguments[0], entry) for entry in data)
+    types = get_type_hints(kind)
+    if hasattr(kind, "__dataclass_fields__"):
+        return kind(**{entry.name: _value(types[entry.name], data[entry.name]) for entry in _written(kind)})
+    if issubclass(kind, tuple):
+        return kind(*map(_value, types.values(), data))
+    return kind(data)
 
 
-def _memory(data: Mapping[str, Any]) -> CarriedStep:
-    at = data["linearised_at"]
-    return CarriedStep(
-        begun=float(data["begun"]),
-        size=float(data["size"]),
-        unknowns=_array(data["unknowns"]),
-        wanted=float(data["wanted"]),
-        error=_number(data["error"]),
-        longest=float(data["longest"]),
-        linearised_at=None if at is None else _instant(at),
-    )
-
-
-def _instant_data(instant: Instant | None) -> dict[str, Any] | None:
-    return None if instant is None else {"t": instant.time, "x": instant.x, "v": instant.v, "a": instant.a}
-
-
-def _instant(data: Mapping[str, Any]) -> Instant:
-    return Instant(float(data["t"]), _array(data["x"]), _array(data["v"]), _array(data["a"]))
-
-
-def _phases_data(phases: ContactPhase | Closed, places: tuple[float, ...]) -> dict[str, Any]:
-    if not isinstance(phases, ContactPhase):
-        return {"taut": list(phases)}
-    return {
-        "touches": [list(touch) for touch in phases.touches],
-        "laid": sorted(phases.laid),
-        "places": list(places),
-        "floors": list(phases.floors),
-        "forces_from": phases.forces_from,
-        "moment": phases.moment,
-        "changes": phases.changes,
-    }
-
-
-def _phases(data: Mapping[str, Any]) -> tuple[ContactPhase | Closed, tuple[float, ...]]:
-    if "taut" in data:
-        return tuple(bool(taut) for taut in data["taut"]), ()
-    phase = ContactPhase(
-        touches=tuple(MovingContact(*touch) for touch in data["touches"]),
-        laid=frozenset(data["laid"]),
-        floors=tuple(_array(floors) for floors in data["floors"]),
-        forces_from=_number(data["forces_from"], -np.inf),
-        moment=_number(data["moment"], -np.inf),
-        changes=int(data["changes"]),
-    )
-    return phase, tuple(float(place) for place in data["places"])
-
-
-def _number(value: Any, missing: float = float("nan")) -> float:
-    """A number; files have no word for one that is not finite."""
-    return missing if value is None else float(value)
+def _written(record: Any) -> list[Field[Any]]:
+    """Fields of a record that are written: a field with a factory is made of the others."""
+    return [entry for entry in fields(record) if entry.default_factory is MISSING]
 
 
 def _array(value: Any) -> FloatArray:
