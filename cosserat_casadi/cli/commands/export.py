@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -105,47 +106,22 @@ def export(
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
+    files = {"--page": page, "--fmu": fmu, "--mjcf": mjcf}
+    parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
+    of_sources = {
+        **{f"--{part}": wanted for part, wanted in parts.items()},
+        "--over": over is not None,
+        "--period": period is not None,
+        "--no-error-estimate": not estimate_errors,
+    }
     # All that can be refused is refused before the solve, which may take a minute.
-    if output is None and page is None and fmu is None and mjcf is None:
-        remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
-        raise ExportError(Problem("--output", "missing", remedy))
-    if output is None:
-        asked = {
-            "--derivatives": derivatives,
-            "--dynamics": dynamics,
-            "--stability": stability,
-            "--batches": batches,
-            "--over": over is not None,
-            "--period": period is not None,
-            "--no-error-estimate": not estimate_errors,
-        }
-        _refuse_without_sources(asked)
-    else:
-        check_export(output, name)
-    if page is not None:
-        check_writable(page, "--page")
-    if fmu is not None:
-        check_fmu(fmu)
-    if mjcf is not None:
-        check_mjcf(mjcf)
-    check_inputs_stay(_written_files(output, page, fmu, mjcf), scene, settings, over)
+    _check_files(output, files, name, of_sources)
+    check_inputs_stay({**files, **_earlier_files(output)}, scene, settings, over)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
     if exported_scene.tubes:
-        unknown = {
-            "--derivatives": derivatives,
-            "--dynamics": dynamics,
-            "--stability": stability,
-            "--batches": batches,
-            "--over": over is not None,
-            "--range": bool(ranges),
-            "--page": page is not None,
-            "--fmu": fmu is not None,
-            "--mjcf": mjcf is not None,
-            "--period": period is not None,
-            "--no-error-estimate": not estimate_errors,
-        }
-        check_tubes(unknown)
+        of_files = {option: file is not None for option, file in files.items()}
+        check_tubes({**of_sources, "--range": bool(ranges), **of_files})
         assert output is not None
         _export_tubes(exported_scene, output, name)
         return
@@ -156,13 +132,7 @@ def export(
     check_period(exported_scene, period)
     cases = None
     if output is not None:
-        asked_of_contact = {
-            "derivatives": derivatives,
-            "dynamics": dynamics,
-            "stability": stability,
-            "batches": batches,
-        }
-        check_contact(exported_scene, asked_of_contact)
+        check_contact(exported_scene, parts)
     layout = case_layout(exported_scene)
     asked = asked_ranges(ranges, exported_scene)
     if over is not None or (ranges and exported_scene.touches_exactly):
@@ -202,10 +172,7 @@ def export(
             name,
             error_estimate=estimate,
             verified=verified,
-            derivatives=derivatives,
-            dynamics=dynamics,
-            stability=stability,
-            batches=batches,
+            **parts,
             load_cases=cases,
             period=period,
             estimate_errors=estimate_errors,
@@ -266,20 +233,32 @@ def _export_tubes(scene: Scene, output: Path, name: str) -> None:
     print_tubes_export(Console(), solution, output)
 
 
-def _written_files(
-    output: Path | None, page: Path | None, fmu: Path | None, mjcf: Path | None
-) -> dict[str, Path | None]:
-    """Files that an export writes over, by option, and the files of an earlier export in the folder."""
-    written = {"--page": page, "--fmu": fmu, "--mjcf": mjcf}
-    if output is not None and output.is_dir():
-        # Names of files are no options: they tell the many of one folder apart.
-        written |= {f"--output, {file.name}": file for file in output.iterdir()}
-    return written
+def _check_files(
+    output: Path | None, files: Mapping[str, Path | None], name: str, of_sources: Mapping[str, bool]
+) -> None:
+    """Refuse an export without a file, files that cannot be written, and options of sources in C without a folder."""
+    if output is None and not any(files.values()):
+        remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
+        raise ExportError(Problem("--output", "missing", remedy))
+    if output is None:
+        remedy = "name a folder for them with --output, or leave it out"
+        lost = [Problem(option, "is for the sources in C", remedy) for option, asked in of_sources.items() if asked]
+        if lost:
+            raise ExportError(*lost)
+    else:
+        check_export(output, name)
+    checks: dict[str, Callable[[Path], None]] = {
+        "--page": partial(check_writable, option="--page"),
+        "--fmu": check_fmu,
+        "--mjcf": check_mjcf,
+    }
+    for option, file in files.items():
+        if file is not None:
+            checks[option](file)
 
 
-def _refuse_without_sources(options: Mapping[str, bool]) -> None:
-    """Refuse options that only sources in C know: page and FMU have no such parts."""
-    remedy = "name a folder for them with --output, or leave it out"
-    problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
-    if problems:
-        raise ExportError(*problems)
+def _earlier_files(output: Path | None) -> dict[str, Path]:
+    """Files of an earlier export in the folder, which are written over."""
+    # Names of files are no options: they tell the many of one folder apart.
+    there = output.iterdir() if output is not None and output.is_dir() else ()
+    return {f"--output, {file.name}": file for file in there}
