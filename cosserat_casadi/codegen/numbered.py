@@ -215,7 +215,9 @@ def function_of(program: Program) -> ca.Function:
     def keep(value: Value, computed: ca.MX) -> None:
         if len(value.numbers):
             (owner,) = set(origins.owners(value.numbers).tolist())
-            columns[owner] = ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz())))
+            # CasADi leaves out entries that come out zero: a factor may be a constant zero now.
+            entries = ca.project(computed, value.pattern)
+            columns[owner] = ca.vec(ca.sparsity_cast(entries, ca.Sparsity.dense(entries.nnz())))
 
     def matrix(value: Value) -> ca.MX:
         entries = _gathered(origins, columns, value.numbers)

@@ -84,6 +84,14 @@ def test_function_of_a_model_is_the_same_as_steps(model: Model, name: str) -> No
     assert_same(written, function, 1e-14)
 
 
+def test_steps_whose_entries_come_out_zero() -> None:
+    """CasADi leaves them out where a factor is a constant zero: their places stay."""
+    a, x = ca.MX.sym("a"), ca.MX.sym("x", 9)
+    weighted = ca.Function("weighted", [a, x], [ca.dot(x, a * x)])
+    function = ca.Function("outer", [x], [x[0] + weighted(0, x)])
+    assert_same(function_of(program_of(function)), function, 0.0)
+
+
 @pytest.mark.parametrize("name", mostly_slow(FUNCTIONS, quick=["rate", "residual", "second_derivative", "shape"]))
 def test_function_of_a_model_is_the_same_in_c(model: Model, name: str) -> None:
     function = FUNCTIONS[name](model)
