@@ -46,6 +46,7 @@ PULL = {
     "moment": [0.1, 0.05, 0.2],
 }
 JET = {**PULL, "name": "jet", "frame": "body"}
+PIN = {"rod": "a", "kind": "pinned", "position": [0.2, 0.0, 0.7]}
 IN_PLANE = {"name": "push", "kind": "tip_wrench", "rod": "a", "force": [0.4, 0.0, -0.4]}
 
 # Products of inertia, and a centre of mass off the origin.
@@ -185,7 +186,11 @@ RELAXING: dict[str, Callable[[], Tables]] = {
 }
 """Rods whose stress relaxes: what their branches move by has no kinetic energy."""
 
-ALL = {**FAMILIES, **RELAXING}
+ALL = {
+    **FAMILIES,
+    **RELAXING,
+    "planar held": lambda: scene(rod(strain=["bending_y", "extension"]), loads=[IN_PLANE], supports=[PIN]),
+}
 
 
 @cache

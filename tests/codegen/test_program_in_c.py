@@ -74,7 +74,7 @@ def in_c(function: ca.Function, stem: str) -> tuple[dict[str, str], ca.Function]
     return texts, ca.external(stem, os.fspath(compiled_texts(stem, texts, find_compiler())))
 
 
-@pytest.mark.parametrize("name", list(FUNCTIONS))
+@pytest.mark.parametrize("name", mostly_slow(FUNCTIONS, quick=["igm", "tip_jacobian"]))
 def test_function_of_a_model_is_the_same_as_steps(model: Model, name: str) -> None:
     function = FUNCTIONS[name](model)
     if function.is_a("SXFunction"):
@@ -207,12 +207,11 @@ def test_a_loop_over_entries_that_are_all_alike() -> None:
     assert_same(in_c(function, "alike_in_c")[1], function, 1e-15)
 
 
-@pytest.mark.parametrize("name", ["rate", "second_derivative"])
-def test_small_steps_in_several_bundles(model: Model, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_small_steps_in_several_bundles(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     """A bundle keeps the numbers that later ones read."""
     monkeypatch.setattr("cosserat_casadi.codegen.program_in_c.LONGEST_BUNDLE", 20)
-    function = FUNCTIONS[name](model)
-    assert_same(in_c(function, f"{name}_in_bundles")[1], function, 1e-13)
+    function = model.path_rate
+    assert_same(in_c(function, "rate_in_bundles")[1], function, 1e-13)
 
 
 def test_entries_that_lie_apart_are_gathered() -> None:

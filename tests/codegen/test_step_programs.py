@@ -112,7 +112,7 @@ def test_float_vs_double(motion_library: MotionLibrary) -> None:
 
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
-@pytest.mark.parametrize("family", mostly_slow(["planar", "fixed joint"], quick=["fixed joint"]))
+@pytest.mark.parametrize("family", mostly_slow(["planar", "planar held", "fixed joint"], quick=["planar held"]))
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 def test_sources_pass_every_lint_in_both_languages(
     motion_library: MotionLibrary, family: str, language: str, single: bool
@@ -128,12 +128,12 @@ def test_sources_pass_every_lint_in_both_languages(
 
 def test_the_step_is_the_same_file_in_every_folder(motion_library: MotionLibrary) -> None:
     for file in MOTION_FILES:
-        texts = {(motion_library(family).folder / file).read_text() for family in ("planar", "fixed joint")}
+        texts = {(motion_library(family).folder / file).read_text() for family in ("planar", "planar held")}
         assert len(texts) == 1
 
 
 def test_workspace_is_what_the_readme_says(motion_library: MotionLibrary) -> None:
-    for family in ("planar", "fixed joint"):
+    for family in ("planar", "planar held"):
         made = motion_library(family)
         _, said = stated(made)
         assert abs(made.handle[f"{made.name}_workspace_size"]() - said) <= 150
