@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.estimation import Estimate
-from cosserat_casadi.files import write_atomically
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
+from cosserat_casadi.results.json_text import discretisation_entries
 
 
 def estimate_result(found: Estimate) -> dict[str, Any]:
-    """An estimate as plain data; a number that is not known becomes null."""
+    """An estimate as the data of its file."""
     rows = [
         {
             "row": case,
@@ -29,30 +25,26 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
         }
         for i, (case, outcome) in enumerate(zip(found.cases, found.outcomes, strict=True))
     ]
-    data: dict[str, Any] = plain(
-        {
-            "schema": SCHEMA,
-            "message": found.message,
-            "unknowns": list(found.labels),
-            "units": list(found.units),
-            "outcomes": found.counts,
-            "shared": _shared(found),
-            "consistency": {
-                "holds": found.consistency.holds,
-                "squares": found.consistency.squares,
-                "expected": found.consistency.freedom,
-                "deviations": found.consistency.deviations,
-                "bias": [{"sensor": name, "deviations": bias} for name, bias in found.consistency.bias.items()],
-            },
-            "unseen": [{"direction": direction, "rows": count} for direction, count in found.unseen.items()],
-            "within_tolerance": found.within_tolerance,
-            "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
-            "warnings": list(found.warnings),
-            "discretisation": discretisation_entries(found.model),
-            "rows": rows,
-        }
-    )
-    return data
+    return {
+        "message": found.message,
+        "unknowns": list(found.labels),
+        "units": list(found.units),
+        "outcomes": found.counts,
+        "shared": _shared(found),
+        "consistency": {
+            "holds": found.consistency.holds,
+            "squares": found.consistency.squares,
+            "expected": found.consistency.freedom,
+            "deviations": found.consistency.deviations,
+            "bias": [{"sensor": name, "deviations": bias} for name, bias in found.consistency.bias.items()],
+        },
+        "unseen": [{"direction": direction, "rows": count} for direction, count in found.unseen.items()],
+        "within_tolerance": found.within_tolerance,
+        "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
+        "warnings": list(found.warnings),
+        "discretisation": discretisation_entries(found.model),
+        "rows": rows,
+    }
 
 
 def _shared(found: Estimate) -> list[dict[str, Any]]:
@@ -72,25 +64,16 @@ def _second_best(found: Estimate, case: int) -> dict[str, Any]:
     return {"share": second.share[case], "second": {"value": second.values[case], "cost": second.cost[case]}}
 
 
-def estimate_table(found: Estimate) -> str:
-    """The rows as CSV: where they are, how they ended, unknowns with deviations; empty where not found.
+def estimate_table(found: Estimate) -> tuple[list[str], list[list[Any]]]:
+    """Header and rows: where they are, how they ended, unknowns with deviations; NaN where not found.
 
     Where several searches were made for a row: the share of the posterior mass that these values stand for, and the
     second-best values.
     """
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
     pairs = [name for label in found.labels for name in (label, f"{label}.sigma")]
     numbers = np.stack([found.values, found.sigma], axis=2).reshape(len(found.cases), -1)
     if found.second is not None:
         pairs += ["share", *(f"{label}.second" for label in found.labels)]
         numbers = np.column_stack([numbers, found.second.share, found.second.values])
-    writer.writerow(["row", "outcome", *pairs])
-    for case, outcome, row in zip(found.cases, found.outcomes, numbers.tolist(), strict=True):
-        writer.writerow([case, outcome, *("" if np.isnan(number) else repr(number) for number in row)])
-    return lines.getvalue()
-
-
-def write_estimate_table(found: Estimate, file: Path) -> None:
-    """Write the rows as CSV, whole or not at all."""
-    write_atomically(file, estimate_table(found).encode())
+    endings = zip(found.cases, found.outcomes, numbers.tolist(), strict=True)
+    return ["row", "outcome", *pairs], [[case, outcome, *row] for case, outcome, row in endings]

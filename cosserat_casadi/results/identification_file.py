@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
+from cosserat_casadi.results.json_text import discretisation_entries
 from cosserat_casadi.scene.values import names_in
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
@@ -18,10 +18,9 @@ MOST_OUTLIERS = 100
 
 
 def identification_result(found: Identification) -> dict[str, Any]:
-    """The end of an identification as plain data; a number that is not known becomes null."""
+    """The end of an identification as the data of its file."""
     starts, ended_here = found.starts
-    data = {
-        "schema": SCHEMA,
+    return {
         "converged": found.converged,
         "outcome": found.outcome,
         "message": found.message,
@@ -53,8 +52,6 @@ def identification_result(found: Identification) -> dict[str, Any]:
         **_steps(found),
         "discretisation": _discretisation(found),
     }
-    plain_data: dict[str, Any] = plain(data)
-    return plain_data
 
 
 def _discretisation(found: Identification) -> dict[str, Any]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.results.json_text import csv_text
 
 MET = "met"
 """Outcome of a row whose target is met."""
@@ -18,10 +17,6 @@ MISSED = "missed"
 
 UNSTABLE = "unstable"
 """Outcome of a row whose equilibrium a real rod leaves."""
-
-
-_WORDS = {True: "true", False: "false", None: None}
-"""Cells for true, false and values without a meaning."""
 
 
 def row_outcome(inverse: Inverse, unstable: bool) -> str:
@@ -47,20 +42,18 @@ def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> 
         unstable: as in :func:`row_outcome`.
     """
     indices = column_indices(found[0].solution.model.inputs)
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
     gaps = ("position_gap", "angle_gap", "position_error_estimate", "angle_error_estimate")
     errors = ("error_estimate", "within_tolerance")
-    writer.writerow([*table.columns, "outcome", *gaps, *errors, *indices])
+    rows = []
     for given, inverse in zip(table.values.tolist(), found, strict=True):
         cells: list[object] = [*given, row_outcome(inverse, unstable)]
         # Where no equilibrium was found there is nothing to give.
         if inverse.solution.converged:
             (gap,) = inverse.gaps
             cells += [gap.position, gap.angle, gap.position_error, gap.angle_error]
-            cells += [inverse.solution.error_estimate, _WORDS[inverse.solution.within_tolerance]]
-            cells += [float(inverse.solution.inputs[index]) for index in indices.values()]
+            cells += [inverse.solution.error_estimate, inverse.solution.within_tolerance]
+            cells += [inverse.solution.inputs[index] for index in indices.values()]
         else:
             cells += [None] * (len(gaps) + len(errors) + len(indices))
-        writer.writerow(cells)
-    return stream.getvalue()
+        rows.append(cells)
+    return csv_text([*table.columns, "outcome", *gaps, *errors, *indices], rows)

@@ -1,9 +1,12 @@
-"""Numbers, arrays and discretisations as plain data, and plain data as the text of a file."""
+"""Numbers, arrays and discretisations as plain data, and plain data and tables as the texts of files."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -31,6 +34,24 @@ def plain(value: Any) -> Any:
 def json_text(data: dict[str, Any]) -> str:
     """Plain data as the text of a file."""
     return json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table as the text of a CSV file."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(map(_cell, row) for row in rows)
+    return lines.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    """Truth in small letters, a number as the shortest text that reads back as the same one; else empty."""
+    if isinstance(value, bool | np.bool_):
+        return str(value).lower()
+    if isinstance(value, float):
+        return repr(float(value)) if math.isfinite(value) else ""
+    return value
 
 
 def discretisation_entries(model: Model) -> dict[str, dict[str, Any]]:

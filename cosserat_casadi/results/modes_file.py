@@ -9,23 +9,19 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
-from cosserat_casadi.results.json_text import SCHEMA, plain
-from cosserat_casadi.results.solution_file import listed_abscissae, result
+from cosserat_casadi.results.solution_file import listed_abscissae
 
 
 def modes_result(modes: Modes) -> dict[str, Any]:
-    """Modes as the plain data of their file; a number that is not finite becomes null."""
-    data = {
-        "schema": SCHEMA,
+    """Modes as the data of their file."""
+    return {
         "title": modes.model.scene.title,
         "converged": modes.converged,
         "outcome": modes.outcome.label,
         "message": modes.message,
-        "equilibrium": result(modes.solution),
+        "equilibrium": modes.solution.to_dict(),
         "modes": _mode_entries(modes),
     }
-    plain_data: dict[str, Any] = plain(data)
-    return plain_data
 
 
 def _mode_entries(modes: Modes) -> list[dict[str, Any]]:

@@ -5,7 +5,6 @@ pyarrow is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
-import csv
 import io
 import json
 from collections.abc import Iterator
@@ -24,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
+from cosserat_casadi.results.json_text import SCHEMA, csv_text, discretisation_entries, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 
@@ -72,12 +71,6 @@ def write_motion(motion: Motion, path: str | Path) -> None:
     write_atomically(Path(path), content(motion))
 
 
-def motion_result(motion: Motion) -> dict[str, Any]:
-    """A motion as the plain data of its JSON file; a number that is not finite becomes null."""
-    plain_data: dict[str, Any] = plain(_motion_data(motion))
-    return plain_data
-
-
 def motion_columns(motion: Motion) -> dict[str, FloatArray]:
     """A motion as named columns over time, each of shape (T,), SI units.
 
@@ -91,7 +84,7 @@ def motion_columns(motion: Motion) -> dict[str, FloatArray]:
     return columns
 
 
-def _motion_data(motion: Motion) -> dict[str, Any]:
+def motion_result(motion: Motion) -> dict[str, Any]:
     """All of a motion, its arrays not yet turned into lists."""
     model = motion.model
     scene = model.scene
@@ -146,7 +139,6 @@ def _events_entry(motion: Motion) -> dict[str, list[Any]]:
 def _head(motion: Motion) -> dict[str, Any]:
     """Entries of a motion that do not depend on time."""
     return {
-        "schema": SCHEMA,
         "title": motion.model.scene.title,
         "converged": motion.converged,
         "outcome": motion.outcome.label,
@@ -239,19 +231,7 @@ def _vector_columns(name: str, values: FloatArray, endings: tuple[str, ...]) -> 
 
 def _csv_bytes(motion: Motion) -> bytes:
     columns = motion_columns(motion)
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(columns)
-    for row in np.column_stack(list(columns.values())).tolist():
-        writer.writerow([_cell(number) for number in row])
-    return lines.getvalue().encode()
-
-
-def _cell(number: float) -> str:
-    """A number as the shortest text that reads back as the same one; empty where it is not finite."""
-    if not np.isfinite(number):
-        return ""
-    return repr(number)
+    return csv_text(columns, np.column_stack(list(columns.values())).tolist()).encode()
 
 
 def _parquet_bytes(motion: Motion) -> bytes:
@@ -262,7 +242,7 @@ def _parquet_bytes(motion: Motion) -> bytes:
     for name, values in motion_columns(motion).items():
         columns[name] = arrow.array(values, mask=~np.isfinite(values))
     # The columns cannot say how the motion ended: the head of the JSON file travels with them.
-    head = json.dumps(plain(_head(motion)), ensure_ascii=False)
+    head = json.dumps(plain({"schema": SCHEMA, **_head(motion)}), ensure_ascii=False)
     table = arrow.table(columns).replace_schema_metadata({"cosserat": head})
     content = io.BytesIO()
     pyarrow.parquet.write_table(table, content)
@@ -271,7 +251,7 @@ def _parquet_bytes(motion: Motion) -> bytes:
 
 def _npz_bytes(motion: Motion) -> bytes:
     content = io.BytesIO()
-    data = _motion_data(motion)
+    data = {"schema": SCHEMA, **motion_result(motion)}
     if KEY in data:
         # Numbers, lists and words of it are no columns: they are one text.
         data[KEY] = json.dumps(plain(data[KEY]))

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.equilibrium.solution import SolvedPoses
-from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
+from cosserat_casadi.results.json_text import discretisation_entries
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
@@ -44,9 +40,8 @@ class _RodPoints:
 
 
 def path_result(path: EquilibriumPath) -> dict[str, Any]:
-    """A path as the plain data of its file; a number that is not finite becomes null."""
+    """A path as the data of its file."""
     data = {
-        "schema": SCHEMA,
         "title": path.model.scene.title,
         "input": path.name,
         "value": path.value.T.squeeze(),
@@ -61,38 +56,21 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
     scene = path.model.scene
     if scene.has_contact and not scene.touches_exactly:
         data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
-    plain_data: dict[str, Any] = plain(data)
-    return plain_data
+    return data
 
 
-def path_table(path: EquilibriumPath) -> str:
-    """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod."""
+def path_table(path: EquilibriumPath) -> tuple[list[str], list[list[Any]]]:
+    """Header and rows of the points of a path: factor, stability, tip positions (m) and quaternions of every rod."""
     tips = {name: path.tip(name) for name in path.model.discrete.rods}
     pose_columns = [f"{name}.{axis}" for name in tips for axis in POSE_COLUMNS]
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(["factor", "stable", "smallest_eigenvalue", *pose_columns])
+    rows = []
     for index, factor in enumerate(path.factor):
         stability = _stability_entry(path, index)
-        row = [repr(float(factor)), _cell(stability["stable"]), _cell(stability["smallest_eigenvalue"])]
+        row = [factor, stability["stable"], stability["smallest_eigenvalue"]]
         for tip in tips.values():
-            pose = (*tip.position[index], *tip.quaternion[index])
-            # repr gives the shortest text that reads back as the same number.
-            row += [repr(float(number)) for number in pose]
-        writer.writerow(row)
-    return lines.getvalue()
-
-
-def write_path_table(path: EquilibriumPath, file: Path) -> None:
-    """Write the points of a path as CSV, whole or not at all."""
-    write_atomically(file, path_table(path).encode())
-
-
-def _cell(value: bool | float | None) -> str:
-    """A verdict or a number as a cell, empty where stability is not judged."""
-    if value is None:
-        return ""
-    return str(value).lower()
+            row += [*tip.position[index], *tip.quaternion[index]]
+        rows.append(row)
+    return ["factor", "stable", "smallest_eigenvalue", *pose_columns], rows
 
 
 def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:

@@ -17,7 +17,7 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import MESHES, write_atomically
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.json_text import SCHEMA, csv_text, json_text, plain
 
 PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of figures."""
@@ -37,18 +37,21 @@ class Presentation:
         data: function of the result that returns its plain data, as ``module:function`` of ``cosserat_casadi``.
         facts: function of the result that returns what matters as pairs of a label and its words.
         figure: function of the result that returns the matplotlib figure.
-        tables: functions (result, path) that write a file, by its suffix, in addition to JSON.
+        table: function of the result that returns the header and the rows of its CSV file; empty where it has none.
+        writers: functions (result, path) that write a file of another format, by its suffix.
     """
 
     data: str
     facts: str
     figure: str
-    tables: Mapping[str, str] = field(default_factory=dict)
+    table: str = ""
+    writers: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of all files that the result can be written to."""
-        return tuple(dict.fromkeys((".json", *self.tables, *PICTURES)))
+        table = (".csv",) if self.table else ()
+        return tuple(dict.fromkeys((".json", *table, *self.writers, *PICTURES)))
 
 
 _MOTION = "results.motion_file:write_motion"
@@ -57,22 +60,22 @@ _SWEEP = "sweeps.outcome_file:write_sweep"
 
 PRESENTATIONS = {
     "Solution": Presentation(
-        data="results.solution_file:result",
+        data="results.solution_file:solution_result",
         facts="results.facts:solution_facts",
         figure="plots.scene_plot:plot_solution",
-        tables=dict.fromkeys(MESHES, _FILM),
+        writers=dict.fromkeys(MESHES, _FILM),
     ),
     "EquilibriumPath": Presentation(
         data="results.path_file:path_result",
         facts="results.facts:path_facts",
         figure="plots.path_plot:plot_path",
-        tables={".csv": "results.path_file:write_path_table"},
+        table="results.path_file:path_table",
     ),
     "Motion": Presentation(
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
-        tables={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
+        writers={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
     ),
     "Modes": Presentation(
         data="results.modes_file:modes_result",
@@ -93,13 +96,13 @@ PRESENTATIONS = {
         data="results.estimate_file:estimate_result",
         facts="results.facts:estimate_facts",
         figure="plots.estimate_plot:plot_estimate",
-        tables={".csv": "results.estimate_file:write_estimate_table"},
+        table="results.estimate_file:estimate_table",
     ),
     "Sweep": Presentation(
         data="results.sweep_data:sweep_result",
         facts="results.facts:sweep_facts",
         figure="plots.sweep_plot:plot_sweep",
-        tables={".csv": _SWEEP, ".parquet": _SWEEP, ".dataset": _SWEEP},
+        writers={".csv": _SWEEP, ".parquet": _SWEEP, ".dataset": _SWEEP},
     ),
     "SobolIndices": Presentation(
         data="results.sweep_data:sobol_result",
@@ -120,7 +123,7 @@ PRESENTATIONS = {
         data="results.tubes_file:tube_path_result",
         facts="results.facts:tube_path_facts",
         figure="plots.tubes_plot:plot_tube_path",
-        tables={".csv": "results.tubes_file:write_tube_path_table"},
+        table="results.tubes_file:tube_path_table",
     ),
 }
 """Presentations by the class of the result; a class without an entry is presented as its base."""
@@ -139,9 +142,14 @@ def presentation_of(result: Any) -> Presentation:
 
 
 def data_of(result: Any) -> dict[str, Any]:
-    """Plain data of a result."""
-    data: dict[str, Any] = _function(presentation_of(result).data)(result)
+    """Plain data of a result, as its JSON file holds it; a number that is not finite becomes None."""
+    data: dict[str, Any] = plain({"schema": SCHEMA, **_function(presentation_of(result).data)(result)})
     return data
+
+
+def csv_of(result: Any) -> str:
+    """The text of the CSV file of a result that has a table."""
+    return csv_text(*_function(presentation_of(result).table)(result))
 
 
 def figure_of(result: Any, **options: Any) -> Any:
@@ -170,16 +178,28 @@ def write(result: Any, path: str | Path) -> None:
     file = Path(path)
     suffix = file.suffix.lower()
     presentation = presentation_of(result)
-    if suffix in presentation.tables:
-        _function(presentation.tables[suffix])(result, file)
+    if suffix in presentation.writers:
+        _function(presentation.writers[suffix])(result, file)
+    elif suffix == ".csv" and presentation.table:
+        write_atomically(file, csv_of(result).encode())
     elif suffix == ".json":
-        write_atomically(file, json_text(data_of(result)).encode())
+        write_all(result, file)
     elif suffix in PICTURES:
         figure = figure_of(result)
         _function("plots.figure:write_figure")(figure, file)
     else:
         problem = f"{type(result).__name__} cannot be written to {file}"
         raise SceneError(Problem("path", problem, f"use one of {', '.join(presentation.suffixes)}"))
+
+
+def write_all(result: Any, output: Path | None, *others: Path | None) -> list[Path]:
+    """Write a result as JSON into one file, whatever its suffix, and into others by theirs; the files written."""
+    if output is not None:
+        write_atomically(output, json_text(data_of(result)).encode())
+    for other in others:
+        if other is not None:
+            write(result, other)
+    return [file for file in (output, *others) if file is not None]
 
 
 def text_of(result: Any) -> str:

@@ -11,7 +11,7 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.contact_entry import point_forces
-from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, plain
+from cosserat_casadi.results.json_text import discretisation_entries
 
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
@@ -20,15 +20,14 @@ SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
 
 
-def result(solution: Solution) -> dict[str, Any]:
-    """A solution as the plain data of the result file; a number that is not finite becomes null."""
+def solution_result(solution: Solution) -> dict[str, Any]:
+    """A solution as the data of the result file."""
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)
     # The forces of contacts are found, not given.
     given = input_layout(without_contacts(scene)).names
     data: dict[str, Any] = {
-        "schema": SCHEMA,
         "title": scene.title,
         "converged": solution.converged,
         "outcome": solution.outcome.label,
@@ -56,8 +55,7 @@ def result(solution: Solution) -> dict[str, Any]:
         data["joints"] = {name: solution.joint(name) for name in solution.model.joint}
     if scene.has_contact:
         data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
-    plain_data: dict[str, Any] = plain(data)
-    return plain_data
+    return data
 
 
 def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
@@ -113,7 +111,7 @@ def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:
 
 
 def inverse_result(inverse: Inverse) -> dict[str, Any]:
-    """An inverse problem's end as the plain data of its file; a number that is not finite becomes null."""
+    """An inverse problem's end as the data of its file."""
     targets = []
     for target, gap in zip(inverse.targets, inverse.gaps, strict=True):
         entry = {
@@ -125,6 +123,4 @@ def inverse_result(inverse: Inverse) -> dict[str, Any]:
             "angle_error_estimate": gap.angle_error,
         }
         targets.append(entry)
-    data = {**inverse.solution.to_dict(), "targets_met": inverse.met, "targets": targets}
-    plain_data: dict[str, Any] = plain(data)
-    return plain_data
+    return {**inverse.solution.to_dict(), "targets_met": inverse.met, "targets": targets}

@@ -5,33 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.sobol import CONFIDENCE, Estimates, SobolIndices
 
 
 def sweep_result(sweep: Sweep) -> dict[str, Any]:
-    """Columns of a sweep by name, the outcome of each row, and the record; null where a row has no result."""
-    data: dict[str, Any] = plain(
-        {
-            "schema": SCHEMA,
-            "outcome": sweep.outcome,
-            "columns": {name: sweep[name] for name in sweep.columns},
-            "record": sweep.record,
-        }
-    )
-    return data
+    """Columns of a sweep by name, the outcome of each row, and the record; NaN where a row has no result."""
+    return {
+        "outcome": sweep.outcome,
+        "columns": {name: sweep[name] for name in sweep.columns},
+        "record": sweep.record,
+    }
 
 
 def sobol_result(indices: SobolIndices) -> dict[str, Any]:
-    """Indices of every result by column; null where the result does not vary."""
-    data: dict[str, Any] = plain(_indices(indices))
-    return data
-
-
-def _indices(indices: SobolIndices) -> dict[str, Any]:
+    """Indices of every result by column; NaN where the result does not vary."""
     return {
-        "schema": SCHEMA,
         "factors": list(indices.factors),
         "samples": indices.samples,
         "left_out": indices.left_out,

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.files import write_atomically
 from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
-from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 
 def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:
-    """An equilibrium, or all at the same inputs by their energy, as the plain data of a file.
-
-    A number that is not finite becomes null.
-    """
+    """An equilibrium, or all at the same inputs by their energy, as the data of a file."""
     if isinstance(solution, TubeSolution):
         entries = _equilibrium(solution)
     else:
@@ -25,57 +19,34 @@ def tubes_result(solution: TubeSolution | TubeEquilibria) -> dict[str, Any]:
             "message": solution.message,
             "equilibria": [_equilibrium(one) for one in solution.solutions],
         }
-    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.scene.title, **entries})
-    return data
+    return {"title": solution.robot.scene.title, **entries}
 
 
 def tube_path_result(path: TubePath) -> dict[str, Any]:
-    """A path as the plain data of a file."""
-    data: dict[str, Any] = plain(
-        {
-            "schema": SCHEMA,
-            "title": path.model.scene.title,
-            "converged": path.converged,
-            "outcome": path.outcome.label,
-            "message": path.message,
-            "error_estimate": path.error_estimate,
-            "input": path.name,
-            "unit": path.unit,
-            "points": [
-                {"value": value, **_point(solution)}
-                for value, solution in zip(path.values, path.solutions, strict=True)
-            ],
-            "events": [_event(event) for event in path.events],
-        }
-    )
-    return data
+    """A path as the data of a file."""
+    points = zip(path.values, path.solutions, strict=True)
+    return {
+        "title": path.model.scene.title,
+        "converged": path.converged,
+        "outcome": path.outcome.label,
+        "message": path.message,
+        "error_estimate": path.error_estimate,
+        "input": path.name,
+        "unit": path.unit,
+        "points": [{"value": value, **_point(solution)} for value, solution in points],
+        "events": [_event(event) for event in path.events],
+    }
 
 
-def tube_path_table(path: TubePath) -> str:
-    """The points of a path as CSV: the input, stability, energy, and the tips of all tubes."""
-    names: tuple[str, ...] = ()
-    if path.solutions:
-        names = path.solutions[0].robot.names
-    columns = [path.name, "stable", "energy"]
-    columns += [f"{name}.tip.{axis}" for name in names for axis in "xyz"]
-    lines = [",".join(columns)]
+def tube_path_table(path: TubePath) -> tuple[list[str], list[list[Any]]]:
+    """Header and rows of the points of a path: the input, stability, energy, and the tips of all tubes."""
+    names = path.robot.names if path.solutions else ()
+    columns = [path.name, "stable", "energy", *(f"{name}.tip.{axis}" for name in names for axis in "xyz")]
+    rows = []
     for value, solution in zip(path.values, path.solutions, strict=True):
-        cells = [repr(float(value)), _word(solution.stable), repr(solution.energy)]
-        cells += [repr(float(entry)) for tip in solution.tips.values() for entry in tip.position]
-        lines.append(",".join(cells))
-    return "\n".join(lines) + "\n"
-
-
-def write_tube_path_table(path: TubePath, file: Path) -> None:
-    """Write the points of a path as CSV, whole or not at all."""
-    write_atomically(file, tube_path_table(path).encode())
-
-
-def _word(stable: bool | None) -> str:
-    """A verdict in a table; empty where there is none."""
-    if stable is None:
-        return ""
-    return str(stable).lower()
+        tips = [entry for tip in solution.tips.values() for entry in tip.position]
+        rows.append([value, solution.stable, solution.energy, *tips])
+    return columns, rows
 
 
 def _equilibrium(solution: TubeSolution) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.estimation import Estimate, estimate
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.identification import identify
-from cosserat_casadi.results.estimate_file import estimate_result, estimate_table
+from cosserat_casadi.results.presentation import csv_of
 from cosserat_casadi.scene import Scene
 from tests.scenes import rod
 
@@ -182,9 +182,9 @@ def test_a_second_place_that_explains_a_row_is_told() -> None:
     assert 0.1 < found.second.share[0] < 0.95
     assert found.doubtful.all()
     assert any("another explanation nearly as good" in warning for warning in found.warnings)
-    row = estimate_result(found)["rows"][0]
+    row = found.to_dict()["rows"][0]
     assert row["second"]["value"] == found.second.values[0].tolist()
-    header, cells = estimate_table(found).splitlines()
+    header, cells = csv_of(found).splitlines()
     assert header.endswith("share,touch.force.x.second,touch.at.second")
     assert float(cells.split(",")[-1]) == found.second.values[0, 1]
 

@@ -16,7 +16,7 @@ from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.estimation import Estimate, estimate, stacking
 from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.model.operations import operations
-from cosserat_casadi.results.estimate_file import estimate_result, estimate_table
+from cosserat_casadi.results.presentation import csv_of
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_tables
 from tests.scenes import push, rod, scene
@@ -150,9 +150,9 @@ def test_what_nothing_determines_is_told() -> None:
     # What was left over in them says nothing of the model.
     assert found.consistency.freedom == 0
     assert np.isnan(found.consistency.row_deviations).all()
-    assert estimate_result(found)["message"] == "0 of 2 rows found."
-    assert estimate_result(found)["rows"][0]["value"] == [None, None, None]
-    assert estimate_table(found).splitlines()[1].endswith(",not_determined,,,,,,")
+    assert found.to_dict()["message"] == "0 of 2 rows found."
+    assert found.to_dict()["rows"][0]["value"] == [None, None, None]
+    assert csv_of(found).splitlines()[1].endswith(",not_determined,,,,,,")
 
 
 def test_a_load_along_the_rod_is_felt_from_its_shape() -> None:

@@ -18,7 +18,6 @@ from cosserat_casadi.estimation.posterior import normal_draws, sampled
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, find_shared
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import Limits
-from cosserat_casadi.results.estimate_file import estimate_result
 from cosserat_casadi.scene import Scene
 from tests.estimation.test_estimate import nees
 from tests.scenes import push, rod
@@ -149,7 +148,7 @@ def test_a_stiffness_vs_the_integral_over_what_rows_feel() -> None:
         assert_allclose(found.values[row, 0], at_best, rtol=0, atol=5e-3 * found.sigma[row, 0])
         assert_allclose(found.sigma[row, 0] ** 2, 1 / information + (moved * sigma) ** 2, rtol=0.02, atol=0)
     assert sigma < 0.9 * UNSURE * BENDING
-    told = estimate_result(found)
+    told = found.to_dict()
     assert told["shared"][0]["unknown"] == STIFFNESS
     assert told["consistency"]["holds"]
     # The rows that are checked, and whoever solves them again, have the stiffness that was found.

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import EquilibriumPath, SceneError, build, follow
 from cosserat_casadi.plots.path_plot import plot_path
-from cosserat_casadi.results.path_file import path_table
+from cosserat_casadi.results.presentation import csv_of
 from tests.scenes import push, rod, scene
 
 
@@ -78,4 +78,4 @@ def test_a_path_without_a_start_can_be_drawn_and_written(tmp_path: Path) -> None
     none.write(tmp_path / "none.png")
     assert none.to_dict()["path"] == []
     assert none.to_dict()["outcome"] == "no_start"
-    assert len(path_table(none).splitlines()) == 1
+    assert len(csv_of(none).splitlines()) == 1

@@ -27,8 +27,8 @@ from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import check_writable, write_atomically
-from cosserat_casadi.results.estimate_file import estimate_table
 from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import csv_of
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.spelling import counted
 
@@ -65,7 +65,7 @@ def estimate(
         raise SceneError(*problems)
     with sweep_display() as show_count:
         found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
-    text = estimate_table(found) if suffix == ".csv" else json_text(found.to_dict())
+    text = csv_of(found) if suffix == ".csv" else json_text(found.to_dict())
     write_atomically(output, text.encode())
     if plot is not None:
         found.write(plot)

@@ -17,7 +17,6 @@ from cosserat_casadi.cli.options import (
     check_inputs_stay,
     check_outputs,
     collect_problems,
-    given_files,
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.format import print_warnings
@@ -28,7 +27,7 @@ from cosserat_casadi.cli.reports.identification import (
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -78,11 +77,7 @@ def identify(
         found = identification.identify(
             checked_scene, hold_out=hold_out, starts=starts, report=display.show_stage, progress=show_step
         )
-    if output is not None:
-        write_atomically(output, json_text(found.to_dict()).encode())
-    if plot is not None:
-        found.write(plot)
-    written = given_files(output, plot)
+    written = write_all(found, output, plot)
     refusal: SceneError | None = None
     if write is not None and (found.converged or found.ended_early):
         try:

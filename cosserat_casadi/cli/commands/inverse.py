@@ -10,7 +10,7 @@ from rich.console import Console
 
 from cosserat_casadi import control
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay, check_outputs, given_files
+from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay, check_outputs
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
@@ -19,7 +19,7 @@ from cosserat_casadi.control.target_table import read_targets
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.inverse_table import MET, row_outcome, table_text
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import read_scene
 
 
@@ -57,11 +57,7 @@ def inverse(
         # Read inside: building the problem is part of what the bar shows, and may be interrupted.
         given_scene = read_scene(scene, tuple(settings or ()))
         solved = control.inverse(given_scene, stable=stable, report=display.show_stage)
-    if output is not None:
-        write_atomically(output, json_text(solved.to_dict()).encode())
-    if plot is not None:
-        solved.write(plot)
-    print_inverse(Console(), solved, given_files(output, plot))
+    print_inverse(Console(), solved, write_all(solved, output, plot))
     if solved.unstable and not unstable and not stable:
         print_unstable_inverse(Console(stderr=True))
     # The files hold the closest pose then.

@@ -15,14 +15,13 @@ from cosserat_casadi.cli.options import (
     check_inputs_stay,
     check_outputs,
     collect_problems,
-    given_files,
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.modes import print_modes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.files import check_writable
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
 
 
@@ -53,10 +52,7 @@ def modes(
     with solve_display("Finding modes") as display:
         found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
     _check_mode_is_there(found, animation, mode)
-    if output is not None:
-        write_atomically(output, json_text(found.to_dict()).encode())
-    drawn = _draw(found, plot, animation, mode)
-    print_modes(Console(), found, given_files(output, *drawn))
+    print_modes(Console(), found, [*write_all(found, output), *_draw(found, plot, animation, mode)])
     if not found.converged:
         raise typer.Exit(NOT_FOUND)
 

@@ -18,20 +18,18 @@ from cosserat_casadi.cli.options import (
     check_inputs_stay,
     check_outputs,
     collect_problems,
-    given_files,
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.cli.reports.tubes import print_tube_path
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import write_atomically
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.paths.path_refinement import follow
 from cosserat_casadi.paths.tube_path import TubePath
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
 
@@ -72,13 +70,7 @@ def path(
             report=display.show_stage,
         )
 
-    if output is not None:
-        write_atomically(output, json_text(followed.to_dict()).encode())
-    if table is not None:
-        followed.write(table)
-    if plot is not None:
-        followed.write(plot)
-    written = given_files(output, table, plot)
+    written = write_all(followed, output, table, plot)
     if isinstance(followed, TubePath):
         print_tube_path(Console(), followed, written)
     else:

@@ -16,14 +16,14 @@ from cosserat_casadi.cli.options import (
     check_inputs_stay,
     check_outputs,
     collect_problems,
-    given_files,
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import MESHES, write_atomically, write_whole
+from cosserat_casadi.files import MESHES, write_whole
 from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import read_scene, with_exact_contact
 
 if TYPE_CHECKING:
@@ -102,11 +102,7 @@ def _give(
     solution: Equilibrium[Any] | TubeEquilibria, output: Path | None, plot: Path | None, *, as_json: bool
 ) -> None:
     """Write, draw and print the solution."""
-    if output is not None:
-        write_atomically(output, json_text(solution.to_dict()).encode())
-    if plot is not None:
-        solution.write(plot)
-    written = given_files(output, plot)
+    written = write_all(solution, output, plot)
     if as_json:
         # JSON is UTF-8, whatever the terminal knows.
         write_whole(binary_output(), json_text(solution.to_dict()).encode())

@@ -20,6 +20,13 @@ def title_line(title: str | None) -> str:
     return f"[bold]{escape(title or 'Untitled scene')}[/]"
 
 
+def print_outcome(console: Console, title: str | None, message: str, *, good: bool, doubtful: bool = False) -> None:
+    """Print the title of a scene and how its computation ended: in green, yellow where it is doubtful, or red."""
+    colour = "yellow" if doubtful else "green"
+    print_plain(console, title_line(title))
+    print_plain(console, f"[bold {colour if good else 'red'}]{escape(message)}[/]")
+
+
 def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = False) -> None:
     """Name the files that were written."""
     for file in files:

@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
-from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
@@ -24,9 +24,7 @@ MOST_CASES = 10
 
 def print_identification(console: Console, found: Identification, written: Sequence[Path]) -> None:
     """Print the outcome, the values with their uncertainty, and the files that were written."""
-    print_plain(console, title_line(found.model.scene.title))
-    colour = "green" if found.converged else "red"
-    print_plain(console, f"[bold {colour}]{escape(found.message)}[/]")
+    print_outcome(console, found.model.scene.title, found.message, good=found.converged)
     if found.labels and found.cases:
         console.print(_unknowns(found))
     if found.converged and found.layout.own:

@@ -10,26 +10,18 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
-from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 
 
 def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None:
     """Print the outcome, the modes, their discretisation, and the files that were written."""
-    print_plain(console, title_line(modes.model.scene.title))
-    print_plain(console, f"[bold {_colour(modes)}]{escape(modes.message)}[/]")
+    grows = any(mode.grows for mode in modes.modes)
+    print_outcome(console, modes.model.scene.title, modes.message, good=modes.converged, doubtful=grows)
     if modes.modes:
         console.print(_modes_table(modes))
         print_plain(console, escape("; ".join(discretisation_sentences(modes.model))))
     print_written(console, written)
-
-
-def _colour(modes: Modes) -> str:
-    if not modes.converged:
-        return "red"
-    if any(mode.grows for mode in modes.modes):
-        return "yellow"
-    return "green"
 
 
 def _modes_table(modes: Modes) -> Table:

@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
-from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
 from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.spelling import counted
@@ -19,11 +19,7 @@ from cosserat_casadi.spelling import counted
 
 def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:
     """Print the outcome, where rods and bodies end, the figures of merit, and the files that were written."""
-    colour = "red"
-    if motion.converged:
-        colour = "green"
-    print_plain(console, title_line(motion.model.scene.title))
-    print_plain(console, f"[bold {colour}]{escape(motion.message)}[/]")
+    print_outcome(console, motion.model.scene.title, motion.message, good=motion.converged)
     if len(motion.times):
         console.print(_end_table(motion))
     for sentence in _merit_sentences(motion):

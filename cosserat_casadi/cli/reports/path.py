@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
 from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
@@ -19,11 +19,7 @@ from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPat
 
 def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:
     """Print the outcome, the events and the end, and the files that were written."""
-    colour = "red"
-    if path.converged:
-        colour = "green"
-    print_plain(console, title_line(path.model.scene.title))
-    print_plain(console, f"[bold {colour}]{escape(path.message)}[/]")
+    print_outcome(console, path.model.scene.title, path.message, good=path.converged)
     if len(path.factor):
         console.print(_path_table(path))
     print_plain(console, _merit_sentence(path))

@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
-from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
 from cosserat_casadi.cli.reports.numbers import digits, error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
@@ -28,13 +28,14 @@ STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Print the outcome, the rods, bodies and actuators, the figures of merit, and the files that were written."""
-    _print_outcome(console, solution, _outcome_colour(solution))
+    _print_end(console, solution)
     _print_equilibrium(console, solution, counted(solution.iterations, "iteration"), written)
 
 
-def _print_outcome(console: Console, solution: Equilibrium[Any], colour: str) -> None:
-    print_plain(console, title_line(solution.model.scene.title))
-    print_plain(console, f"[bold {colour}]{escape(solution.message)}[/]")
+def _print_end(console: Console, solution: Equilibrium[Any], *, missed: bool = False) -> None:
+    """Print title and message; doubtful are equilibria that a rod leaves, errors too large, and targets missed."""
+    doubtful = missed or solution.stable is False or solution.within_tolerance is False
+    print_outcome(console, solution.model.scene.title, solution.message, good=solution.converged, doubtful=doubtful)
 
 
 def _print_equilibrium(console: Console, solution: Solution, work: str, written: Sequence[Path]) -> None:
@@ -70,10 +71,7 @@ def print_unstable_inverse(console: Console) -> None:
 
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
     """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
-    colour = _outcome_colour(inverse.solution)
-    if inverse.solution.converged and not inverse.met:
-        colour = "yellow"
-    _print_outcome(console, inverse.solution, colour)
+    _print_end(console, inverse.solution, missed=not inverse.met)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
         stacked = np.ravel(value, order="F")
@@ -110,14 +108,6 @@ def _with_error(gap: float, error: float | None) -> str:
     if error is None:
         return f"{gap:.3g}"
     return f"{gap:.3g} ± {error:.1g}"
-
-
-def _outcome_colour(solution: Equilibrium[Any]) -> str:
-    if not solution.converged:
-        return "red"
-    if solution.stable is False or solution.within_tolerance is False:
-        return "yellow"
-    return "green"
 
 
 def _rod_table(solution: Solution) -> Table:

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.paths.tube_path import TubePath
@@ -26,7 +26,7 @@ def print_tubes(console: Console, solution: Equilibrium[Any] | TubeEquilibria, w
     if isinstance(solution, TubeEquilibria):
         _print_equilibria(console, solution)
     else:
-        _print_message(console, solution.model.scene.title, solution.message, good=solution.converged)
+        print_outcome(console, solution.model.scene.title, solution.message, good=solution.converged)
         print_tubes_and_merit(console, solution)
     print_written(console, written)
 
@@ -64,7 +64,7 @@ def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -
 
 def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
     """Print how the search ended, and a line for each equilibrium."""
-    _print_message(console, equilibria.robot.scene.title, equilibria.message, good=equilibria.complete)
+    print_outcome(console, equilibria.robot.scene.title, equilibria.message, good=equilibria.complete)
     table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", "tip position, m")
     for number, solution in enumerate(equilibria.solutions, 1):
         table.add_row(
@@ -85,7 +85,7 @@ def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
     """Print the outcome, the events and the end of a path, and the files that were written."""
-    _print_message(console, path.model.scene.title, path.message, good=path.converged)
+    print_outcome(console, path.model.scene.title, path.message, good=path.converged)
     if path.solutions:
         console.print(_path_table(path))
     parts = [counted(len(path.values), "point"), counted(len(path.events), "event")]
@@ -105,14 +105,6 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
     console.print(table)
     unknowns = model_of(robot, FEWEST_STEPS).size
     print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
-
-
-def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:
-    colour = "red"
-    if good:
-        colour = "green"
-    print_plain(console, title_line(title))
-    print_plain(console, f"[bold {colour}]{escape(message)}[/]")
 
 
 def _path_table(path: TubePath) -> Table:
