@@ -116,7 +116,9 @@ def choose(
         scene = with_accuracy(scene, tolerance=tolerance)
     if cases is None:
         search = _Search(scene, input_ranges(scene, ranges), progress)
-        search.begin(_default_samples(scene) if samples is None else samples)
+        if samples is None:
+            samples = SAMPLES_IN_CONTACT if scene.touches_exactly else SAMPLES
+        search.begin(samples)
         more = search.more
     else:
         if not cases:
@@ -131,10 +133,6 @@ def choose(
     else:
         answers = search.modes.refined(more)
     return search.verdict(answers, every=cases is not None)
-
-
-def _default_samples(scene: scenes.Scene) -> int:
-    return SAMPLES_IN_CONTACT if scene.touches_exactly else SAMPLES
 
 
 @dataclass

@@ -241,7 +241,8 @@ def _with_tolerance(solver: SceneSolver) -> Solution:
     """
     if solver.signal_modes > REFERENCE_MODES[-1]:
         # Not even the finest level sees what the scene asks for: whatever is found is no reference.
-        return _blind(solver)
+        solution = _at_level(solver, Level.first(solver.tolerance), None)
+        return solution.unresolved() if solution.converged else solution
     found = _of_held_rod(solver) if solver.is_held else _for_tolerance(solver, solver.tolerance)
     if isinstance(found, _Reference):
         return _coarsened(solver, found.resolution)
@@ -315,14 +316,6 @@ def _refined(
         # The level below is farther off than this one, by about as much as the two are apart.
         coarser = with_estimate(coarser, fewer_modes, factor=1.0)
     return coarser.unresolved()
-
-
-def _blind(solver: SceneSolver) -> Solution:
-    """The solution on the first level, UNRESOLVED where it is an equilibrium."""
-    solution = _at_level(solver, Level.first(solver.tolerance), None)
-    if not solution.converged:
-        return solution
-    return solution.unresolved()
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:

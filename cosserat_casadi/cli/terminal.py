@@ -120,7 +120,7 @@ def _plain_letters(error: UnicodeError) -> tuple[str, int]:
         raise error
     letters = error.object[error.start : error.end]
     plain = ""
-    for raised, run in groupby(letters, _is_superscript):
+    for raised, run in groupby(letters, lambda letter: unicodedata.decomposition(letter).startswith("<super>")):
         written = "".join(_plain_letter(letter) for letter in run)
         # 10⁶ must not become 106.
         plain += f"^{written}" if raised else written
@@ -128,10 +128,6 @@ def _plain_letters(error: UnicodeError) -> tuple[str, int]:
     if plain[:1].isdigit() and error.object[: error.start][-1:].isdigit():
         plain = f" {plain}"
     return plain, error.end
-
-
-def _is_superscript(letter: str) -> bool:
-    return unicodedata.decomposition(letter).startswith("<super>")
 
 
 def _plain_letter(letter: str) -> str:

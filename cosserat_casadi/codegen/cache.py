@@ -97,7 +97,7 @@ def _folder_of_process() -> Path:
 
 def file_name(stem: str, content: bytes, ending: str = LIBRARY) -> str:
     """Name of a library or of texts: a stem that tells the origin, and a hash of the content."""
-    return f"{stem}-{_short_hash(content)}{ending}"
+    return f"{stem}-{hashlib.sha256(content).hexdigest()[:20]}{ending}"
 
 
 def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
@@ -162,10 +162,6 @@ def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         write_atomically(folder / file_name(stem, content, TEXTS), content)
         keep_within(folder)
-
-
-def _short_hash(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()[:20]
 
 
 def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterable[bytes]) -> str:

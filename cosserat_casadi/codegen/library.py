@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any
 
@@ -16,7 +16,7 @@ from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
-from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
+from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
@@ -234,7 +234,7 @@ def _words(
         **sizes,
         **dict.fromkeys(("of_rods", "with_axes"), True),
         "family": "solver_",
-        **_solver_constants(model),
+        **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
@@ -255,7 +255,7 @@ def _words(
         **in_motion,
         "prototypes": "".join(function.prototype(render) for function in functions),
         "functions": "".join(function.wrapper(render) for function in functions),
-        "function_rows": _function_rows(functions),
+        "function_rows": "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions),
         "title": comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
         **version_words(),
@@ -296,10 +296,6 @@ def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["kept_steps"])
     extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
-
-
-def _solver_constants(model: Model) -> dict[str, Any]:
-    return solver_constants(continuation_limits(model), near=MAX_DISTANCE)
 
 
 def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
@@ -419,10 +415,6 @@ def _pose_words(names: Names) -> dict[str, Any]:
     if not names.bodies:
         return {"pose_owners": "each rod: position, then quaternion"}
     return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
-
-
-def _function_rows(functions: Sequence[FunctionInC]) -> str:
-    return "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions)
 
 
 def _file_rows(

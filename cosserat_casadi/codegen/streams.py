@@ -233,12 +233,9 @@ def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]
             if code == ca.OP_CALL:
                 values += _call(next(next_called), given)
             else:
-                values.append(_apply(code, given))
+                apply = ca.SX.unary if len(given) == 1 else ca.SX.binary
+                values.append(apply(code, *given))
     return ca.vertcat(*results)
-
-
-def _apply(code: int, arguments: Sequence[ca.SX]) -> ca.SX:
-    return ca.SX.unary(code, *arguments) if len(arguments) == 1 else ca.SX.binary(code, *arguments)
 
 
 def _entries(vector: ca.SX) -> list[ca.SX]:

@@ -501,12 +501,9 @@ class Richer:
     @cached_property
     def missing_rods(self) -> list[str]:
         """The rod of each coordinate that the coarse scene lacks."""
-        rods = np.repeat([block.rod or "" for block in self.discrete.unknowns.blocks], self._block_sizes)
+        blocks = self.discrete.unknowns.blocks
+        rods = np.repeat([block.rod or "" for block in blocks], [block.size for block in blocks])
         return [str(rod) for rod in rods[~self.known]]
-
-    @property
-    def _block_sizes(self) -> list[int]:
-        return [block.size for block in self.discrete.unknowns.blocks]
 
     @property
     def missing_size(self) -> int:

@@ -100,14 +100,12 @@ class SceneActuators:
         """Effort of an actuator: an input, or unknown where the scene prescribes its conjugate."""
         member = EFFECTS[actuator.kind]
         if member.prescribes_conjugate(actuator):
-            return self._unknown_tension(self._cable(actuator.name))
+            cable = next(cable for cable in self.discrete.cables if cable.tendon.name == actuator.name)
+            return self._unknown_tension(cable)
         effort = input_value(self.discrete.layout, actuator, member.effort, self.inputs)
         if effort is None:
             return ca.DM(0.0)
         return effort
-
-    def _cable(self, name: str) -> CableOfLength:
-        return next(cable for cable in self.discrete.cables if cable.tendon.name == name)
 
     def _cable_length(self, cable: CableOfLength) -> CableLength:
         tendon = cable.tendon

@@ -75,7 +75,7 @@ class MomentumKeeper:
     """
 
     def __init__(self, model: Model, to_model: Callable[[Instant], Instant] | None = None) -> None:
-        self._to_model = to_model or _itself
+        self._to_model = to_model or (lambda instant: instant)
         damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
         self._loaded = damped or bool(model.scene.loads)
         self._size = model.size
@@ -144,10 +144,6 @@ class MomentumKeeper:
         momenta = self._momenta(instant.x, motions[:, OF_A_BODY], value, np.zeros(len(value))).full()
         mass, of_turns = momenta[0, 0], momenta[:, 1:]
         return np.block([[mass * np.eye(3), of_turns[:3]], [of_turns[:3].T, of_turns[3:]]])
-
-
-def _itself(instant: Instant) -> Instant:
-    return instant
 
 
 def _functions(model: Model) -> tuple[ca.Function, ca.Function]:

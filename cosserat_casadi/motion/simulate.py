@@ -170,10 +170,6 @@ class Simulator:
     def _flight(self) -> FreeFlight:
         return free_flight(self.model)
 
-    @property
-    def _constrained(self) -> bool:
-        return self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential)
-
     @cached_property
     def displacements(self) -> FloatArray:
         """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
@@ -182,7 +178,7 @@ class Simulator:
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
         newton = NEWTON
-        if self._constrained:
+        if self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential):
             # What Newton's method leaves is what supports and joints are open by, or contacts.
             newton = min(newton, CLOSED / tolerance)
         settings = StepSettings(tolerance=tolerance / self.displacements, newton=newton)
@@ -253,7 +249,8 @@ class Simulator:
             fine_paths = self.paths(fine)
             distance = path_distance(coarse_paths, fine_paths)
             error = left * distance
-            sufficient = _sufficient(timed.tolerance, distance, wanted)
+            # Not below the tenth of it that was tried: that one leaves what it leaves.
+            sufficient = max(_foretold(timed.tolerance, distance, wanted), timed.tolerance / TIGHTER)
             asked = _foretold(timed.tolerance, distance, allowed)
             timed = TimedHistory(fine, error, tighter, sufficient, Companion(timed.history, left))
             coarse_paths = fine_paths
@@ -318,18 +315,6 @@ class Simulator:
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
             self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
-
-
-def _sufficient(coarse: float, distance: float, wanted: float) -> float:
-    """Tolerance of a step that leaves a wanted error of the paths.
-
-    Args:
-        coarse: a tolerance of a step.
-        distance: error of the paths that it leaves.
-        wanted: error of the paths.
-    """
-    # Not below the tenth of it that was tried: that one leaves what it leaves.
-    return max(_foretold(coarse, distance, wanted), coarse / TIGHTER)
 
 
 def _foretold(coarse: float, distance: float, wanted: float) -> float:

@@ -13,7 +13,6 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
@@ -258,14 +257,10 @@ def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:
         values = motion.inputs[:, index]
         if np.ptp(values) > NOTHING * np.abs(values).max():
             # Forces and tensions have one unit, and seldom one size: they share no axis.
-            moving.setdefault(_axis_words(entries[index]), {})[column] = values
+            entry = entries[index]
+            axis = entry.field if entry.unit == "1" else f"{entry.field}, {entry.unit}"
+            moving.setdefault(axis, {})[column] = values
     return moving
-
-
-def _axis_words(entry: Input) -> str:
-    if entry.unit == "1":
-        return entry.field
-    return f"{entry.field}, {entry.unit}"
 
 
 def _energy_curves(energy: Energies) -> dict[str, FloatArray]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class
@@ -70,7 +70,7 @@ def plot_path(path: EquilibriumPath) -> Any:
         title = name
         if len(names) == 1:
             title = _subtitle(path)
-        axes.set_title(title, fontsize=10, color=_title_colour(path), wrap=True)
+        axes.set_title(title, fontsize=10, color=PLAIN_TEXT if path.converged else FAILURE, wrap=True)
     add_title(figure, path.model.scene.title)
     return figure
 
@@ -146,24 +146,16 @@ def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component:
     """Mark every event by a point; the legend names each kind once."""
     labels = axes.get_legend_handles_labels()[1]
     for event in path.events:
-        label = _event_label(event)
+        label = WORDS[event.kind]
         position = path.event_position(event, section.X, section.rod)
         displacement = section.displacement(position)
-        style = {"marker": _event_marker(event), "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
+        style = {"marker": MARKERS[event.kind], "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
         legend_label = label
         if label in labels:
             # matplotlib leaves out of the legend what begins with an underscore.
             legend_label = "_repeated"
         axes.plot(displacement[component], event.factor, label=legend_label, **style)
         labels.append(label)
-
-
-def _event_marker(event: PathEvent) -> str:
-    return MARKERS[event.kind]
-
-
-def _event_label(event: PathEvent) -> str:
-    return WORDS[event.kind]
 
 
 def _stability(path: EquilibriumPath) -> FloatArray:
@@ -204,9 +196,3 @@ def _subtitle(path: EquilibriumPath) -> str:
         return path.message
     events = [f"{CONTACT_WORDS.get(event.kind, event.kind)} at {event.factor:.6g}" for event in path.events[:3]]
     return "; ".join(events) or "no limit, no bifurcation"
-
-
-def _title_colour(path: EquilibriumPath) -> str:
-    if path.converged:
-        return PLAIN_TEXT
-    return FAILURE

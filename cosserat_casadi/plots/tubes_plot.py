@@ -170,12 +170,10 @@ def plot_tube_path(path: TubePath) -> Any:
         for index, name in enumerate(names):
             _draw_curve(left, path, angles[:, index], rod_colour(index), name)
         for event in path.events:
+            snap = event.snaps_to
             for index in range(len(names)):
-                _draw_event(left, event, event.solution.x[index], _landing(event, index))
-            snap_energy = None
-            if event.snaps_to is not None:
-                snap_energy = event.snaps_to.energy
-            _draw_event(right, event, event.solution.energy, snap_energy)
+                _draw_event(left, event, event.solution.x[index], None if snap is None else float(snap.x[index]))
+            _draw_event(right, event, event.solution.energy, None if snap is None else snap.energy)
         _draw_curve(right, path, path.energy, rod_colour(len(names)), "energy")
     energy = "elastic energy, J"
     verdicts = {True: "stable", False: "unstable"}
@@ -205,13 +203,6 @@ def _subtitle(path: TubePath) -> str:
     if not snaps:
         return "no snap"
     return "; ".join(f"snaps at {event.value:.6g} {path.unit}" for event in snaps)
-
-
-def _landing(event: TubeEvent, tube: int) -> float | None:
-    """Angle at a tube's tip that a snap ends at; None where there is no snap."""
-    if event.snaps_to is None:
-        return None
-    return float(event.snaps_to.x[tube])
 
 
 def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, label: str) -> None:

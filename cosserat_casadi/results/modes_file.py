@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
-from cosserat_casadi.motion.vibration_modes import Mode, Modes
+from cosserat_casadi.motion.mode_shapes import RodShape
+from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.results.solution_file import listed_abscissae
 
 
@@ -30,33 +29,24 @@ def _mode_entries(modes: Modes) -> list[dict[str, Any]]:
     shapes: dict[str, RodShape] = {}
     for name in modes.model.discretisation:
         shapes[name] = modes.shape(listed_abscissae(modes.model.element_ends(name)), name)
-    return [_mode_entry(mode, index, shapes) for index, mode in enumerate(modes.modes)]
-
-
-def _mode_entry(mode: Mode, index: int, shapes: dict[str, RodShape]) -> dict[str, Any]:
-    return {
-        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-        "angular_frequency": mode.angular_frequency,
-        "frequency": mode.frequency,
-        "damping_ratio": mode.damping_ratio,
-        "error_estimate": mode.error_estimate,
-        "shape": {name: _shape_entry(shape, index) for name, shape in shapes.items()},
-    }
+    return [
+        {
+            "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+            "angular_frequency": mode.angular_frequency,
+            "frequency": mode.frequency,
+            "damping_ratio": mode.damping_ratio,
+            "error_estimate": mode.error_estimate,
+            "shape": {name: _shape_entry(shape, index) for name, shape in shapes.items()},
+        }
+        for index, mode in enumerate(modes.modes)
+    ]
 
 
 def _shape_entry(shape: RodShape, index: int) -> dict[str, Any]:
     """Displacements and rotations of one mode; where it is not in phase all over, their imaginary parts too."""
     position = shape.position[index]
     rotation = shape.rotation[index]
-    entry: dict[str, Any] = {"X": shape.X, "position": _real(position), "rotation": _real(rotation)}
+    entry: dict[str, Any] = {"X": shape.X, "position": position.real, "rotation": rotation.real}
     if np.any(position.imag) or np.any(rotation.imag):
-        entry["imaginary"] = {"position": _imaginary(position), "rotation": _imaginary(rotation)}
+        entry["imaginary"] = {"position": position.imag, "rotation": rotation.imag}
     return entry
-
-
-def _real(numbers: NumberArray) -> FloatArray:
-    return np.asarray(numbers.real)
-
-
-def _imaginary(numbers: NumberArray) -> FloatArray:
-    return np.asarray(numbers.imag)

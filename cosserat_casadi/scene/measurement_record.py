@@ -68,13 +68,9 @@ PositiveComponent = Annotated[
 """A number > 0, or several."""
 
 
-def _text_or_number(value: Any) -> str:
-    return TEXT.tag if isinstance(value, str) else NUMBER.tag
-
-
 TEXT = Tag("⟨text⟩")
 NUMBER = Tag("⟨number⟩")
-BY_TYPE = Discriminator(_text_or_number)
+BY_TYPE = Discriminator(lambda value: TEXT.tag if isinstance(value, str) else NUMBER.tag)
 """Takes the choice marked `TEXT` for a text, the one marked `NUMBER` for anything else."""
 
 Abscissa = Annotated[Annotated[str, TEXT] | Annotated[Share, NUMBER], BY_TYPE]

@@ -188,15 +188,10 @@ def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
     # Targets and bounds may name inputs that are none in a sweep.
     tables.pop("targets", None)
     tables.pop("bounds", None)
-    possible = _possible_inputs(scene)
+    possible = [f"{record.name}.{field}" for record in (*scene.input_owners, *scene.rods) for field in record.inputs]
     names = dict.fromkeys(_input_of_column(column, possible) for column in columns)
     inputs = [name for name in names if name is not None and _may_be_input(tables, name)]
     return scene_from_dict({**tables, "inputs": inputs})
-
-
-def _possible_inputs(scene: Scene) -> list[str]:
-    """Names of all that the records of a scene say may stay free."""
-    return [f"{record.name}.{field}" for record in (*scene.input_owners, *scene.rods) for field in record.inputs]
 
 
 def _input_of_column(column: str, possible: Sequence[str]) -> str | None:

@@ -39,7 +39,10 @@ def modes(
     Exit codes: 0 found to the tolerance, 2 refused, 3 no equilibrium, or frequencies not to the tolerance.
     """
     problems: list[Problem] = []
-    _check_numbers(count, mode, problems)
+    if count < 1:
+        problems.append(Problem("--count", f"must be 1 or more, got {count}"))
+    elif not 1 <= mode <= count:
+        problems.append(Problem("--mode", f"must be from 1 to {count}, got {mode}", "ask for more modes with --count"))
     _check_files(output, plot, animation, problems)
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings)
@@ -55,13 +58,6 @@ def modes(
     print_modes(Console(), found, [*write_all(found, output), *_draw(found, plot, animation, mode)])
     if not found.converged:
         raise typer.Exit(NOT_FOUND)
-
-
-def _check_numbers(count: int, mode: int, problems: list[Problem]) -> None:
-    if count < 1:
-        problems.append(Problem("--count", f"must be 1 or more, got {count}"))
-    elif not 1 <= mode <= count:
-        problems.append(Problem("--mode", f"must be from 1 to {count}, got {mode}", "ask for more modes with --count"))
 
 
 def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> None:

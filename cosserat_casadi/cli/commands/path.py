@@ -50,7 +50,8 @@ def path(
     """Follow equilibria while an input grows from zero, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
     # Every check adds to the list; the last one raises, so that all faults are seen at once.
     problems: list[Problem] = []
-    _check_bifurcation(bifurcation, problems)
+    if bifurcation == 0:
+        problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
     with collect_problems(problems):
         check_outputs(output, plot)
     with collect_problems(problems):
@@ -77,11 +78,6 @@ def path(
         print_path(Console(), followed, written)
     if not followed.converged:
         raise typer.Exit(NOT_FOUND)
-
-
-def _check_bifurcation(bifurcation: int, problems: list[Problem]) -> None:
-    if bifurcation == 0:
-        problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
 
 
 def _check_input(

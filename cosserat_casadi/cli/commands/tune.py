@@ -13,8 +13,8 @@ from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_file, check_inputs_stay
-from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.model import print_choice
+from cosserat_casadi.cli.reports.numbers import discretisation_table
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.load_cases import case_layout, read_load_cases

@@ -10,9 +10,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.numbers import discretisation_sentences, error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.spelling import counted

@@ -11,9 +11,8 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
-from cosserat_casadi.cli.reports.discretisation import discretisation_table
 from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.numbers import discretisation_table, error_words
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
+from cosserat_casadi.cli.reports.numbers import discretisation_sentences
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 
 

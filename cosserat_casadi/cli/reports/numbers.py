@@ -1,11 +1,16 @@
-"""Numbers of results as text."""
+"""Numbers of results, and modes and intervals of rods, as text."""
 
 from __future__ import annotations
 
 import numpy as np
+from rich.markup import escape
+from rich.table import Table
 
+from cosserat_casadi.cli.reports.format import table_of
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.rod.properties import STRAINS
 
 ROUNDING = 1e-14
 """Share of the largest entry of a vector below which an entry is shown as zero."""
@@ -33,3 +38,25 @@ def error_words(error: float, within: bool | None, tolerance: float) -> str:
     if within:
         return f"{words}, within the tolerance of {tolerance:g}"
     return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"
+
+
+def discretisation_sentences(model: Model) -> list[str]:
+    """Modes, intervals and elements of every rod."""
+    sentences = []
+    for name, d in model.discretisation.items():
+        sentence = f"{name}: modes {list(d.modes)}, {d.nodes} intervals"
+        if d.elements > 1:
+            sentence += f" in {d.elements} elements"
+        sentences.append(sentence)
+    return sentences
+
+
+def discretisation_table(model: Model) -> Table:
+    """Strains, modes, intervals, elements and integrator of every rod."""
+    table = table_of("rod", "strains", "modes", "intervals", "elements", "rotation by")
+    for name, d in model.discretisation.items():
+        properties = model.discrete.rods[name].properties
+        strains = ", ".join(STRAINS[index] for index in properties.admitted)
+        modes = ", ".join(str(count) for count in d.modes)
+        table.add_row(escape(name), strains, modes, str(d.nodes), str(d.elements), d.transport)
+    return table

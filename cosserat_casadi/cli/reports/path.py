@@ -103,14 +103,9 @@ def _add_row(table: Table, path: EquilibriumPath, row: _TableRow, abscissae: dic
     for (name, X), position in zip(abscissae.items(), row.positions, strict=True):
         point_cells = [escape(cell) for cell in cells]
         position_cell = ", ".join(digits(position))
-        table.add_row(*point_cells, escape(_section_name(name, X)), position_cell)
+        section = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
+        table.add_row(*point_cells, escape(section), position_cell)
         cells = [""] * len(cells)
-
-
-def _section_name(rod: str, X: float) -> str:
-    if X == 1.0:
-        return f"{rod} tip"
-    return f"{rod} X = {X:.3g}"
 
 
 def _stability(path: EquilibriumPath, index: int) -> str:

@@ -11,9 +11,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.discretisation import discretisation_sentences
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import digits, error_words
+from cosserat_casadi.cli.reports.numbers import digits, discretisation_sentences, error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.spelling import counted
@@ -21,7 +20,6 @@ from cosserat_casadi.spelling import counted
 # Only named in signatures: what prints a solution needs no solver of inverse problems.
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
-    from cosserat_casadi.control.targets import TargetMiss
 
 STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
 
@@ -80,7 +78,8 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
 
     targets = table_of("target", "position missed by, m", "angle missed by, rad")
     for gap in inverse.gaps:
-        targets.add_row(escape(gap.what), _with_error(gap.position, gap.position_error), _angle(gap))
+        angle = "free" if gap.angle is None else _with_error(gap.angle, gap.angle_error)
+        targets.add_row(escape(gap.what), _with_error(gap.position, gap.position_error), angle)
     console.print(targets)
     if any(gap.position_error is not None for gap in inverse.gaps):
         print_plain(console, "± is the estimated error of the model that the gap was measured on.")
@@ -95,12 +94,6 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     print_tubes_and_merit(console, inverse.solution)
     print_plain(console, work)
     print_written(console, written)
-
-
-def _angle(gap: TargetMiss) -> str:
-    if gap.angle is None:
-        return "free"
-    return _with_error(gap.angle, gap.angle_error)
 
 
 def _with_error(gap: float, error: float | None) -> str:

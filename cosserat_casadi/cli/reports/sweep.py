@@ -153,7 +153,7 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     compared = [entry for entry in checked if entry["difference"] is not None]
     if compared:
         # An error that could not be estimated counts as infinite.
-        estimates = [_or_infinite(entry["error_estimate"]) for entry in compared]
+        estimates = [math.inf if entry["error_estimate"] is None else entry["error_estimate"] for entry in compared]
         error = max(estimates)
         difference = max(entry["difference"] for entry in compared)
         differing_by = "by rounding alone" if difference <= ROUNDING else f"by at most {difference:.1e}"
@@ -192,12 +192,6 @@ def _rows(entries: list[dict[str, Any]]) -> str:
     """Numbers of rows as a user counts them, from 1."""
     numbers = [entry["row"] + 1 for entry in entries]
     return listed(numbers, "row")
-
-
-def _or_infinite(estimate: float | None) -> float:
-    if estimate is None:
-        return math.inf
-    return estimate
 
 
 def _within(error: float, tolerance: float) -> str:

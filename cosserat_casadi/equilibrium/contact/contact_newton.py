@@ -58,7 +58,7 @@ def sought(equations: ContactEquations, start: FloatArray, settings: NewtonSetti
             break
         best = z
         least = norm
-        if _narrowest(equations, z) < COLLAPSED:
+        if _widths(equations, z).min() < COLLAPSED:
             break
         step = solved(equations.jacobian(z, equations.given), -residual)
         if step is None:
@@ -93,10 +93,6 @@ def _widths(equations: ContactEquations, z: FloatArray) -> FloatArray:
     """Widths of the elements of all rods."""
     _, _, places = equations.parts(z)
     return np.concatenate([np.diff(equations.ends(rod, places)) for rod in equations.grids.rods])
-
-
-def _narrowest(equations: ContactEquations, z: FloatArray) -> float:
-    return float(_widths(equations, z).min())
 
 
 def _share(equations: ContactEquations, z: FloatArray, step: FloatArray) -> float:
