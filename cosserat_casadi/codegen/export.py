@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from functools import partial
@@ -22,7 +21,7 @@ from cosserat_casadi.codegen.kernel_files import external_sources, kernel_source
 from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import library_sources
-from cosserat_casadi.codegen.manifest import MANIFEST, manifest
+from cosserat_casadi.codegen.manifest import MANIFEST, manifest, with_manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
@@ -228,9 +227,7 @@ def folder_files(
     if motion is not None:
         described["motion"] = motion_entry(model)
     described["turn"] = budget.entry
-    described["files"] = sorted([*files, MANIFEST])
-    files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
-    return files
+    return with_manifest(files, described)
 
 
 def check_period(scene: Scene, period: float | None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -69,6 +69,9 @@ SECOND_VARIATION = "second_variation.c"
 SOLVER_FILES = (*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, LEAST_MISFIT, SECOND_VARIATION)
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 """Files of the folder ``c`` that sources of a library include, as they are."""
+
+TEMPLATES = ("library.h.in", "library.c.in", "config.h.in", "demo.c.in")
+"""Templates of header, source, configuration and demo."""
 
 COMMENT_WIDTH = 120
 """Characters of a line in a comment."""
@@ -185,18 +188,50 @@ def library_sources(
     linear = DENSE if parts is None else BLOCKS
     in_motion = () if motion is None else MOTION_FILES
     verbatim = (*SHARED, *estimate, *linear, *in_motion)
-    demos = {f"{name}_demo.c": render("demo.c.in", words)}
+    files = rendered(words, verbatim)
     if motion is not None:
-        demos[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
+        files[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
+    return {**files, **({} if rows is None else rows.files)}
+
+
+def rendered(words: dict[str, Any], verbatim: Iterable[str], templates: Sequence[str] = TEMPLATES) -> dict[str, str]:
+    """Files that every folder has, by name: header, source, configuration, demo, build file, README, and the solver.
+
+    Args:
+        words: of the templates.
+        verbatim: files of the folder ``c`` that are written as they are.
+        templates: of the first four.
+    """
+    header, source, config, demo = (render(template, words) for template in templates)
+    name = words["name"]
     return {
-        f"{name}.h": render("library.h.in", words),
-        f"{name}.c": render("library.c.in", words),
-        f"{name}_config.h": render("config.h.in", words),
-        **demos,
+        f"{name}.h": header,
+        f"{name}.c": source,
+        f"{name}_config.h": config,
+        f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in verbatim},
-        **({} if rows is None else rows.files),
+    }
+
+
+def title_words(
+    names: Names, scene: Scene, generated: Mapping[str, str], without_workspace: Collection[str] = ()
+) -> dict[str, Any]:
+    """Names, title and versions of a folder, and the memory that its kernels need."""
+    major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
+    return {
+        "name": names.name,
+        "MACRO": names.macro,
+        "title": comment(scene.title or names.name),
+        "version": version("cosserat-casadi"),
+        "version_major": major,
+        "version_minor": minor,
+        "version_patch": patch,
+        "casadi_version": ca.CasadiMeta.version(),
+        "kernel_reals": largest_room(generated, "W") + 1,
+        "kernel_integers": largest_room(generated, "IW") + 1,
+        "stack_kb": f"{np.ceil(stack_bytes(generated, without_workspace) / 500) / 2:g}",
     }
 
 
@@ -256,25 +291,14 @@ def _words(
         "prototypes": "".join(function.prototype(render) for function in functions),
         "functions": "".join(function.wrapper(render) for function in functions),
         "function_rows": "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions),
-        "title": comment(model.scene.title or names.name),
-        "version": version("cosserat-casadi"),
-        **version_words(),
-        "casadi_version": ca.CasadiMeta.version(),
         **accuracy,
     }
-
-
-def version_words() -> dict[str, str]:
-    """The version of this package in three numbers."""
-    major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
-    return {"version_major": major, "version_minor": minor, "version_patch": patch}
 
 
 def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
     without_workspace = {function.kernel for function in public_functions(model, names)}
     return {
-        "name": names.name,
-        "MACRO": names.macro,
+        **title_words(names, model.scene, generated, without_workspace),
         "unknowns": model.size,
         "inputs": model.inputs.size,
         "rods": len(names.rods),
@@ -282,11 +306,8 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "poses": len(names.rods) + len(names.bodies),
         # C has no array without entries; parameters are behind the inputs.
         "input_room": max(given_size(model), 1),
-        "kernel_reals": largest_room(generated, "W") + 1,
-        "kernel_integers": largest_room(generated, "IW") + 1,
         "max_reuses": newton.MAX_REUSES,
         "kept_steps": newton.MAX_REUSES + STEPS_OF_ESTIMATE,
-        "stack_kb": f"{np.ceil(stack_bytes(generated, without_workspace) / 500) / 2:g}",
     }
 
 

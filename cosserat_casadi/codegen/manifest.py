@@ -137,10 +137,7 @@ def manifest(
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
-        "schema": SCHEMA,
-        "name": names.name,
-        "title": model.scene.title,
-        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        **head_entries(names, model.scene),
         "inputs": input_entries(model),
         **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         **_output_entries(model),
@@ -149,6 +146,22 @@ def manifest(
         **accuracy_entries(model.scene, error_estimate, verified),
         "functions": [_function_entry(kernel, known) for kernel in kernels],
     }
+
+
+def head_entries(names: Names, scene: Scene) -> dict[str, Any]:
+    """Name, title and versions, with which every manifest begins."""
+    return {
+        "schema": SCHEMA,
+        "name": names.name,
+        "title": scene.title,
+        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+    }
+
+
+def with_manifest(files: Mapping[str, str], described: Mapping[str, Any]) -> dict[str, str]:
+    """Files of a folder, the manifest last, which lists all."""
+    entries = {**described, "files": sorted([*files, MANIFEST])}
+    return {**files, MANIFEST: json.dumps(entries, indent=1, ensure_ascii=False) + "\n"}
 
 
 def accuracy_entries(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, Any]:

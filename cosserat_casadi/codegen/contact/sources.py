@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
@@ -15,12 +12,11 @@ from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, ArrangementKernels, distance_kernels
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernel_files import kernel_sources
-from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, version_words
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, SCHEMA, accuracy_entries, input_entries
-from cosserat_casadi.codegen.memory import largest_room, stack_bytes
+from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, rendered, title_words
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, accuracy_entries, head_entries, input_entries, with_manifest
+from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
-from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.contact import (
     contact_alternatives,
     contact_equations,
@@ -37,6 +33,9 @@ from cosserat_casadi.scene.writing import scene_text
 
 VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_faults.c", "contact_settle.c", "contact.c")
 """Files of the folder ``c`` that the library's own source includes, as they are."""
+
+TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "contact_demo.c.in")
+"""Templates of header, source, configuration and demo."""
 
 ERROR_FILES = ("contact_error.c",)
 """The same of a library that estimates errors."""
@@ -111,25 +110,13 @@ def contact_files(
     tables = Tables(chosen, names.name)
     words = _words(chosen, names, tables, generated)
     words |= accuracy_words(chosen.scene, error_estimate, verified)
-    name = names.name
     files = {
-        f"{name}.h": render("contact.h.in", words),
-        f"{name}.c": render("contact_library.c.in", words),
-        f"{name}_config.h": render("contact_config.h.in", words),
-        f"{name}_demo.c": render("contact_demo.c.in", words),
-        "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("README.md.in", words),
-        **{file: resource("c", file) for file in (*VERBATIM, *(ERROR_FILES if chosen.richer else ()))},
+        **rendered(words, (*VERBATIM, *(ERROR_FILES if chosen.richer else ())), TEMPLATES),
         **generated,
         "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
     }
-    described_folder = {
-        **_manifest(model, chosen, names),
-        **accuracy_entries(chosen.scene, error_estimate, verified),
-        "files": sorted([*files, MANIFEST]),
-    }
-    files[MANIFEST] = json.dumps(described_folder, indent=1, ensure_ascii=False) + "\n"
-    return files
+    accuracy = accuracy_entries(chosen.scene, error_estimate, verified)
+    return with_manifest(files, {**_manifest(model, chosen, names), **accuracy})
 
 
 def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, str]) -> dict[str, Any]:
@@ -140,15 +127,9 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
     forces = max(len(own.nominal.force_units) for own in chosen.equations)
     inputs = chosen.layout.size
     return {
-        "name": names.name,
+        **title_words(names, chosen.scene, generated),
         **PLAIN_BUILD,
         **dict.fromkeys(("in_contact", "with_axes"), True),
-        "MACRO": names.macro,
-        "title": comment(chosen.scene.title or names.name),
-        "version": version("cosserat-casadi"),
-        **version_words(),
-        "casadi_version": ca.CasadiMeta.version(),
-        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
         **input_words(free, names),
         "inputs": inputs,
         "input_room": max(inputs, 1),
@@ -178,8 +159,6 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "tries": tries,
         "candidates": CANDIDATES,
         "tables": tables.text(),
-        "kernel_reals": largest_room(generated, "W") + 1,
-        "kernel_integers": largest_room(generated, "IW") + 1,
         "kernel_arguments": largest_room(generated, "ARG") + 2,
         "kernel_results": largest_room(generated, "RES") + 2,
         "default_iterations": TRACK_ITERATIONS,
@@ -248,10 +227,7 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
         }
         arrangements.append({"contacts": touches, **sizes})
     return {
-        "schema": SCHEMA,
-        "name": names.name,
-        "title": chosen.scene.title,
-        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        **head_entries(names, chosen.scene),
         "inputs": input_entries(free),
         "rods": [rod.name for rod in chosen.scene.rods],
         "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],

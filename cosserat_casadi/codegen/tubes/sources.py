@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import replace
-from importlib.metadata import version
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
@@ -16,25 +13,24 @@ from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
     SHARED,
-    comment,
     input_words,
+    rendered,
     solver_constants,
-    version_words,
+    title_words,
 )
 from cosserat_casadi.codegen.manifest import (
-    MANIFEST,
-    SCHEMA,
     TUBES,
     accuracy_entries,
+    head_entries,
     input_entries,
     parameter_entries,
+    with_manifest,
 )
-from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
-from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
@@ -101,20 +97,11 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
     generated = kernel_sources(kernels, names)
     words = _words(model, names, generated, error_estimate)
     files = {
-        f"{name}.h": render("library.h.in", words),
-        f"{name}.c": render("library.c.in", words),
-        f"{name}_config.h": render("config.h.in", words),
-        f"{name}_demo.c": render("demo.c.in", words),
-        "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("README.md.in", words),
-        **{file: resource("c", file) for file in VERBATIM},
+        **rendered(words, VERBATIM),
         **generated,
         "scene.toml": scene_text(model.robot.scene),
     }
-    described = _manifest(model, names, error_estimate)
-    described["files"] = sorted([*files, MANIFEST])
-    files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
-    return files
+    return with_manifest(files, _manifest(model, names, error_estimate))
 
 
 def _words(
@@ -137,10 +124,7 @@ def _words(
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
         **input_words(model, names, RANGES),
-        **version_words(),
-        "version": version("cosserat-casadi"),
-        "casadi_version": ca.CasadiMeta.version(),
-        "title": comment(robot.scene.title or names.name),
+        **title_words(names, robot.scene, generated),
         **PLAIN_BUILD,
         "of_tubes": True,
         **parameter_words(render, basics, model, names, dynamics=False),
@@ -167,9 +151,6 @@ def _words(
         "lengths": numbers(robot.length.tolist()),
         "step_weights": numbers([1.0] * size),
         "is_shape": numbers([1] * size),
-        "kernel_reals": largest_room(generated, "W") + 1,
-        "kernel_integers": largest_room(generated, "IW") + 1,
-        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
 
@@ -198,10 +179,7 @@ def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) 
         outermost = robot.names[int(np.argmax(robot.translations(robot.inputs)))]
         unknowns.append({"rod": outermost, "frame": "tip", "first": robot.size, "count": model.size - robot.size})
     return {
-        "schema": SCHEMA,
-        "name": names.name,
-        "title": robot.scene.title,
-        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        **head_entries(names, robot.scene),
         "inputs": input_entries(model),
         **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         TUBES: list(robot.names),
