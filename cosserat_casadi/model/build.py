@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import casadi as ca
 import numpy as np
@@ -146,6 +146,20 @@ class Model(ModelFunctions, MotionFunctions, WithParameters):
     def discretisation(self) -> dict[str, Discretisation]:
         """Modes, nodes and element ends of every rod."""
         return {name: discrete_rod.discretisation for name, discrete_rod in self.discrete.rods.items()}
+
+    @property
+    def resolution(self) -> dict[str, Any]:
+        """Modes, nodes, element ends and integrator of every rod, as data."""
+        return {name: asdict(d) for name, d in self.discretisation.items()}
+
+    @property
+    def resolution_words(self) -> list[str]:
+        """Modes, intervals and elements of every rod."""
+        sentences = []
+        for name, d in self.discretisation.items():
+            elements = f" in {d.elements} elements" if d.elements > 1 else ""
+            sentences.append(f"{name}: modes {list(d.modes)}, {d.nodes} intervals{elements}")
+        return sentences
 
     def element_ends(self, rod: str) -> tuple[float, ...]:
         """Abscissae X at which the elements of a rod end, base to tip, with its parameters as they are here."""

@@ -36,6 +36,14 @@ class SystemFunctions(OfScene, Protocol):
         """Length that the pose error of each rod, or tube, is relative to, m."""
 
     @property
+    def resolution(self) -> dict[str, Any]:
+        """How finely the system is resolved, as data: modes and nodes of every rod, or steps of a piece of tubes."""
+
+    @property
+    def resolution_words(self) -> list[str]:
+        """The same in words."""
+
+    @property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a step, shape (size,)."""
 

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.estimation import Estimate
-from cosserat_casadi.results.json_text import discretisation_entries
 
 
 def estimate_result(found: Estimate) -> dict[str, Any]:
@@ -42,7 +41,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
         "within_tolerance": found.within_tolerance,
         "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
         "warnings": list(found.warnings),
-        "discretisation": discretisation_entries(found.model),
+        "discretisation": found.model.resolution,
         "rows": rows,
     }
 

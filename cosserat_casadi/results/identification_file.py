@@ -9,9 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, parts
-from cosserat_casadi.results.json_text import discretisation_entries
 from cosserat_casadi.scene.values import names_in
-from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 MOST_OUTLIERS = 100
 """Outliers that the file names."""
@@ -50,15 +48,8 @@ def identification_result(found: Identification) -> dict[str, Any]:
         "error_case": found.error_case,
         "within_tolerance": found.within_tolerance,
         **_steps(found),
-        "discretisation": _discretisation(found),
+        "discretisation": found.model.resolution,
     }
-
-
-def _discretisation(found: Identification) -> dict[str, Any]:
-    """Modes and nodes of every rod, or the steps of a piece of tubes."""
-    if isinstance(found.model, TubeFunctions):
-        return {"steps": found.model.steps}
-    return discretisation_entries(found.model)
 
 
 def _shared(found: Identification) -> dict[str, Any]:

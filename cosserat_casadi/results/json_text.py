@@ -1,4 +1,4 @@
-"""Numbers, arrays and discretisations as plain data, and plain data and tables as the texts of files."""
+"""Numbers and arrays as plain data, and plain data and tables as the texts of files."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-
-from cosserat_casadi.model.build import Model
 
 SCHEMA = 1
 """Version of the result files."""
@@ -52,16 +50,3 @@ def _cell(value: Any) -> Any:
     if isinstance(value, float):
         return repr(float(value)) if math.isfinite(value) else ""
     return value
-
-
-def discretisation_entries(model: Model) -> dict[str, dict[str, Any]]:
-    """Modes, nodes, breaks and integrator of every rod."""
-    entries = {}
-    for name, d in model.discretisation.items():
-        entries[name] = {
-            "modes": list(d.modes),
-            "nodes": d.nodes,
-            "breaks": list(d.breaks),
-            "transport": d.transport,
-        }
-    return entries

@@ -23,7 +23,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
-from cosserat_casadi.results.json_text import SCHEMA, csv_text, discretisation_entries, plain
+from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 
@@ -92,7 +92,7 @@ def motion_result(motion: Motion) -> dict[str, Any]:
         **_head(motion),
         "times": motion.times,
         "inputs": _inputs_over_time(motion),
-        "discretisation": discretisation_entries(model),
+        "discretisation": model.resolution,
         "rods": {name: _rod_entry(motion, name) for name in model.discrete.rods},
     }
     # A reader of rods alone need not know of tables that the scene does not have.

@@ -9,7 +9,6 @@ from cosserat_casadi.equilibrium.solution import SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.contact_entry import contact_entry, point_forces
-from cosserat_casadi.results.json_text import discretisation_entries
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
@@ -49,7 +48,7 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
         "message": path.message,
         "error_estimate": path.error_estimate,
         "branch": path.branch,
-        "discretisation": discretisation_entries(path.model),
+        "discretisation": path.model.resolution,
         "path": _point_entries(path),
         "events": [_event_entry(path, event) for event in path.events],
     }

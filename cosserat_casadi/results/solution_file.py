@@ -11,7 +11,6 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.contact_entry import point_forces
-from cosserat_casadi.results.json_text import discretisation_entries
 
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
@@ -43,7 +42,7 @@ def solution_result(solution: Solution) -> dict[str, Any]:
         "load_factor": solution.load_factor,
         # Columns of Legendre coefficients become rows, and what has one entry a number.
         "inputs": {name: value.T.squeeze() for name, value in inputs.items() if name in given},
-        "discretisation": discretisation_entries(model),
+        "discretisation": model.resolution,
         "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
     # A reader of rods alone need not know of tables that the scene does not have.

@@ -86,6 +86,16 @@ class TubeFunctions(WithParameters):
         return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
 
     @property
+    def resolution(self) -> dict[str, int]:
+        """Steps of each piece."""
+        return {"steps": self.steps}
+
+    @property
+    def resolution_words(self) -> list[str]:
+        """The same in words."""
+        return [f"{self.steps} steps a piece"]
+
+    @property
     def parameters(self) -> ParameterLayout:
         """Names, order and default values of the parameters."""
         return self.robot.parameters

@@ -11,11 +11,10 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import discretisation_sentences, error_words
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 MOST_CASES = 10
 """Unknowns of single cases that are printed for so many cases; the file has them all."""
@@ -30,19 +29,12 @@ def print_identification(console: Console, found: Identification, written: Seque
         console.print(_own_unknowns(found))
     if found.rows:
         print_plain(console, _residuals(found))
-        print_plain(console, escape("; ".join(_discretisation(found))))
+        print_plain(console, escape("; ".join(found.model.resolution_words)))
     if found.error_estimate is not None:
         tolerance = found.model.scene.accuracy.tolerance
         error = error_words(found.error_estimate, found.within_tolerance, tolerance)
         print_plain(console, f"estimated error of the model at most {error} ({escape(str(found.error_case))})")
     print_written(console, written)
-
-
-def _discretisation(found: Identification) -> list[str]:
-    """Modes and intervals of every rod, or the steps of a piece of tubes."""
-    if isinstance(found.model, TubeFunctions):
-        return [f"{found.model.steps} steps a piece"]
-    return discretisation_sentences(found.model)
 
 
 def print_refused_scene(console: Console, refusal: SceneError) -> None:

@@ -10,7 +10,6 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
-from cosserat_casadi.cli.reports.numbers import discretisation_sentences
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 
 
@@ -20,7 +19,7 @@ def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None
     print_outcome(console, modes.model.scene.title, modes.message, good=modes.converged, doubtful=grows)
     if modes.modes:
         console.print(_modes_table(modes))
-        print_plain(console, escape("; ".join(discretisation_sentences(modes.model))))
+        print_plain(console, escape("; ".join(modes.model.resolution_words)))
     print_written(console, written)
 
 

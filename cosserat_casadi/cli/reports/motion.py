@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import digits, discretisation_sentences
+from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.spelling import counted
 
@@ -72,7 +72,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
             yield f"{words} {counted(len(hits), 'time')}, which took {sum(event.energy for event in hits):.3g} J"
     if any(all(event.kind not in kinds for kinds in OF_PAIRS.values()) for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
-    yield "; ".join(discretisation_sentences(motion.model))
+    yield "; ".join(motion.model.resolution_words)
 
 
 def _contact_words(motion: Motion) -> str:

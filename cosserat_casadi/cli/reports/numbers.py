@@ -40,17 +40,6 @@ def error_words(error: float, within: bool | None, tolerance: float) -> str:
     return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"
 
 
-def discretisation_sentences(model: Model) -> list[str]:
-    """Modes, intervals and elements of every rod."""
-    sentences = []
-    for name, d in model.discretisation.items():
-        sentence = f"{name}: modes {list(d.modes)}, {d.nodes} intervals"
-        if d.elements > 1:
-            sentence += f" in {d.elements} elements"
-        sentences.append(sentence)
-    return sentences
-
-
 def discretisation_table(model: Model) -> Table:
     """Strains, modes, intervals, elements and integrator of every rod."""
     table = table_of("rod", "strains", "modes", "intervals", "elements", "rotation by")

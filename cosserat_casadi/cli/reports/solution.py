@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import digits, discretisation_sentences, error_words
+from cosserat_casadi.cli.reports.numbers import digits, error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.spelling import counted
@@ -158,7 +158,7 @@ def _merit_sentence(solution: Solution, work: str) -> str:
     """Accuracy of the solution, the iterations of the solver, and the discretisation."""
     parts = [f"residual {solution.residual_norm:.1e}", work]
     parts += _errors(solution)
-    parts += [escape(sentence) for sentence in discretisation_sentences(solution.model)]
+    parts += [escape(sentence) for sentence in solution.model.resolution_words]
     if solution.converged:
         parts.append(STABILITY[solution.stable])
     return "; ".join(parts)
