@@ -62,7 +62,7 @@ def test_two_libraries_in_one_program(library: Library) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", mostly_slow(["planar", "spatial", "pinned", "thick", "fixed", "loops"], quick=["pinned", "fixed"])
+    "name", mostly_slow(["planar", "spatial", "pinned", "thick", "fixed", "loops"], quick=["fixed"])
 )
 def test_float_vs_double(library: Library, name: str) -> None:
     """Rounding of 1e-7 leaves four digits and a converged status; loads are scaled about the scene's own."""

@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.libraries import ARMS, HAND, LOAD, QUICK, WRISTS, Exported, Recipe, gcc, run
+from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, scene
 
 TAPERED = {
@@ -77,7 +78,7 @@ STEP = 1e-5
 """Change of a parameter for differences, relative."""
 
 
-@pytest.fixture(params=RECIPES)
+@pytest.fixture(params=mostly_slow(RECIPES, quick=["pwire", "probot"]))
 def made(request: pytest.FixtureRequest, export_recipe: Callable[[str, Recipe], Exported]) -> Exported:
     return made_of(export_recipe, request.param)
 

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS
 from tests.codegen.libraries import QUICK, Exported, Recipe, run
 from tests.codegen.test_hard_cases import deep_arch
+from tests.families import mostly_slow
 from tests.scenes import cable_lengths
 
 Library = Callable[[str], Exported]
@@ -30,7 +31,9 @@ def loop(made: Exported, step: float) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("name", ["planar", "spatial", "pair", "tendons", "robot"])
+@pytest.mark.parametrize(
+    "name", mostly_slow(["planar", "spatial", "pair", "tendons", "robot"], quick=["planar", "spatial", "robot"])
+)
 def test_track_vs_solve_and_sensitivity(library: Library, name: str) -> None:
     """The same solution and, at it, the same derivatives bit for bit; what is not finite is called so and survived."""
     found = loop(library(name), 0.2)
@@ -132,7 +135,9 @@ ABSURD = [1e6, 1e8, 1e12, 1e100, -1e6, -1e9]
 """Forces, N, or lengths, m, beyond all that a rod is made for."""
 
 
-@pytest.mark.parametrize("name", ["planar", "spatial", "tendons", "cables", "robot"])
+@pytest.mark.parametrize(
+    "name", mostly_slow(["planar", "spatial", "tendons", "cables", "robot"], quick=["spatial", "robot"])
+)
 def test_absurd_turns_leave_everything_as_it_was(library: Library, name: str) -> None:
     """One status of a turn, and the solution before is there for the next."""
     made = library(name)

@@ -15,51 +15,18 @@ from cosserat_casadi import build, discretise, follow, parse_scene, solve
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.path_plot import plot_path
 from tests.commands import cosserat
+from tests.contact.test_contact import PUSH, ROD
+from tests.contact.test_contact import TABLE as HEAVY_ROD
 
 BENDING, LENGTH, WEIGHT, HEIGHT = 0.03, 1.2, 0.981, 0.08
 
-TABLE = """
-schema = 1
-title = "A heavy rod on a table"
-accuracy = { tolerance = 1e-7 }
-[[rods]]
-name = "rod"
-length = 1.2
-strain = "planar"
-stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }
-linear_density = 0.1
-base = { position = [0, 0, 0], tangent = [1, 0, 0] }
-[[loads]]
-name = "weight"
-kind = "gravity"
-acceleration = [0, 0, -9.81]
-[[loads]]
-name = "lift"
-kind = "tip_wrench"
-rod = "rod"
-force = [0, 0, 0]
-[[obstacles]]
-name = "table"
-kind = "plane"
-point = [0, 0, -0.08]
-normal = [0, 0, 1]
-"""
+LIFT = '[[loads]]\nname = "lift"\nkind = "tip_wrench"\nrod = "rod"\nforce = [0, 0, 0]\n'
+TABLE = HEAVY_ROD.replace("[[obstacles]]", LIFT + "[[obstacles]]")
 
-BAR = """
-schema = 1
+BAR = f"""
 inputs = ["rod.base.position"]
-accuracy = { tolerance = 1e-6 }
-[[rods]]
-name = "rod"
-length = 1.0
-strain = "planar"
-stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
-base = { position = [0, 0, 0], tangent = [1, 0, 0] }
-[[loads]]
-name = "push"
-kind = "tip_wrench"
-rod = "rod"
-force = [0, 0, -3.0]
+{ROD.replace('"kirchhoff"', '"planar"')}
+{PUSH}
 [[obstacles]]
 name = "bar"
 kind = "capsule"

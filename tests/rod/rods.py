@@ -31,6 +31,18 @@ PLANAR = (0,)
 KIRCHHOFF = (0, 1, 2)
 REISSNER = (0, 1, 2, 3, 4, 5)
 
+RODS = {
+    "planar": PLANAR,
+    "twisted": (2,),
+    "kirchhoff": KIRCHHOFF,
+    "reissner": REISSNER,
+    "bent-stretched": (0, 5),
+    "odd": (1, 2, 3, 5),
+    "sheared": (3, 4),
+    "stretched": (5,),
+}
+"""Strains that a rod admits."""
+
 _VANDER = {"legendre": legendre.legvander, "chebyshev": chebyshev.chebvander}
 _TOLERANCES = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15}
 

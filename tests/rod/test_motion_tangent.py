@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from rods import (
-    KIRCHHOFF,
-    PLANAR,
     REISSNER,
+    RODS,
     STRAIGHT,
     coordinates,
     drawn_motion,
@@ -29,16 +28,6 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.tangent import Tangent
 from tests.families import mostly_slow
 
-RODS = {
-    "planar": PLANAR,
-    "twisted": (2,),
-    "kirchhoff": KIRCHHOFF,
-    "reissner": REISSNER,
-    "bent-stretched": (0, 5),
-    "odd": (1, 2, 3, 5),
-    "sheared": (3, 4),
-    "stretched": (5,),
-}
 BREAKS = {"one": (0.0, 1.0), "two": (0.0, 0.3, 1.0)}
 ARGUMENTS = ["q", "v", "a"]
 

@@ -8,6 +8,7 @@ from rods import (
     KIRCHHOFF,
     PLANAR,
     REISSNER,
+    RODS,
     STRAIGHT,
     coordinates,
     drawn_motion,
@@ -22,15 +23,6 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import AT_REST, NO_CHANGE, FrameMotion, RodMotion, StrainRates
 
-RODS = {
-    "planar": PLANAR,
-    "twisted": (2,),
-    "kirchhoff": KIRCHHOFF,
-    "reissner": REISSNER,
-    "bent-stretched": (0, 5),
-    "sheared": (3, 4),
-    "stretched": (5,),
-}
 BREAKS = pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.35, 1.0)], ids=["one", "two"])
 
 

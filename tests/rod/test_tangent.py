@@ -8,9 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from rods import (
     CURVED,
-    KIRCHHOFF,
-    PLANAR,
-    REISSNER,
+    RODS,
     STRAIGHT,
     coordinates,
     hat,
@@ -24,16 +22,6 @@ from rods import (
 
 from cosserat_casadi.rod.tangent import Tangent
 
-RODS = {
-    "planar": PLANAR,
-    "twisted": (2,),
-    "kirchhoff": KIRCHHOFF,
-    "reissner": REISSNER,
-    "bent-stretched": (0, 5),
-    "odd": (1, 2, 3, 5),
-    "sheared": (3, 4),
-    "stretched": (5,),
-}
 BREAKS = {"one": (0.0, 1.0), "two": (0.0, 0.3, 1.0)}
 LOADS = ["point-force", "point-moment", "line-force", "line-moment", "all"]
 
