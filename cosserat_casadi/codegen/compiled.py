@@ -43,8 +43,9 @@ class Compiled(LoadedLibrary, CompiledMotion):
     """An exported folder as compiled functions.
 
     Methods take inputs by name, those not named keeping the scene's values, or all of them stacked; and so
-    parameters, where the scene names some. Functions take both stacked, parameters behind the inputs, as those of a
-    model do.
+    parameters, where the scene names some; without either they are the scene's own. They raise a ValueError for an
+    argument of the wrong size, and a SceneError for names or values that are not those of the scene. Functions take
+    both stacked, parameters behind the inputs, as those of a model do.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
     ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
@@ -142,17 +143,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         *,
         parameters: ArgumentValues = None,
     ) -> CompiledSolution:
-        """Equilibrium by the solver in C.
-
-        Args:
-            inputs: by name or stacked; the scene's own by default.
-            start: unknowns to start from; the unloaded rod by default.
-            parameters: by name or stacked; the scene's own by default.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
-        """
+        """Equilibrium by the solver in C, from unknowns to start from; the unloaded rod by default."""
         given = self.inputs.stacked(inputs)
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = self.info_type()
@@ -170,14 +161,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
     ) -> float | None:
         """Estimated error of an equilibrium, from modes that the model lacks; None where x is no equilibrium.
 
-        Args:
-            inputs: by name or stacked.
-            x: unknowns.
-            parameters: by name or stacked; the scene's own by default.
-
         Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
             AttributeError: the folder was exported without the estimate.
         """
         given = self.inputs.stacked(inputs)
@@ -202,14 +186,10 @@ class Compiled(LoadedLibrary, CompiledMotion):
 
         Args:
             before: inputs that ``start`` is an equilibrium for.
-            inputs: inputs to go to; both by name or stacked.
+            inputs: inputs to go to.
             start: unknowns.
-            parameters_before: parameters that ``start`` is an equilibrium for; the scene's own by default.
-            parameters: parameters to go to; likewise.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
+            parameters_before: parameters that ``start`` is an equilibrium for.
+            parameters: parameters to go to.
         """
         old = self.inputs.stacked(before, "before")
         given = self.inputs.stacked(inputs)
@@ -252,24 +232,14 @@ class Compiled(LoadedLibrary, CompiledMotion):
     def sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> tuple[FloatArray, dict[str, FloatArray]] | None:
-        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
-        """
+        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else (found[0].x, found[0].tips)
 
     def body_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
-        """
+        """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[0].bodies
 
@@ -278,15 +248,8 @@ class Compiled(LoadedLibrary, CompiledMotion):
     ) -> CompiledStability | None:
         """Whether an equilibrium is stable, for loads with a potential; None where x is no equilibrium.
 
-        Args:
-            inputs: by name or stacked.
-            x: the equilibrium for these inputs and parameters.
-            parameters: by name or stacked; the scene's own by default.
-
         Raises:
             AttributeError: the folder was exported without stability.
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
         """
         if stability_files(self._names.name)[0] not in self.manifest["files"]:
             raise AttributeError("export the folder with stability: export(..., stability=True)")
@@ -304,17 +267,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
     def parameter_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> Sensitivity | None:
-        """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium.
-
-        Args:
-            inputs: by name or stacked.
-            x: the equilibrium for these inputs and parameters.
-            parameters: by name or stacked; the scene's own by default.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
-        """
+        """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium."""
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[1]
 

@@ -322,18 +322,8 @@ class CompiledMotion(ABC):
     ) -> tuple[CompiledStep, FloatArray, FloatArray]:
         """Steps of one length, one after the other, while the inputs move with one acceleration.
 
-        It does what as many calls of :meth:`step` do, which take their arguments apart each time.
-
-        Args:
-            state: at the start.
-            dt: length of each step, s.
-            count: number of steps, at least 1.
-            inputs: at the start of the first, as in :meth:`step`.
-            inputs_rate: there, as in :meth:`step`.
-            inputs_acceleration: in all steps, as in :meth:`step`.
-            parameters: as there.
-            memory: as there.
-            options: as there.
+        It does what as many calls of :meth:`step` do, which take their arguments apart each time. Inputs and their
+        rates are those at the start of the first step.
 
         Returns:
             the last step, of which one that was not done ends all; the stacked inputs and their rates at its end.

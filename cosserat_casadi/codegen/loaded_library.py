@@ -21,6 +21,9 @@ from cosserat_casadi.maths.typing import FloatArray
 class LoadedLibrary(ABC):
     """An exported folder, compiled.
 
+    Methods take inputs by name, where those left out keep the scene's values, or all of them stacked. They raise a
+    ValueError for inputs of the wrong size, and a SceneError for names that are not those of the scene.
+
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
@@ -74,28 +77,12 @@ class LoadedLibrary(ABC):
         return float(self.manifest["tolerance"])
 
     def in_range(self, inputs: ArgumentValues = None) -> bool:
-        """Whether every input is in its range, by what it is and by the bounds of the scene.
-
-        Args:
-            inputs: by name or stacked; the scene's own by default.
-
-        Raises:
-            SceneError: names of inputs are not those of the scene.
-            ValueError: the inputs are of the wrong size.
-        """
+        """Whether every input is in its range, by what it is and by the bounds of the scene."""
         given = self.inputs.stacked(inputs)
         return bool(np.all((given >= self.inputs.lower) & (given <= self.inputs.upper)))
 
     def clamp(self, inputs: ArgumentValues = None) -> FloatArray:
-        """All inputs, stacked, those beyond their ranges moved to the ends of these; what is no number stays.
-
-        Args:
-            inputs: by name or stacked; the scene's own by default.
-
-        Raises:
-            SceneError: names of inputs are not those of the scene.
-            ValueError: the inputs are of the wrong size.
-        """
+        """All inputs, stacked, those beyond their ranges moved to the ends of these; what is no number stays."""
         return np.clip(self.inputs.stacked(inputs), self.inputs.lower, self.inputs.upper)
 
     @cached_property

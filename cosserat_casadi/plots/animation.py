@@ -84,7 +84,6 @@ def check_animation_path(path: str | Path) -> None:
 
     Raises:
         SceneError: the suffix is none of FORMATS.
-        PlotUnavailableError: matplotlib is not installed.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
     """
     suffix = Path(path).suffix.lower()
@@ -129,7 +128,6 @@ def save_animation(
 
     Raises:
         SceneError: the suffix is none of FORMATS.
-        PlotUnavailableError: matplotlib is not installed.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
         AnimationFailedError: ffmpeg gives up, as where it was built without H.264.
         WriteError: the file cannot be written, as on a full disk.

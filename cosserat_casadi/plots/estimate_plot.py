@@ -25,11 +25,7 @@ SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CA
 
 
 def plot_estimate(found: Estimate) -> Any:
-    """The matplotlib.figure.Figure of an estimate; rows that were not found are gaps, open markers second-best values.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
-    """
+    """Figure of an estimate; rows that were not found are gaps, open markers second-best values."""
     shown = min(MOST_PANELS, len(found.labels))
     columns = min(COLUMNS, shown)
     lines = ceil(shown / columns)

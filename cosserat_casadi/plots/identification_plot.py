@@ -30,11 +30,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 
 
 def plot_identification(found: Identification) -> Any:
-    """The matplotlib.figure.Figure of an identification.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
-    """
+    """The matplotlib.figure.Figure of an identification."""
     numbers = sorted({row.measurement for row in found.rows})[:MOST_PANELS]
     pairs = _pairs(found)
     columns = max(2, min(3, len(numbers) + 1 + len(pairs)))

@@ -71,7 +71,6 @@ def save_material_plot(scene: scenes.Scene, file: str | Path) -> None:
 
     Raises:
         SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`, or all rods are linear.
-        PlotUnavailableError: matplotlib is not installed.
     """
     save_figure(lambda: plot_materials(scene), file)
 
@@ -79,12 +78,8 @@ def save_material_plot(scene: scenes.Scene, file: str | Path) -> None:
 def plot_materials(scene: scenes.Scene) -> Any:
     """Figure of the materials of a scene: a panel for each strain of each rod that is not linear.
 
-    Returns:
-        matplotlib.figure.Figure.
-
     Raises:
         SceneError: all rods are linear.
-        PlotUnavailableError: matplotlib is not installed.
     """
     curves = [(rod.name, curve) for rod in scene.baked().rods for curve in stress_curves(rod_properties(rod))]
     if not curves:

@@ -58,12 +58,6 @@ def plot_modes(modes: Modes) -> Any:
 
     Dots mark sections; where sections only turn, lines show their x axes. A panel shows the plane that holds
     the mode, else space. All have one scale and one amplitude.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     count = len(modes.modes)
     columns = max(1, min(COLUMNS, count))
@@ -115,7 +109,6 @@ def save_mode_animation(
 
     Raises:
         SceneError: the suffix is none of FORMATS.
-        PlotUnavailableError: matplotlib is not installed.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
         WriteError: the file cannot be written, as on a full disk.
     """

@@ -67,12 +67,6 @@ def plot_motion(motion: Motion) -> Any:
     Left the rods at SHAPES times, early pale and late strong, with the outlines of bodies; in the plane where all of
     the motion lies in one. The paths of tips and bodies are coloured by time, their ends marked. Right, over time: the
     inputs that move, one panel a field and unit; the energies; the imbalance between them.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     moving = _moving_inputs(motion)
     panel_count = len(moving) + 2

@@ -53,12 +53,6 @@ def plot_path(path: EquilibriumPath) -> Any:
     """Figure of a path: one panel a rod, displacement over length to the right, factor upwards.
 
     Stable parts are solid, unstable dashed, neutral dash-dotted; events are marked.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     names = list(path.model.discrete.rods)
     columns = min(len(names), COLUMNS)

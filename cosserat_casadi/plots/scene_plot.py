@@ -42,12 +42,6 @@ def plot_solution(solution: Solution) -> Any:
     dashed, section axes (x red, y green, z blue), tendons and chambers, bodies filled, joints, obstacles, loads and
     forces of contact as arrows.
     Right, along X: the strains that are admitted, the internal moment and the internal force in section axes.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))

@@ -28,12 +28,6 @@ def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:
     Args:
         indices: of the results; a result that does not vary is left out.
         title: of the scene.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     shown = {name: found for name, found in indices.results.items() if np.all(np.isfinite(found.first))}
     columns = max(1, min(COLUMNS, len(shown)))

@@ -47,11 +47,7 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
         sweep: results.
         colour: column of the colour, or ``outcome``; by default the first swept column that varies.
 
-    Returns:
-        matplotlib.figure.Figure.
-
     Raises:
-        PlotUnavailableError: matplotlib is not installed.
         KeyError: there is no such column.
     """
     # A column of one value would colour all points alike.

@@ -40,12 +40,6 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
     """Figure of an equilibrium, or of all at the same inputs: left in space, right the angles along the centre line.
 
     Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
     """
     solutions = [solution] if isinstance(solution, TubeSolution) else solution.solutions
     figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
@@ -154,14 +148,7 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
 
 
 def plot_tube_path(path: TubePath) -> Any:
-    """Figure of a path: over the input, left the angles of the tips, right the energy; snaps as arrows.
-
-    Returns:
-        matplotlib.figure.Figure.
-
-    Raises:
-        PlotUnavailableError: matplotlib is not installed.
-    """
+    """Figure of a path: over the input, left the angles of the tips, right the energy; snaps as arrows."""
     figure = figure_class()(figsize=(13.0, 5.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     if path.solutions:

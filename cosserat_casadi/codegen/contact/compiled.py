@@ -119,13 +119,9 @@ class CompiledContact(LoadedLibrary):
         """Equilibrium by the solver in C.
 
         Args:
-            inputs: by name or stacked; the scene's own by default.
+            inputs: the scene's own by default.
             start: a solution from which the inputs move on; that of the scene's own inputs by default, and where the
                 way from it does not lead to the inputs.
-
-        Raises:
-            SceneError: names of inputs are not those of the scene.
-            ValueError: the inputs are of the wrong size.
         """
         given = self.inputs.stacked(inputs)
         state = self._room() if start is None else self._state(start)
@@ -145,14 +141,13 @@ class CompiledContact(LoadedLibrary):
         """One turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: by name or stacked.
+            inputs: of the turn.
             start: the solution of the turn before.
             max_iterations: most Newton steps; by default what the header says.
             max_parts: most parts of the way of the inputs; likewise.
 
         Raises:
-            SceneError: names of inputs are not those of the scene.
-            ValueError: the inputs are of the wrong size, or one budget is given without the other.
+            ValueError: one budget is given without the other.
         """
         given = self.inputs.stacked(inputs)
         options = budget(ContactOptions, max_iterations, max_parts)

@@ -46,17 +46,7 @@ class CompiledTubes(Compiled):
     def poses(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
     ) -> dict[str, FloatArray]:
-        """Position and quaternion of the tip of each tube, shape (7,).
-
-        Args:
-            inputs: by name or stacked.
-            x: unknowns.
-            parameters: by name or stacked; the scene's own by default.
-
-        Raises:
-            ValueError: an argument is of the wrong size.
-            SceneError: inputs or parameters are not those of the scene.
-        """
+        """Position and quaternion of the tip of each tube, shape (7,)."""
         poses = np.zeros((len(self.tubes), POSE_SIZE))
         given = pointer(self.inputs.stacked(inputs)), *self.parameters.passed(parameters)
         self._function("poses")(pointer(vector(x, self.size, "x")), *given, pointer(poses), self._workspace())
@@ -75,16 +65,15 @@ class CompiledTubes(Compiled):
         """One turn of a control loop: the solution and its derivatives, in bounded work.
 
         Args:
-            inputs: of the turn, by name or stacked.
+            inputs: of the turn.
             start: the solution of the turn before.
-            parameters: by name or stacked; the scene's own by default.
+            parameters: of the turn; the scene's own by default.
             derivatives: whether those of the tips are wanted.
             max_iterations: most Newton steps; by default what the header says.
             max_continuation_steps: most points between the last inputs and these; likewise.
 
         Raises:
-            SceneError: names of inputs are not those of the scene.
-            ValueError: the inputs are of the wrong size, or one budget is given without the other.
+            ValueError: one budget is given without the other.
         """
         given = self.inputs.stacked(inputs)
         p = self.parameters.passed(parameters)
