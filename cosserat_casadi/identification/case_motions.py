@@ -30,7 +30,7 @@ from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.simulate import EXACT, STAGES
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings
-from cosserat_casadi.numerics.step import TimeStep, stages_of
+from cosserat_casadi.numerics.step import StepPolynomial, TimeStep
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 FIRST_STEPS = 16
@@ -225,7 +225,7 @@ class Motions:
         differential = self.model.discrete.unknowns.differential
         instants = []
         for leg, step in steps:
-            stages = stages_of(method, differential, step.start, step.size, step.unknowns)
+            stages = StepPolynomial(method, differential, step.start, step.size, step.unknowns).stages
             for i in range(count):
                 given = leg.piece.at(float(stages.times[i]))
                 instants.append([stages.x[i], stages.v[i], stages.a[i], *given])

@@ -16,7 +16,7 @@ from cosserat_casadi.motion.checkpoint import EnergyAccount
 from cosserat_casadi.motion.history import History, Leg
 from cosserat_casadi.motion.trajectory import Energies
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import TimeStep, stages_of
+from cosserat_casadi.numerics.step import TimeStep
 
 Place = tuple[Leg, Instant]
 """An instant of a motion, and the piece of the inputs that it belongs to."""
@@ -133,7 +133,7 @@ def _up_to(history: History, times: FloatArray, powers: FloatArray, begin: Float
 
 
 def _stage_places(leg: Leg, step: TimeStep) -> list[Place]:
-    stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
+    stages = step.stages
     rows = zip(stages.times, stages.x, stages.v, stages.a, strict=True)
     return [(leg, Instant(float(time), x, v, a)) for time, x, v, a in rows]
 

@@ -22,7 +22,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import TimeStep, stages_of
+from cosserat_casadi.numerics.step import TimeStep
 from cosserat_casadi.scene import Scene
 
 MOMENTA = 6
@@ -111,7 +111,7 @@ class MomentumKeeper:
         """Impulse of the loads in a step, shape (6,), N s and N m s; nothing else acts from outside."""
         if not self._loaded:
             return np.zeros(6)
-        stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
+        stages = step.stages
         rates = []
         for time, x, v, a in zip(stages.times, stages.x, stages.v, stages.a, strict=True):
             at = self._to_model(Instant(float(time), x, v, a))

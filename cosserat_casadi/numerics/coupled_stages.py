@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.stage_newton import ROUNDING, NewtonBounds, StageOutcome, StageSolution
-from cosserat_casadi.numerics.step import stages_of
+from cosserat_casadi.numerics.step import StepPolynomial
 from cosserat_casadi.numerics.step_matrices import scaled_inverse
 
 ITERATIONS = 12
@@ -48,7 +48,7 @@ class CoupledStages:
 
     def residuals(self, unknowns: FloatArray) -> FloatArray:
         """F at the stages for their unknowns, as in :class:`Step`; both of shape (s, n)."""
-        stages = stages_of(self.method, self.equations.differential, self.start, self.size, unknowns)
+        stages = StepPolynomial(self.method, self.equations.differential, self.start, self.size, unknowns).stages
         return self.equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
 
     def jacobian(self, unknowns: FloatArray) -> FloatArray:
@@ -61,7 +61,7 @@ class CoupledStages:
             shape (s n, s n).
         """
         differential = self.equations.differential
-        stages = stages_of(self.method, differential, self.start, self.size, unknowns)
+        stages = StepPolynomial(self.method, differential, self.start, self.size, unknowns).stages
         count, size = unknowns.shape
         blocks = np.zeros((count, size, count, size))
         for i in range(count):

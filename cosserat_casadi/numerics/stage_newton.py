@@ -18,7 +18,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.secant_updates import SecantUpdates
-from cosserat_casadi.numerics.step import stages_of
+from cosserat_casadi.numerics.step import StepPolynomial
 from cosserat_casadi.numerics.step_matrices import StepMatrices
 
 ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
@@ -99,7 +99,7 @@ def solve_stages(
     longest = np.inf
     contraction = 0.0
     for iteration in range(1, bounds.iterations + 1):
-        stages = stages_of(method, equations.differential, start, matrices.step, unknowns)
+        stages = StepPolynomial(method, equations.differential, start, matrices.step, unknowns).stages
         residuals = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = float(np.max(np.abs(residuals), initial=0.0))
         corrections = updates.applied_to(matrices.corrections(residuals))

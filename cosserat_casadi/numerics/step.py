@@ -37,20 +37,15 @@ class Stages:
 
 
 @dataclass(frozen=True)
-class TimeStep:
-    """One step of a motion.
+class StepPolynomial:
+    """The motion in a step, as the unknowns of its stages determine it.
 
     Attributes:
         method: the collocation method.
         differential: which entries have accelerations, shape (n,).
         start: where the step begins; its acceleration is that of the step before.
         size: h, s.
-        unknowns: those of the stages: accelerations of differential entries, values of algebraic ones, shape (s, n).
-        end: where the step ends.
-        error: estimated error of the step over its tolerance; nan where none was estimated.
-        iterations: Newton iterations of the step as it was taken.
-        residual: largest entry of F at the stages before the last correction.
-        contraction: ratio of the last two corrections; 0 where there was but one.
+        unknowns: of the stages: accelerations of differential entries, values of algebraic ones, shape (s, n).
     """
 
     method: Collocation
@@ -58,6 +53,55 @@ class TimeStep:
     start: Instant
     size: float
     unknowns: FloatArray
+
+    @property
+    def accelerations(self) -> FloatArray:
+        """Accelerations at the stages, zero of algebraic entries, shape (s, n), 1/s²."""
+        return np.where(self.differential, self.unknowns, 0.0)
+
+    @property
+    def stages(self) -> Stages:
+        """The instants of the stages."""
+        method, start, size, a = self.method, self.start, self.size, self.accelerations
+        v = np.where(self.differential, start.v + size * (method.matrix @ a), 0.0)
+        straight_on = start.x + size * method.nodes[:, None] * start.v
+        x = np.where(self.differential, straight_on + size**2 * (method.matrix_squared @ a), self.unknowns)
+        return Stages(start.time + method.nodes * size, x, v, a)
+
+    def arrival(self, time: float) -> Instant:
+        """The end, at its time, s; a method whose last stage is not the end extrapolates accelerations too."""
+        method, start, size, accelerations = self.method, self.start, self.size, self.accelerations
+        at_end = method.values_at(1.0) @ self.unknowns
+        straight_on = start.x + size * start.v
+        x = np.where(self.differential, straight_on + size**2 * (method.position_weights @ accelerations), at_end)
+        v = np.where(self.differential, start.v + size * (method.weights @ accelerations), 0.0)
+        a = np.where(self.differential, at_end, 0.0)
+        return Instant(time, x, v, a)
+
+    def at_share(self, share: float, time: float) -> Instant:
+        """The polynomial at a share θ of the step, and the time that belongs to it, s."""
+        method, start, size, accelerations = self.method, self.start, self.size, self.accelerations
+        values = method.values_at(share) @ self.unknowns
+        displacement = share * size * start.v + size**2 * (method.double_integrals_at(share) @ accelerations)
+        velocity = start.v + size * (method.integrals_at(share) @ accelerations)
+        x = np.where(self.differential, start.x + displacement, values)
+        v = np.where(self.differential, velocity, 0.0)
+        a = np.where(self.differential, values, 0.0)
+        return Instant(time, x, v, a)
+
+
+@dataclass(frozen=True)
+class TimeStep(StepPolynomial):
+    """One step of a motion.
+
+    Attributes:
+        end: where the step ends.
+        error: estimated error of the step over its tolerance; nan where none was estimated.
+        iterations: Newton iterations of the step as it was taken.
+        residual: largest entry of F at the stages before the last correction.
+        contraction: ratio of the last two corrections; 0 where there was but one.
+    """
+
     end: Instant
     error: float
     iterations: int
@@ -71,85 +115,7 @@ class TimeStep:
         """
         if time == self.end.time:
             return self.end
-        share = (time - self.start.time) / self.size
-        return motion_at(self.method, self.differential, self.start, self.size, self.unknowns, share, time)
-
-
-def stages_of(
-    method: Collocation, differential: npt.NDArray[np.bool_], start: Instant, size: float, unknowns: FloatArray
-) -> Stages:
-    """Instants that belong to unknowns of the stages.
-
-    Args:
-        method: the collocation method.
-        differential: which entries have accelerations, shape (n,).
-        start: where the step begins.
-        size: h, s.
-        unknowns: as in :class:`TimeStep`, shape (s, n).
-    """
-    a = np.where(differential, unknowns, 0.0)
-    v = np.where(differential, start.v + size * (method.matrix @ a), 0.0)
-    straight_on = start.x + size * method.nodes[:, None] * start.v
-    x = np.where(differential, straight_on + size**2 * (method.matrix_squared @ a), unknowns)
-    times = start.time + method.nodes * size
-    return Stages(times, x, v, a)
-
-
-def end_of(
-    method: Collocation,
-    differential: npt.NDArray[np.bool_],
-    start: Instant,
-    size: float,
-    unknowns: FloatArray,
-    time: float,
-) -> Instant:
-    """Where a step ends; a method whose last stage is not the end extrapolates accelerations and algebraic entries.
-
-    Args:
-        method: the collocation method.
-        differential: which entries have accelerations, shape (n,).
-        start: where the step begins.
-        size: h, s.
-        unknowns: as in :class:`TimeStep`, shape (s, n).
-        time: of the end, s.
-    """
-    accelerations = np.where(differential, unknowns, 0.0)
-    at_end = method.values_at(1.0) @ unknowns
-    straight_on = start.x + size * start.v
-    x = np.where(differential, straight_on + size**2 * (method.position_weights @ accelerations), at_end)
-    v = np.where(differential, start.v + size * (method.weights @ accelerations), 0.0)
-    a = np.where(differential, at_end, 0.0)
-    return Instant(time, x, v, a)
-
-
-def motion_at(
-    method: Collocation,
-    differential: npt.NDArray[np.bool_],
-    start: Instant,
-    size: float,
-    unknowns: FloatArray,
-    share: float,
-    time: float,
-) -> Instant:
-    """The polynomial of a step at a share θ of it.
-
-    Args:
-        method: the collocation method.
-        differential: which entries have accelerations, shape (n,).
-        start: where the step begins.
-        size: h, s.
-        unknowns: as in :class:`TimeStep`, shape (s, n).
-        share: θ.
-        time: that belongs to it, s.
-    """
-    accelerations = np.where(differential, unknowns, 0.0)
-    values = method.values_at(share) @ unknowns
-    displacement = share * size * start.v + size**2 * (method.double_integrals_at(share) @ accelerations)
-    velocity = start.v + size * (method.integrals_at(share) @ accelerations)
-    x = np.where(differential, start.x + displacement, values)
-    v = np.where(differential, velocity, 0.0)
-    a = np.where(differential, values, 0.0)
-    return Instant(time, x, v, a)
+        return self.at_share((time - self.start.time) / self.size, time)
 
 
 def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import CarriedStep, TimeStep, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step import CarriedStep, StepPolynomial, TimeStep, extrapolated, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error, overlooked_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -202,7 +202,7 @@ class StepRun:
     def _middle(self, guess: FloatArray) -> Instant:
         """The middle of the step as the first iterate has it: a Jacobian there is nearest to those of all stages."""
         time = self.now.time + self.size / 2.0
-        return motion_at(self.method, self.equations.differential, self.now, self.size, guess, 0.5, time)
+        return StepPolynomial(self.method, self.equations.differential, self.now, self.size, guess).at_share(0.5, time)
 
     def error_of(self, solution: StageSolution, after_a_jump: bool) -> float:
         """Estimated error over tolerance of the step that was solved last."""
@@ -233,7 +233,7 @@ class StepRun:
         """
         differential = self.equations.differential
         now = self.now
-        arrived = end_of(self.method, differential, now, self.size, solution.unknowns, end)
+        arrived = StepPolynomial(self.method, differential, now, self.size, solution.unknowns).arrival(end)
         step = TimeStep(
             method=self.method,
             differential=differential,

@@ -14,7 +14,7 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, solve_stages
-from cosserat_casadi.numerics.step import TimeStep, end_of, extrapolated, motion_at
+from cosserat_casadi.numerics.step import StepPolynomial, TimeStep, extrapolated
 from cosserat_casadi.numerics.step_matrices import step_matrices
 from tests import moving_scenes
 from tests.codegen.libraries import Exported
@@ -112,13 +112,13 @@ def python_steps(model: Model, state: StepState, driven: Drive) -> list[TimeStep
         guess = np.tile(np.where(differential, now.a, now.x), (2, 1))
         if steps:
             guess = extrapolated(steps[-1].method, steps[-1], driven.dt)
-        middle = motion_at(method, differential, now, driven.dt, guess, 0.5, driven.dt / 2.0)
+        middle = StepPolynomial(method, differential, now, driven.dt, guess).at_share(0.5, driven.dt / 2.0)
         matrices = step_matrices(method, driven.dt, system.linearised(middle), differential)
         assert matrices is not None
         found = solve_stages(system, matrices, now, guess, bounds)
         assert found.outcome is StageOutcome.CONVERGED
         # Each step has a clock of its own.
-        end = end_of(method, differential, now, driven.dt, found.unknowns, 0.0)
+        end = StepPolynomial(method, differential, now, driven.dt, found.unknowns).arrival(0.0)
         nothing = {"error": 0.0, "iterations": 0, "residual": 0.0, "contraction": 0.0}
         steps.append(TimeStep(method, differential, now, driven.dt, found.unknowns, end, **nothing))  # type: ignore[arg-type]
         now = end

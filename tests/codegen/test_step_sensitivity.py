@@ -12,7 +12,7 @@ from cosserat_casadi import Model
 from cosserat_casadi.codegen.compiled_motion import StepOptions, StepSensitivity, StepState
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.step import TimeStep, stages_of
+from cosserat_casadi.numerics.step import StepPolynomial, TimeStep
 from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
@@ -31,7 +31,7 @@ def of_python(model: Model, step: TimeStep, driven: Drive) -> StepSensitivity:
     size, count = model.size, len(driven.inputs[0])
     method = radau(2)
     differential = step.differential
-    stages = stages_of(method, differential, step.start, step.size, step.unknowns)
+    stages = StepPolynomial(method, differential, step.start, step.size, step.unknowns).stages
     h = step.size
     moves = np.diag(differential.astype(float))
     still = np.eye(size) - moves

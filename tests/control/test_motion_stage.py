@@ -13,7 +13,7 @@ from cosserat_casadi import SceneError, build, scene_from_dict
 from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
 from cosserat_casadi.control import Collocation, gauss, motion_stage, radau
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import end_of, stages_of
+from cosserat_casadi.numerics.step import StepPolynomial
 from tests.codegen.test_load import cached, needs_compiler
 from tests.control.swing import LARGEST, RATE, STAGES, STEP, TENDONS, optimum, replayed, task
 from tests.families import mostly_slow
@@ -47,7 +47,7 @@ def compare_with_the_simulator(family: str, method: Collocation) -> None:
     drawn = drawn_state(model)
     start = Instant(0.0, drawn.x, np.where(differential, drawn.v, 0.0), 0.0 * drawn.x)
     unknowns = np.random.default_rng(1).standard_normal((method.stages, model.size))
-    stages = stages_of(method, differential, start, duration, unknowns)
+    stages = StepPolynomial(method, differential, start, duration, unknowns).stages
     steady = np.zeros(model.inputs.size)
     rows = []
     for i in range(method.stages):
@@ -58,7 +58,7 @@ def compare_with_the_simulator(family: str, method: Collocation) -> None:
     state = stage.state(start.x, start.v)
     found = stage.equations(state, scaled, drawn.inputs, inputs_rate=drawn.inputs_rate).full()[:, 0]
     assert_allclose(found, np.concatenate(rows), rtol=1e-10, atol=1e-11)
-    end = end_of(method, differential, start, duration, unknowns, duration)
+    end = StepPolynomial(method, differential, start, duration, unknowns).arrival(duration)
     following = stage.next_state(state, scaled).full()[:, 0]
     assert_allclose(following, stage.state(end.x, end.v), rtol=1e-13, atol=1e-14)
     assert_allclose(stage.transition @ state + stage.drive @ scaled, following[:, None], rtol=1e-13, atol=1e-14)

@@ -12,7 +12,6 @@ from cosserat_casadi import build, discretise, read_scene
 from cosserat_casadi.motion.history import History, equations_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.numerics.integration import StepOutcome
-from cosserat_casadi.numerics.step import stages_of
 from tests.families import mostly_slow
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -35,7 +34,7 @@ def largest_residual(history: History) -> float:
         equations = equations_of(history.model, leg.piece)
         if history.coordinates is not None:
             equations = history.coordinates.equations(equations)
-        stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
+        stages = step.stages
         rows = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = max(largest, float(np.abs(rows).max()))
     return largest
