@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, fields
@@ -20,6 +19,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.json_text import csv_text, json_text, plain
 from cosserat_casadi.scene.writing import scene_text
 
 CSV = "bench.csv"
@@ -80,7 +80,7 @@ def read_rows(folder: Path, mark: str) -> list[Measurement]:
             raise SceneError(_problem(f"{path} is not the table of a bench of this version", remedy))
         rows = [dict(zip(COLUMNS, cells, strict=True)) for cells in table[1:]]
         marks = {row.pop("scene") for row in rows}
-        read = [_measurement(row) for row in rows]
+        read = [Measurement(**{name: _parsed(name, cell) for name, cell in row.items()}) for row in rows]
     except (OSError, ValueError, csv.Error):
         raise SceneError(_problem(f"{path} cannot be read as the table of a bench", remedy)) from None
     if marks - {mark}:
@@ -89,19 +89,13 @@ def read_rows(folder: Path, mark: str) -> list[Measurement]:
 
 
 def write_rows(folder: Path, mark: str, rows: Sequence[Measurement]) -> None:
-    """The CSV with all rows so far, whole at any time."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for row in rows:
-        cells = [_cell(value) for value in asdict(row).values()]
-        writer.writerow([mark, *cells])
-    write_atomically(folder / CSV, stream.getvalue().encode())
+    """The CSV with all rows so far, whole at any time; numbers with six digits, an empty cell for NaN."""
+    cells = [[mark, *map(_rounded, asdict(row).values())] for row in rows]
+    write_atomically(folder / CSV, csv_text(COLUMNS, cells).encode())
 
 
 def write_json(folder: Path, scene: scenes.Scene, rows: Sequence[Measurement], facts: dict[str, Any]) -> None:
     """Everything as JSON: rows, front, and facts about reference and tools; numbers that are none are null."""
-    plain_rows = [_plain(row) for row in rows]
     versions = {"cosserat-casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()}
     content = {
         "schema": 1,
@@ -110,47 +104,20 @@ def write_json(folder: Path, scene: scenes.Scene, rows: Sequence[Measurement], f
         "versions": versions,
         **facts,
         "front": [row.name for row in front(rows)],
-        "rows": plain_rows,
+        "rows": [asdict(row) for row in rows],
     }
-    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    write_atomically(folder / JSON, text.encode())
+    write_atomically(folder / JSON, json_text(plain(content)).encode())
 
 
 def _problem(problem: str, remedy: str = "") -> Problem:
     return Problem("--output", problem, remedy)
 
 
-def _measurement(row: dict[str, str]) -> Measurement:
-    """The row that cells of the CSV hold."""
-    values = {name: _parsed(name, cell) for name, cell in row.items()}
-    return Measurement(**values)
-
-
-def _cell(value: Any) -> str:
-    """A value as a cell; an empty cell for NaN."""
-    if not isinstance(value, float):
-        return str(value)
-    if not isfinite(value):
-        return ""
-    return f"{value:.6g}"
+def _rounded(value: Any) -> Any:
+    return f"{value:.6g}" if isinstance(value, float) and isfinite(value) else value
 
 
 def _parsed(name: str, cell: str) -> Any:
     """The value that a cell of a column holds."""
     kind = _TYPES[name]
-    if kind is float:
-        return float(cell or "nan")
-    return kind(cell)
-
-
-def _plain(row: Measurement) -> dict[str, Any]:
-    """The row as data of a JSON file."""
-    values = asdict(row)
-    return {name: _finite(value) for name, value in values.items()}
-
-
-def _finite(value: Any) -> Any:
-    """The value as JSON takes it, which has no NaN."""
-    if isinstance(value, float) and not isfinite(value):
-        return None
-    return value
+    return float(cell or "nan") if kind is float else kind(cell)
