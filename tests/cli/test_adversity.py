@@ -328,9 +328,9 @@ def test_a_standard_error_that_is_full_changes_no_exit_code(folder: Path, line: 
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell sets the variable")
 @pytest.mark.parametrize("columns", mostly_slow(["0", "00", "''"], quick=["00"]))
 def test_no_columns_are_those_of_a_pipe(folder: Path, columns: str) -> None:
-    wanted = in_shell(folder, "check wire.toml").stdout
+    wanted = in_shell(folder, "solve --help").stdout
     shown = subprocess.run(
-        ["sh", "-c", f"COLUMNS={columns} {SHELL} check wire.toml"],
+        ["sh", "-c", f"COLUMNS={columns} {SHELL} solve --help"],
         cwd=folder,
         capture_output=True,
         text=True,
