@@ -152,7 +152,7 @@ def test_loads_that_go_round_do_no_work(name: str) -> None:
 # Rubber
 
 
-@pytest.mark.parametrize("name", RUBBERS)
+@pytest.mark.parametrize("name", mostly_slow(RUBBERS, quick=["ogden"]))
 def test_small_strains_are_linear(name: str) -> None:
     weak = {"force": [1e-7, 2e-7, 3e-7], "moment": [0.0, 0.0, 1e-9]}
     rubber = solved(loaded(rod(LAWS[name], CIRCLE, "reissner"), **weak))
@@ -185,7 +185,7 @@ def test_stretched_rubber_vibrates_by_its_tangent(force: float) -> None:
     assert_allclose(modes_of(solution, count=1).angular_frequencies, slowest, rtol=1e-8, atol=0)
 
 
-@pytest.mark.parametrize("name", RUBBERS)
+@pytest.mark.parametrize("name", mostly_slow(RUBBERS, quick=["mooney_rivlin", "ogden"]))
 def test_pure_bending_vs_quadrature(name: str) -> None:
     """A strip bent to a curvature by its end moment; fibres stretch up to 24 %."""
     curvature = 60.0
@@ -197,7 +197,9 @@ def test_pure_bending_vs_quadrature(name: str) -> None:
     assert_allclose(solution.strain([0.2, 0.9])[:, 1], curvature, rtol=5e-7, atol=0)
 
 
-@pytest.mark.parametrize(("name", "rtol"), [("neo_hookean", 3e-7), ("yeoh", 3e-5)])
+@pytest.mark.parametrize(
+    ("name", "rtol"), mostly_slow([("neo_hookean", 3e-7), ("yeoh", 3e-5)], quick=[("neo_hookean", 3e-7)])
+)
 def test_bending_of_a_round_section_vs_quadrature(name: str, rtol: float) -> None:
     """Fibres stretch up to 30 %, in a direction between the axes and all points of the quadrature."""
     curvature = np.array([45.0, 39.0])
@@ -333,7 +335,7 @@ def test_polynomial_vs_closed_form() -> None:
 
 
 @pytest.mark.parametrize("branch", ["loading", "unloading"])
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
 def test_plateau_vs_three_straight_pieces(strain: str, branch: str) -> None:
     """Off the rounded corners the moment is that of the straight pieces."""
     stiffness = E * np.pi / 4 * RADIUS**4
@@ -471,15 +473,23 @@ def test_law_of_ones_own_is_one_class() -> None:
 
 @pytest.mark.parametrize(
     ("name", "parameter"),
-    [
-        ("polynomial", "rod.material.terms[0].coefficient"),
-        ("yeoh", "rod.material.c2"),
-        ("mooney_rivlin", "rod.material.c01"),
-        ("ogden", "rod.material.ogden.1.1"),
-        ("superelastic", "rod.material.plateau_modulus"),
-        ("superelastic", "rod.section.radius"),
-        ("table", "rod.material.youngs_modulus"),
-    ],
+    mostly_slow(
+        [
+            ("polynomial", "rod.material.terms[0].coefficient"),
+            ("yeoh", "rod.material.c2"),
+            ("mooney_rivlin", "rod.material.c01"),
+            ("ogden", "rod.material.ogden.1.1"),
+            ("superelastic", "rod.material.plateau_modulus"),
+            ("superelastic", "rod.section.radius"),
+            ("table", "rod.material.youngs_modulus"),
+        ],
+        quick=[
+            ("polynomial", "rod.material.terms[0].coefficient"),
+            ("ogden", "rod.material.ogden.1.1"),
+            ("superelastic", "rod.section.radius"),
+            ("table", "rod.material.youngs_modulus"),
+        ],
+    ),
 )
 def test_numbers_of_laws_are_parameters(name: str, parameter: str) -> None:
     """A changed parameter, and a changed length, are the scene with that number."""

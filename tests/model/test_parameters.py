@@ -409,7 +409,7 @@ def point(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray,
     return x, v, a, inputs, np.zeros(model.inputs.size)
 
 
-@pytest.mark.parametrize("case", mostly_slow(CASES, quick=EACH_KIND[::2]))
+@pytest.mark.parametrize("case", mostly_slow(CASES, quick=["bodies"]))
 def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
     model = model_of(case)
     baked = build(scene_of(case).baked(), model.discretisation, moving=True)

@@ -73,12 +73,13 @@ MANY = tendon(COURSES["converging"]) + tendon(COURSES["partial"], "tension = 2.5
 MANY += tendon(COURSES["helical"], "tension = 1.5", "third")
 
 
-@pytest.mark.parametrize("cables", [*map(tendon, COURSES.values()), MANY], ids=[*COURSES, "several"])
-def test_tendons_vs_distributed_loads(cables: str) -> None:
+@pytest.mark.parametrize("course", mostly_slow([*COURSES, "several"], quick=["converging", "partial", "several"]))
+def test_tendons_vs_distributed_loads(course: str) -> None:
     """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there.
 
     The strain of a section is less exact than the tip, which bounds what can be asked here; the test below asks more.
     """
+    cables = MANY if course == "several" else tendon(COURSES[course])
     text = rod() + PRECURVED + LOADED + cables
     solution, reference = solved(text, 14), TendonRod(tomllib.loads(text))
     strain = solution.strain(0.0)[0]
@@ -157,7 +158,7 @@ def test_loaded_chamber_vs_intrinsic_strain() -> None:
     assert_allclose(found.tip().position, solved(rod() + shaped + LOADED).tip().position, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("course", COURSES)
+@pytest.mark.parametrize("course", mostly_slow(COURSES, quick=["converging", "partial"]))
 def test_length_is_the_length_of_the_course(course: str) -> None:
     """Chords through many points of r + R D, extrapolated."""
     solution = solved(rod() + LOADED + tendon(COURSES[course]))
@@ -167,7 +168,7 @@ def test_length_is_the_length_of_the_course(course: str) -> None:
     assert_allclose(solution.actuator("cable")["length"], fine + (fine - coarse) / 3, rtol=1e-8, atol=0)
 
 
-@pytest.mark.parametrize("course", COURSES)
+@pytest.mark.parametrize("course", mostly_slow(COURSES, quick=["converging", "partial"]))
 def test_work_of_the_tendon_is_the_change_of_energy(course: str) -> None:
     """E(τ) = −∫ τ dL = ∫ L dτ − τ L, by Gauss points in the tension."""
     model = build(scene_from_dict(tomllib.loads(rod() + tendon(COURSES[course])), ("accuracy.modes=8",)))
@@ -229,7 +230,13 @@ def test_cable_goes_slack_where_its_length_is_that_of_the_free_rod() -> None:
 ALL = tendon(COURSES["converging"]) + tendon(COURSES["partial"], "length = 0.12", "second") + chamber("span = [0.2, 1]")
 
 
-@pytest.mark.parametrize("strain", ['"planar"', '"kirchhoff"', '"reissner"', '["bending_x", "torsion", "extension"]'])
+@pytest.mark.parametrize(
+    "strain",
+    mostly_slow(
+        ['"planar"', '"kirchhoff"', '"reissner"', '["bending_x", "torsion", "extension"]'],
+        quick=['"reissner"', '["bending_x", "torsion", "extension"]'],
+    ),
+)
 @pytest.mark.parametrize("slack", mostly_slow(["", "\nslack = true"], quick=["\nslack = true"]))
 def test_jacobian_vs_automatic_and_finite_differences(strain: str, slack: str) -> None:
     text = rod(strain) + LOADED + ALL.replace("length = 0.12", f"length = 0.12{slack}")
@@ -275,9 +282,7 @@ def test_derivative_of_length_vs_automatic() -> None:
         assert_allclose(values[0].full(), values[1].full(), rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    "course", mostly_slow(["converging", "helical", "partial", "inner"], quick=["helical", "inner"])
-)
+@pytest.mark.parametrize("course", mostly_slow(["converging", "helical", "partial", "inner"], quick=["inner"]))
 def test_convergence_is_geometric_even_across_anchors(course: str) -> None:
     text = rod('["bending_x", "bending_y", "torsion", "extension"]') + LOADED + tendon(COURSES[course])
     tips = [

@@ -20,6 +20,7 @@ from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
+from tests.families import mostly_slow
 from tests.tubes.test_tube_robots import THREE, TWO, moved
 
 DIFFERENCE = 1e-6
@@ -189,7 +190,7 @@ def wrench(**keys: object) -> str:
 @pytest.mark.parametrize(
     "load",
     [
-        wrench(force=[0.5, -0.3, -1.2]),
+        pytest.param(wrench(force=[0.5, -0.3, -1.2]), marks=pytest.mark.slow),
         pytest.param(wrench(force=[0.5, -0.3, -1.2], frame='"body"'), marks=pytest.mark.slow),
         pytest.param(wrench(moment=[0.04, 0.03, 0.06]), marks=pytest.mark.slow),
         wrench(moment=[0.04, 0.03, 0.06], force=[0.2, 0.1, 0.3], frame='"body"'),
@@ -213,7 +214,7 @@ def poke(at: float, frame: str = "world") -> str:
     return '[[loads]]\nname = "poke"\nkind = "point_wrench"\nrod = "tube"\n' + lines
 
 
-@pytest.mark.parametrize("frame", ["world", "body"])
+@pytest.mark.parametrize("frame", mostly_slow(["world", "body"], quick=["body"]))
 def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
     load = poke(0.625, frame)
     found = solve(parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0") + load))
