@@ -31,6 +31,7 @@ from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -598,10 +599,9 @@ class _Robot:
 
     def _put_obstacles(self) -> None:
         for index, obstacle in enumerate(self.scene.obstacles):
-            shape = OBSTACLES.get(obstacle.kind)
-            if shape is None or index >= MOST_OBSTACLES:
-                reason = "a lumen is no solid" if obstacle.kind == "lumen" else "MuJoCo has no such obstacle"
-                self._leave_out(obstacle.name, f"{reason}, and it is missing")
+            shape = SURFACES[obstacle.kind].primitive(obstacle, self.size)
+            if not shape or index >= MOST_OBSTACLES:
+                self._leave_out(obstacle.name, "MuJoCo has no such obstacle, and it is missing")
                 continue
             carrier = self.world if obstacle.body is None else self.bodies[obstacle.body]
             along, back, across = obstacle.coefficients
@@ -619,7 +619,8 @@ class _Robot:
                 "friction": _numbers([friction, 0.005, 0.0001]),
                 "rgba": "0.63 0.55 0.36 1",
             }
-            ET.SubElement(carrier.element, "geom", {**attributes, **shape(obstacle, self.size)})
+            numbered = {key: value if key == "type" else _numbers(value) for key, value in shape.items()}
+            ET.SubElement(carrier.element, "geom", {**attributes, **numbered})
 
     def _tell_the_rest(self) -> None:
         """Say what of rods and inputs is not in the model."""
@@ -656,26 +657,6 @@ def _comment(left_out: Sequence[str]) -> str:
     # Two hyphens end a comment.
     return "\n".join(["", *(f"  {line}" for line in lines), ""]).replace("--", "−−")
 
-
-def _plane(obstacle: Any, size: float) -> dict[str, str]:
-    turned = NumericPose(np.array(obstacle.point, dtype=float), quaternion_from_tangent(obstacle.normal))
-    return {"type": "plane", "size": _numbers([5 * size, 5 * size, size]), **_place(turned)}
-
-
-def _sphere(obstacle: Any, size: float) -> dict[str, str]:
-    return {"type": "sphere", "size": _numbers(obstacle.radius), "pos": _numbers(obstacle.centre)}
-
-
-def _capsule(obstacle: Any, size: float) -> dict[str, str]:
-    return {"type": "capsule", "size": _numbers(obstacle.radius), "fromto": _numbers([*obstacle.start, *obstacle.end])}
-
-
-OBSTACLES: dict[str, Callable[[Any, float], dict[str, str]]] = {
-    "plane": _plane,
-    "sphere": _sphere,
-    "capsule": _capsule,
-}
-"""Shape of the geom of an obstacle by its kind; a kind without an entry is told in a sentence."""
 
 WRITERS: dict[str, Callable[[_Robot, Any], None]] = {
     "gravity": lambda robot, load: None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import Any, final
 
 import casadi as ca
 import numpy as np
@@ -30,6 +30,10 @@ class CapsuleObstacle(Obstacle[Capsule]):
     def mesh(self, obstacle: Capsule, near: FloatArray, size: float) -> FloatArray:
         """Rings along the bar, the half balls included."""
         return capsule_net(np.asarray(obstacle.start), np.asarray(obstacle.end), obstacle.radius)
+
+    def primitive(self, obstacle: Capsule, size: float) -> dict[str, Any]:
+        """A capsule between two points."""
+        return {"type": "capsule", "size": obstacle.radius, "fromto": [*obstacle.start, *obstacle.end]}
 
 
 def capsule_net(start: FloatArray, end: FloatArray, radius: float) -> FloatArray:

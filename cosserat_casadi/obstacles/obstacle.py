@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -58,6 +58,15 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
             near: a point that an endless surface is drawn about, shape (3,), m.
             size: of the scene, m.
         """
+
+    def primitive(self, obstacle: RecordType, size: float) -> dict[str, Any]:
+        """The shape as attributes of a geom of MuJoCo, whose type is a word; empty where MuJoCo has none such.
+
+        Args:
+            obstacle: the record of the scene.
+            size: of the scene, m, which an endless surface is drawn in.
+        """
+        return {}
 
     def function(self, obstacle: RecordType) -> ca.Function:
         """Point ↦ distance, its gradient 3×1 and its second derivative 3×3."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import Any, final
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.obstacle import Obstacle, across
 from cosserat_casadi.scene.obstacle_records import Plane
@@ -29,3 +30,8 @@ class PlaneObstacle(Obstacle[Plane]):
         first, second = across(normal)
         half = 0.6 * size * np.linspace(-1.0, 1.0, 5)
         return np.asarray(foot + half[:, None, None] * first + half[None, :, None] * second)
+
+    def primitive(self, obstacle: Plane, size: float) -> dict[str, Any]:
+        """A plane with its normal along z."""
+        turned = quaternion_from_tangent(obstacle.normal)
+        return {"type": "plane", "size": [5 * size, 5 * size, size], "pos": obstacle.point, "quat": turned}

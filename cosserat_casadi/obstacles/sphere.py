@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import Any, final
 
 import casadi as ca
 import numpy as np
@@ -31,3 +31,7 @@ class SphereObstacle(Obstacle[Sphere]):
             [ring * np.cos(around), ring * np.sin(around), np.cos(polar) * np.ones_like(around)], axis=-1
         )
         return np.asarray(np.asarray(obstacle.centre) + obstacle.radius * directions)
+
+    def primitive(self, obstacle: Sphere, size: float) -> dict[str, Any]:
+        """A ball."""
+        return {"type": "sphere", "size": obstacle.radius, "pos": obstacle.centre}
