@@ -120,3 +120,12 @@ def test_neighbours_have_hinges_in_opposite_order() -> None:
     orders = [[str(joint.get("name")).split("/")[-1] for joint in body.findall("joint")] for body in bodies]
     for first, second in pairwise(orders):
         assert first == second[::-1]
+
+
+def test_balls_and_bars_are_geoms_of_their_own_size() -> None:
+    ball = '[[obstacles]]\nname = "ball"\nkind = "sphere"\ncentre = [1, 2, 3]\nradius = 0.25\n'
+    bar = '[[obstacles]]\nname = "bar"\nkind = "capsule"\nfrom = [1, 0, 0]\nto = [1, 0, 2]\nradius = 0.5\n'
+    root = ET.fromstring(mjcf_of(parse_scene(FINGER + ball + bar), 4).text)
+    geoms = {geom.get("name"): geom for geom in root.iter("geom")}
+    assert [geoms["ball"].get(key) for key in ("type", "size", "pos")] == ["sphere", "0.25", "1 2 3"]
+    assert [geoms["bar"].get(key) for key in ("type", "size", "fromto")] == ["capsule", "0.5", "1 0 0 1 0 2"]
