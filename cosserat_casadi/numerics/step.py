@@ -62,32 +62,37 @@ class StepPolynomial:
     @property
     def stages(self) -> Stages:
         """The instants of the stages."""
-        method, start, size, a = self.method, self.start, self.size, self.accelerations
-        v = np.where(self.differential, start.v + size * (method.matrix @ a), 0.0)
-        straight_on = start.x + size * method.nodes[:, None] * start.v
-        x = np.where(self.differential, straight_on + size**2 * (method.matrix_squared @ a), self.unknowns)
-        return Stages(start.time + method.nodes * size, x, v, a)
+        a = self.accelerations
+        v = np.where(self.differential, self.start.v + self.size * (self.method.matrix @ a), 0.0)
+        straight_on = self.start.x + self.size * self.method.nodes[:, None] * self.start.v
+        curved = straight_on + self.size**2 * (self.method.matrix_squared @ a)
+        x = np.where(self.differential, curved, self.unknowns)
+        return Stages(self.start.time + self.method.nodes * self.size, x, v, a)
 
     def arrival(self, time: float) -> Instant:
         """The end, at its time, s; a method whose last stage is not the end extrapolates accelerations too."""
-        method, start, size, accelerations = self.method, self.start, self.size, self.accelerations
-        at_end = method.values_at(1.0) @ self.unknowns
-        straight_on = start.x + size * start.v
-        x = np.where(self.differential, straight_on + size**2 * (method.position_weights @ accelerations), at_end)
-        v = np.where(self.differential, start.v + size * (method.weights @ accelerations), 0.0)
-        a = np.where(self.differential, at_end, 0.0)
-        return Instant(time, x, v, a)
+        at_end = self.method.values_at(1.0) @ self.unknowns
+        straight_on = self.start.x + self.size * self.start.v
+        curved = straight_on + self.size**2 * (self.method.position_weights @ self.accelerations)
+        velocity = self.start.v + self.size * (self.method.weights @ self.accelerations)
+        return self._instant(time, curved, velocity, at_end)
 
     def at_share(self, share: float, time: float) -> Instant:
         """The polynomial at a share θ of the step, and the time that belongs to it, s."""
-        method, start, size, accelerations = self.method, self.start, self.size, self.accelerations
-        values = method.values_at(share) @ self.unknowns
-        displacement = share * size * start.v + size**2 * (method.double_integrals_at(share) @ accelerations)
-        velocity = start.v + size * (method.integrals_at(share) @ accelerations)
-        x = np.where(self.differential, start.x + displacement, values)
-        v = np.where(self.differential, velocity, 0.0)
-        a = np.where(self.differential, values, 0.0)
-        return Instant(time, x, v, a)
+        values = self.method.values_at(share) @ self.unknowns
+        moved = self.method.double_integrals_at(share) @ self.accelerations
+        displacement = share * self.size * self.start.v + self.size**2 * moved
+        velocity = self.start.v + self.size * (self.method.integrals_at(share) @ self.accelerations)
+        return self._instant(time, self.start.x + displacement, velocity, values)
+
+    def _instant(self, time: float, x: FloatArray, v: FloatArray, values: FloatArray) -> Instant:
+        """Positions and velocities of differential entries, and the values of the polynomial of all."""
+        return Instant(
+            time,
+            np.where(self.differential, x, values),
+            np.where(self.differential, v, 0.0),
+            np.where(self.differential, values, 0.0),
+        )
 
 
 @dataclass(frozen=True)
