@@ -20,6 +20,7 @@ from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.numerics.continuation import ContinuationSettings, PathPoint, follow
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene.obstacle_records import Capsule
+from tests.families import mostly_slow
 
 DENSE = np.linspace(0.0, 1.0, 4001)
 
@@ -143,7 +144,10 @@ HEAVY = PLANAR + weight(-49.05) + plane("t", 0.0)
 """A rod of 5 N that is clamped on a plane, along it."""
 
 
-@pytest.mark.parametrize(("load", "end", "tip"), [(0.0, 1.0, 0.0), (-1.0, 1.0, 1.0), (0.5, 0.8, 0.5)])
+@pytest.mark.parametrize(
+    ("load", "end", "tip"),
+    mostly_slow([(0.0, 1.0, 0.0), (-1.0, 1.0, 1.0), (0.5, 0.8, 0.5)], quick=[(0.5, 0.8, 0.5)]),
+)
 def test_a_rod_that_is_clamped_on_a_plane_lies_on_it_from_its_base(load: float, end: float, tip: float) -> None:
     """The plane bears all; a tip that a force F lifts leaves it where 2 F / weight of the rod are left."""
     solution = on_coarse_modes(HEAVY + push(load))
