@@ -32,6 +32,18 @@ def on_table() -> Scene:
     return scene(rods=[FLAT], loads=[WEIGHT], obstacles=[TABLE], accuracy={"tolerance": 1e-5})
 
 
+def pulled_over_bar() -> Scene:
+    """The rod over a bar, with a tendon along it."""
+    tendon = {
+        "name": "tendon",
+        "kind": "tendon",
+        "rod": "rod",
+        "offset": [-0.01, 0],
+        "tension": 2,
+    }
+    return scene(rods=[FLAT], loads=[PUSH], obstacles=[BAR], actuators=[tendon], accuracy={"tolerance": 1e-8})
+
+
 @dataclass(frozen=True)
 class ContactLibrary:
     """An exported scene in exact contact.
@@ -55,10 +67,12 @@ class ContactLibrary:
         return CompiledContact(library, manifest)
 
 
-def exported_contact(wanted: Scene, folder: Path, load_cases: FloatArray, modes: int, nodes: int) -> ContactLibrary:
+def exported_contact(
+    wanted: Scene, folder: Path, load_cases: FloatArray, modes: int, nodes: int, *, estimate_errors: bool = True
+) -> ContactLibrary:
     """A scene in exact contact as a folder."""
     model = build(wanted, discretise(wanted, modes, nodes))
-    return ContactLibrary(model, export(model, folder, load_cases=load_cases))
+    return ContactLibrary(model, export(model, folder, load_cases=load_cases, estimate_errors=estimate_errors))
 
 
 def assert_same(found: CompiledContactSolution, wanted: Solution, *, forces: float = 1e-9) -> None:

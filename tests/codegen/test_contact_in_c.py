@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, build, discretise, export, load, read_scene, solve
 from cosserat_casadi.accuracy.verified import Verified
@@ -23,6 +24,7 @@ from tests.codegen.contact_libraries import (
     exported_contact,
     on_table,
     over_bar,
+    pulled_over_bar,
 )
 from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
 from tests.scenes import rod, scene
@@ -223,6 +225,21 @@ def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
     # The first unknown stands behind two whole numbers.
     moved[8:16] = np.float64(0.5).tobytes()
     assert bar.loaded.error_estimate(replace(found, state=bytes(moved))) is None
+
+
+def test_efforts_of_actuators_in_contact(tmp_path: Path) -> None:
+    """A tendon's tension, and its length on the rod that bends over the bar."""
+    library = exported_contact(
+        pulled_over_bar(), tmp_path / "pulled", np.zeros((0, 4)), modes=2, nodes=4, estimate_errors=False
+    )
+    inputs = {"push.force": [0, 0, -2.0], "tendon.tension": 3.0}
+    found = library.loaded.solve(inputs)
+    wanted = solve(library.model, inputs)
+    assert_same(found, wanted)
+    assert found.contacts
+    efforts = wanted.actuator("tendon")
+    assert found.actuators["tendon"].keys() == efforts.keys()
+    assert_allclose(list(found.actuators["tendon"].values()), list(efforts.values()), rtol=1e-9, atol=0)
 
 
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:

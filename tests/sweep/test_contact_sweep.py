@@ -20,7 +20,7 @@ from cosserat_casadi.sweeps.row_model import RowModel, result_row
 from cosserat_casadi.sweeps.table import table_of
 from cosserat_casadi.sweeps.variants import variants_of
 from cosserat_casadi.sweeps.work import IN_CONTACT_FROM, InContact, chunks
-from tests.codegen.contact_libraries import over_bar
+from tests.codegen.contact_libraries import pulled_over_bar
 from tests.paths.test_contact_path import BAR
 
 SCENE = BAR.replace('inputs = ["rod.base.position"]\n', "").replace("tolerance = 1e-6", "modes = 4")
@@ -65,9 +65,9 @@ def test_which_rows_in_contact_are_compiled() -> None:
 
 @pytest.mark.slow
 def test_compiled_rows_in_contact_are_those_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = over_bar()
+    scene = pulled_over_bar()
     model = build(scene, discretise(scene, 2, 4))
-    table = {"push.force.z": PUSHES}
+    table = {"push.force.z": PUSHES, "tendon.tension": [1.0, 2.0, 2.5, 0.5]}
     in_python = sweep(model, table, cores=1)
     monkeypatch.setattr("cosserat_casadi.sweeps.work.IN_CONTACT_FROM", len(PUSHES))
     in_c = sweep(model, table, cores=1)

@@ -228,3 +228,9 @@ void contact_poses(const contact_state *state, contact_pose *poses, workspace *w
     memcpy(poses[r].quaternion, work->poses + POSE_SIZE * r + 3, sizeof poses[r].quaternion);
   }
 }
+
+#if CONTACT_ACTUATORS
+void contact_actuators(const contact_state *state, real *efforts, real *conjugates, workspace *work) {
+  call(ARRANGEMENT[state->arrangement].actuators, state->z, state->inputs, efforts, conjugates, work);
+}
+#endif

@@ -86,6 +86,9 @@ typedef struct {
   kernel tips;     /* position and quaternion of every tip */
   kernel tip_rate; /* its rate, likewise */
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
+#if CONTACT_ACTUATORS
+  kernel actuators; /* efforts, and what they work on */
+#endif
 } arrangement;
 
 /* What a rod is in every arrangement. */

@@ -60,6 +60,7 @@ class CompiledContactSolution(JudgedAnswer):
         arrangement: number of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
+        actuators: of each its effort and what that works on, by their names, such as tension (N) and length (m).
         tries: arrangements that were solved.
         parts: parts of the way of the inputs.
         derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
@@ -69,6 +70,7 @@ class CompiledContactSolution(JudgedAnswer):
     arrangement: int
     tips: Mapping[str, FloatArray]
     contacts: tuple[Contact, ...]
+    actuators: Mapping[str, Mapping[str, float]]
     tries: int
     parts: int
     derivatives: Mapping[str, FloatArray] | None
@@ -191,6 +193,7 @@ class CompiledContact(LoadedLibrary):
             arrangement=self._arrangement_of(state),
             tips=self._tips(state) if solved else {},
             contacts=self._contacts(state) if solved else (),
+            actuators=self._actuators(state) if solved else {},
             tries=info.tries,
             parts=info.parts,
             derivatives=None if derivatives is None else by_tip(self.rods, derivatives),
@@ -205,6 +208,15 @@ class CompiledContact(LoadedLibrary):
         poses = np.zeros((len(self.rods), POSE_SIZE))
         self._function("poses")(state, pointer(poses), self._workspace())
         return dict(zip(self.rods, poses, strict=True))
+
+    def _actuators(self, state: Any) -> dict[str, dict[str, float]]:
+        entries = self.manifest.get("actuators", [])
+        if not entries:
+            return {}
+        efforts, conjugates = np.zeros((2, len(entries)))
+        self._function("actuators")(state, pointer(efforts), pointer(conjugates), self._workspace())
+        exerted = zip(entries, efforts.tolist(), conjugates.tolist(), strict=True)
+        return {entry["name"]: {entry["effort"]: f, entry["conjugate"]: c} for entry, f, c in exerted}
 
     def _contacts(self, state: Any) -> tuple[Contact, ...]:
         most = max([1, *map(len, self.arrangements)])

@@ -29,6 +29,9 @@ from cosserat_casadi.model.system import System
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
 """Kernels of every arrangement, in the order of the table in C."""
 
+ACTUATORS = "actuators"
+"""Kernel more of a scene that has such."""
+
 RICHER_WORDS = ("residual", "jacobian", "nodes", "tips", "contacts")
 """The same on the modes and intervals that an estimate of errors adds."""
 
@@ -62,6 +65,7 @@ class ArrangementKernels:
             "tips": lambda: self._kernel("tips", [self._tips()]),
             "tip_rate": lambda: self._rate_kernel("tip_rate", self._tips()),
             "contacts": lambda: self._kernel("contacts", [self._resultants(), self._point_forces()]),
+            ACTUATORS: lambda: self._kernel(ACTUATORS, self._actuators()),
         }
         return [kernels[word]() for word in self.words]
 
@@ -143,6 +147,12 @@ class ArrangementKernels:
             poses.append(quaternion_product(base.quaternion, ca.densify(shape.quaternion)[:, -1]))
         return ca.vertcat(*poses)
 
+    def _actuators(self) -> list[Matrix]:
+        """Efforts of all actuators, and what these work on."""
+        system = self._written.system
+        states = [system.actuators.state(actuator.name) for actuator in system.discrete.scene.actuators]
+        return [ca.vertcat(*[state[place] for state in states]) for place in range(2)]
+
     def _point_forces(self) -> Matrix:
         """Force at the end, or at both ends, of every contact, N, two numbers for each."""
         forces: list[Matrix] = [ca.MX(0, 1)]
@@ -200,6 +210,11 @@ class ArrangementKernels:
 
     def _unit(self, touch: Touch) -> float:
         return self._written.system.discrete.tension_unit(touch.owner)
+
+
+def words_of(chosen: Chosen) -> tuple[str, ...]:
+    """Kernels of every arrangement of a library, in the order of the table in C."""
+    return (*WORDS, ACTUATORS) if chosen.scene.actuators else WORDS
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:

@@ -6,14 +6,12 @@ from cosserat_casadi.codegen.contact.arrangements import Chosen, chosen_arrangem
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.rows import CONTACT, ERRORS, JUDGED, NAME, RowLibrary, row_results, to_compile
+from cosserat_casadi.codegen.rows import CONTACT, ERRORS, JUDGED, NAME, POSE, RowLibrary, row_results, to_compile
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import pairs
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene import Scene
 
 
 def contact_row_library(model: Model, load_cases: FloatArray, *, estimate_errors: bool) -> RowLibrary:
@@ -29,24 +27,13 @@ def contact_row_library(model: Model, load_cases: FloatArray, *, estimate_errors
     Raises:
         ExportError: C does not know what the scene has, or its contacts; or the scene has no equilibrium.
     """
-    check_contact_rows(model.scene)
+    check_contact(model.scene, {})
     columns = row_results(model.scene, estimate_errors=estimate_errors)
     chosen = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, leave_out=True)
     names = scene_names(NAME, without_contacts(model.scene))
     files = contact_files(model, chosen, names, None)
     files[f"{NAME}_rows.c"] = _rows_source(chosen, names, columns)
     return RowLibrary(to_compile(files), model.inputs.size, 0, len(columns))
-
-
-def check_contact_rows(scene: Scene) -> None:
-    """Refuse what rows in C do not have of a scene in exact contact.
-
-    Raises:
-        ExportError: with every fault.
-    """
-    check_contact(scene, {})
-    if scene.actuators:
-        raise ExportError(Problem("actuators", "their efforts are not among the results of rows in exact contact in C"))
 
 
 def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
@@ -62,6 +49,8 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
         "MACRO": names.macro,
         "results": len(columns),
         "first_pose": len(JUDGED),
+        "first_actuator": len(JUDGED) + len(POSE) * len(rods),
+        "actuators": len(chosen.scene.actuators),
         "first_pair": first_pair,
         "of_pair": len(CONTACT),
         "pairs": len(touching),

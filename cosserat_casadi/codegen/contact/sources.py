@@ -9,11 +9,23 @@ import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, ArrangementKernels, distance_kernels
+from cosserat_casadi.codegen.contact.kernels import (
+    RICHER_WORDS,
+    ArrangementKernels,
+    distance_kernels,
+    words_of,
+)
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, rendered, title_words
-from cosserat_casadi.codegen.manifest import ARRANGEMENTS, accuracy_entries, head_entries, input_entries, with_manifest
+from cosserat_casadi.codegen.manifest import (
+    ARRANGEMENTS,
+    accuracy_entries,
+    actuator_entries,
+    head_entries,
+    input_entries,
+    with_manifest,
+)
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
@@ -103,7 +115,7 @@ def contact_files(
     """
     kernels = distance_kernels(chosen, names.kernel("distance"))
     for number, own in enumerate(chosen.equations):
-        kernels += ArrangementKernels(own, names.kernel(str(number))).all()
+        kernels += ArrangementKernels(own, names.kernel(str(number)), words_of(chosen)).all()
     for number, own in enumerate(chosen.richer):
         kernels += ArrangementKernels(own, names.kernel(f"richer_{number}"), RICHER_WORDS).all()
     generated = kernel_sources(kernels, names)
@@ -135,6 +147,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "input_room": max(inputs, 1),
         "rods": len(tables.rods),
         "obstacles": len(tables.obstacles),
+        "actuators": len(chosen.scene.actuators),
         "pairs": tables.pair_count,
         "arrangements": arrangements,
         "arrangement_lines": "\n".join(
@@ -207,6 +220,8 @@ def _number_macros(names: Names, tables: Tables) -> str:
     lines = [f"#define {names.macro}_ROD_{identifier(rod).upper()} {i}" for i, rod in enumerate(tables.rods)]
     for number, obstacle in enumerate(tables.obstacles):
         lines.append(f"#define {names.macro}_OBSTACLE_{identifier(obstacle).upper()} {number}")
+    for number, actuator in enumerate(names.actuators):
+        lines.append(f"#define {names.macro}_ACTUATOR_{identifier(actuator).upper()} {number}")
     return "\n".join(lines)
 
 
@@ -231,6 +246,7 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
         "inputs": input_entries(free),
         "rods": [rod.name for rod in chosen.scene.rods],
         "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],
+        **({"actuators": actuator_entries(free)} if chosen.scene.actuators else {}),
         ARRANGEMENTS: arrangements,
         "discretisation": {name: asdict(own) for name, own in model.discretisation.items()},
     }

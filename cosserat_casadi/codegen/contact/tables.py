@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, WORDS
+from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, words_of
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.loads.penetration import section_radius
@@ -112,7 +112,7 @@ class Tables:
     @property
     def _levels(self) -> list[_Level]:
         """The modes of answers, and the richer ones of estimates where errors are estimated."""
-        levels = [_Level("", self.chosen.equations, WORDS)]
+        levels = [_Level("", self.chosen.equations, words_of(self.chosen))]
         if self.chosen.richer:
             levels.append(_Level("RICHER_", self.chosen.richer, RICHER_WORDS))
         return levels
