@@ -10,15 +10,25 @@ stiffness are continuous, and so is the derivative of the stiffness but for its 
 In motion the force is f (1 − δ ġ): the power δ f ġ² that it dissipates is never negative. K. H. Hunt and F. R. E.
 Crossley, J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
 
-Coulomb's friction acts on the point of the section that touches, ρ from its centre: with its velocity u along the
-surface, μ times the force against u/√(u² + s²), as long as the section is pushed. Far above the slip speed s that is
-Coulomb's law to the share ½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
-Along the tangent of the rod, against it and across it the coefficient may be another. At rest nothing rubs.
+Coulomb's friction acts on the point of the section that touches, ρ from its centre: μ times the force along the normal,
+against the way u along the surface and over a regularised length of it, as long as the section is pushed.
+
+In motion u is the velocity, and the length √(u² + s²): far above the slip speed s that is Coulomb's law to the share
+½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
+
+Along a path u is how far the layer has been dragged: what it was dragged already at the last point of the path, and the
+displacement of the point that touched there since. The length is |u| or the reach a = μ f/k, whichever is more: a spring
+of the stiffness k that slips at μ f, and afterwards is dragged by a. That is the return map of plasticity without
+hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
+
+Along the tangent of the rod, against it and across it the coefficient may be another. A single equilibrium, which
+remembers nothing, has no friction.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Literal, final
 
 import casadi as ca
@@ -26,12 +36,18 @@ import numpy as np
 
 from cosserat_casadi.loads.load import Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import Numbers, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 
 STANDING = 1e-3
 """Cosine of a rod to the surface below which its tangent along the surface fades."""
+
+HISTORY = 12
+"""Numbers that friction remembers of a section: a position, m, and a rotation matrix, column after column."""
+
+NOTHING = 1e-9
+"""Way along an obstacle, in widths, that counts as none."""
 
 
 class ContactLayer(ObstacleLoadRecord):
@@ -55,33 +71,93 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
     # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
     growth = 2
 
-    def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix:
-        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body."""
+    def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
+        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body; None where friction takes part in the force."""
+        if _remembers(section):
+            return None
         width = load.obstacle.width
         energy: Matrix = load.stiffness / (12 * width**2) * _depth(load, section) ** 4
         return energy
 
     def wrench(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force, N/m, or N on a body, and the moment of friction about the centre, N."""
-        width = load.obstacle.width
-        normal = ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
-        pressing = load.stiffness / (3 * width**2) * _depth(load, section) ** 3
+        normal = _normal(load, section)
+        pressing = _pressing(load, section)
         # At rest the velocity stores nothing, and nothing is added.
-        moves = load.takes_energy and bool(section.velocity.nnz())
-        if moves and load.obstacle.damping > 0.0:
+        if load.takes_energy and _moves(section) and load.obstacle.damping > 0.0:
             pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
-        if not (moves and load.obstacle.rubs):
+        drag = _drag(load, section, normal, ca.fmax(pressing, 0.0))
+        if drag is None:
             return pressing * normal, ca.DM(3, 1)
         touching = -section.data[0] * normal
-        rubbing = _friction(load, section, normal, ca.fmax(pressing, 0.0), touching)
+        rubbing = _friction(load, section, normal, ca.fmax(pressing, 0.0), drag)
         return pressing * normal + rubbing, ca.cross(touching, rubbing)
 
+    def remembers(self, load: ContactLayer) -> int:
+        """What friction remembers: where the layer would be free of drag, less the drag, and how the section stood."""
+        return HISTORY if load.body is None and load.obstacle.rubs else 0
+
+    def remembered(self, load: ContactLayer, section: Section) -> tuple[Matrix, Matrix]:
+        """What is remembered at the next point of a path, and the way over the reach: where it is above 1 it slips."""
+        normal = _normal(load, section)
+        drag = _drag(load, section, normal, _pressing(load, section))
+        assert drag is not None, "asked for of a layer that rubs"
+        if _moves(section):
+            return ca.DM(HISTORY, 1), drag.share
+        kept = drag.way / ca.fmax(drag.share, 1.0)
+        known = _is_known(section)
+        return ca.vertcat(section.position - known * kept, ca.vec(section.rotation)), known * drag.share
+
     def data(self, load: ContactLayer, site: Site) -> Numbers:
-        """Radius of the sections, m."""
-        return stacked_rows([section_radii(site.rod, site.X)])
+        """Radius of the sections, m, and what friction remembers of them."""
+        radii = stacked_rows([section_radii(site.rod, site.X)])
+        if site.history is None:
+            return radii
+        return ca.vertcat(as_matrix(radii), site.history)
 
 
-def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix, touching: Matrix) -> Matrix:
+@dataclass(frozen=True)
+class _Drag:
+    """How the point of a section that touches has moved along an obstacle.
+
+    Attributes:
+        way: 3×1: a velocity, m/s, or how far the layer is dragged, m.
+        length: its regularised length, 1×1.
+        reach: slip speed, m/s, or how far the layer is dragged where it slips, m.
+        blur: way along the rod within which forward and back are not told apart, m/s or m.
+    """
+
+    way: Matrix
+    length: Matrix
+    reach: Matrix | float
+    blur: float
+
+    @property
+    def share(self) -> Matrix:
+        """The way over the reach, 1×1."""
+        share: Matrix = ca.sqrt(ca.sumsqr(self.way)) / self.reach
+        return share
+
+
+def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
+    """How a section has moved; None where nothing rubs: at rest without memory, and on bodies."""
+    touching = -section.data[0] * normal
+    if load.takes_energy and load.obstacle.rubs and _moves(section):
+        slip = load.obstacle.slip_speed
+        velocity = section.velocity + ca.cross(section.angular_velocity, touching)
+        sliding = _along_surface(velocity, normal)
+        return _Drag(sliding, ca.sqrt(ca.sumsqr(sliding) + slip**2), slip, slip)
+    if not _remembers(section):
+        return None
+    start, turned = section.data[1:4], ca.reshape(section.data[4:], 3, 3)
+    moved = section.position - start + (section.rotation @ turned.T - ca.DM.eye(3)) @ touching
+    way = _along_surface(moved, normal)
+    nothing = NOTHING * load.obstacle.width
+    reach = max(load.obstacle.coefficients) * pressing / load.stiffness + nothing
+    return _Drag(way, ca.fmax(ca.sqrt(ca.sumsqr(way) + nothing**2), reach), reach, nothing)
+
+
+def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix, drag: _Drag) -> Matrix:
     """Force of friction, N/m.
 
     Args:
@@ -89,25 +165,55 @@ def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Ma
         section: of the rod.
         normal: of the obstacle, 3×1.
         pressing: force along it, not negative, N/m.
-        touching: from the centre of the section to the point that touches, 3×1, m.
+        drag: how the section has moved along the obstacle.
     """
-    slip = load.obstacle.slip_speed
     along, back, across = load.obstacle.coefficients
-    velocity = section.velocity + ca.cross(section.angular_velocity, touching)
-    sliding = velocity - ca.dot(normal, velocity) * normal
-    speed = ca.sqrt(ca.sumsqr(sliding) + slip**2)
-    weighted = across * sliding
+    weighted = across * drag.way
     if not along == back == across:
-        tangent = section.rotation[:, 2]
-        direction = tangent - ca.dot(normal, tangent) * normal
+        direction = _along_surface(section.rotation[:, 2], normal)
         # A rod that stands on the surface slides in no direction of its own.
         direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
-        forward = ca.dot(direction, sliding)
-        share = forward / ca.sqrt(forward**2 + slip**2)
+        forward = ca.dot(direction, drag.way)
+        share = forward / ca.sqrt(forward**2 + drag.blur**2)
         coefficient = (along * (1 + share) + back * (1 - share)) / 2
         weighted = weighted + (coefficient - across) * forward * direction
-    friction: Matrix = -pressing / speed * weighted
+    friction: Matrix = -pressing / drag.length * weighted
+    if _remembers(section) and not _moves(section):
+        friction = _is_known(section) * friction
     return friction
+
+
+def _moves(section: Section) -> bool:
+    """Whether the velocity of a section is an argument."""
+    return bool(section.velocity.nnz())
+
+
+def _remembers(section: Section) -> bool:
+    """Whether a section comes with its history."""
+    return bool(section.data.shape[0] > 1)
+
+
+def _is_known(section: Section) -> Matrix:
+    """One for a section that has a history, zero before it has one: its rotation is then no rotation."""
+    known: Matrix = ca.sumsqr(section.data[4:]) / 3
+    return known
+
+
+def _along_surface(vector: Matrix, normal: Matrix) -> Matrix:
+    """The part of a vector across the normal, 3×1."""
+    part: Matrix = vector - ca.dot(normal, vector) * normal
+    return part
+
+
+def _normal(load: ContactLayer, section: Section) -> Matrix:
+    """Normal of the obstacle, 3×1."""
+    return ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
+
+
+def _pressing(load: ContactLayer, section: Section) -> Matrix:
+    """Force along the normal at rest, N/m, or N on a body."""
+    pressing: Matrix = load.stiffness / (3 * load.obstacle.width**2) * _depth(load, section) ** 3
+    return pressing
 
 
 def _depth(load: ContactLayer, section: Section) -> Matrix:

@@ -87,11 +87,14 @@ class Site:
         rod: what the rod is made of.
         X: abscissae of the sections, shape (k,), numbers, or expressions where a parameter moves elements.
         unloaded: poses of the sections in the unloaded scene, found when they are asked for.
+        history: what a load remembers of the sections from the last point of a path, h×k; None where it remembers
+            nothing.
     """
 
     rod: RodProperties
     X: Numbers
     unloaded: Callable[[], UnloadedPoses]
+    history: Matrix | None = None
 
     @cached_property
     def unloaded_position(self) -> Numbers:
@@ -207,6 +210,14 @@ class Load(Kind, ABC, Generic[RecordType]):
     def data(self, load: RecordType, site: Site) -> Numbers:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
         return np.zeros((0, site.X.shape[0]))
+
+    def remembers(self, load: RecordType) -> int:
+        """How many numbers the load remembers of each section along a path; none by default."""
+        return 0
+
+    def remembered(self, load: RecordType, section: Section) -> tuple[Matrix, Matrix]:
+        """What the load remembers of a section, h×1, and whether the section slips: above 1 it does."""
+        raise NotImplementedError(f"{type(self).__name__} remembers nothing")
 
     def arrows(
         self, load: RecordType, label: str, position: FloatArray, force: FloatArray, moment: FloatArray

@@ -87,6 +87,13 @@ class Model(ModelFunctions, MotionFunctions, WithParameters):
             return self
         return Model(self.discrete.in_motion)
 
+    @cached_property
+    def with_memory(self) -> Model:
+        """The model, of which friction on a path remembers the last point: as inputs ``history``."""
+        if self.inputs.memory is not None:
+            return self
+        return Model(self.discrete.with_memory)
+
     def with_flows(self, x: FloatArray) -> FloatArray:
         """Unknowns of :attr:`in_motion` at rest: those of this model, then flows, shape (in_motion.size,)."""
         return np.concatenate([x, np.zeros(self.in_motion.size - self.size)])

@@ -20,6 +20,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
+from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
@@ -27,7 +28,7 @@ from cosserat_casadi.model.discretise import enriched, for_first_step
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
-from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.inputs import HISTORY, Input, InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.required_modes import signal_modes
@@ -45,6 +46,7 @@ from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
+from cosserat_casadi.scene.input_fields import InputField
 
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
@@ -138,6 +140,7 @@ class DiscreteScene:
         parameters: the parameters that its expressions are of.
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
         moving: whether it is for a motion, in which stress that relaxes has flows.
+        memory: grids of the rods at whose nodes loads remember sections along a path; None for those of this scene.
     """
 
     scene: scenes.Scene
@@ -146,6 +149,7 @@ class DiscreteScene:
     parameters: ParameterLayout = NO_PARAMETERS
     scaling: DiscreteScene | None = None
     moving: bool = False
+    memory: Mapping[str, Grid] | None = None
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
         """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
@@ -192,6 +196,23 @@ class DiscreteScene:
     def loads(self) -> tuple[scenes.LoadRecord, ...]:
         """The loads of the scene, then what its obstacles with a width press with."""
         return (*self.scene.loads, *contact_layers(self.scene, self.nominal.rods))
+
+    @property
+    def remembered(self) -> Mapping[str, Grid]:
+        """Grids of the rods at whose nodes loads remember sections along a path."""
+        return self.memory or {name: rod.grid for name, rod in self.rods.items()}
+
+    @cached_property
+    def with_memory(self) -> DiscreteScene:
+        """The same scene, in which loads that remember sections have an input for it."""
+        entries = list(self.layout.entries)
+        for load in self.loads:
+            numbers = EFFECTS[load.kind].remembers(load)
+            if numbers:
+                default = np.zeros((numbers, self.rods[load.rod].grid.size))
+                declared = InputField("1", numbers, nonlinear=True)
+                entries.append(Input(load.name or "", HISTORY, declared, default, "none", False, np.inf))
+        return replace(self, layout=InputLayout(tuple(entries)))
 
     @cached_property
     def pairs(self) -> tuple[ContactPair, ...]:
@@ -464,7 +485,7 @@ class DiscreteScene:
         discrete = discrete_scene(self.nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return discrete
+        return replace(discrete, memory=self.remembered)
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

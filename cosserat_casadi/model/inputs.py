@@ -26,6 +26,9 @@ from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.records import Entry
 
+HISTORY = "history"
+"""Field of what a load remembers of the sections of a rod from the last point of a path."""
+
 SHORTEST = 1e-3
 """Least value of a length as an input, relative to the scene's."""
 
@@ -120,6 +123,12 @@ class InputLayout(StackedLayout[Input]):
         return None
 
     @cached_property
+    def memory(self) -> slice | None:
+        """What loads remember, stacked; None without memory."""
+        spans = [span for entry, span in self if entry.field == HISTORY]
+        return slice(spans[0].start, spans[-1].stop) if spans else None
+
+    @cached_property
     def geometry(self) -> list[int]:
         """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
         indices: list[int] = []
@@ -196,7 +205,7 @@ def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) ->
         values[record.name or ""] = {field: known(scene_value(record, field)) for field in record.inputs}
     for entry, span in layout:
         if not entry.of_rod:
-            values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")
+            values.setdefault(entry.owner, {})[entry.field] = inputs[span].reshape(entry.shape, order="F")
     return values
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import casadi as ca
@@ -25,7 +25,7 @@ from cosserat_casadi.maths.numbers import (
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.inputs import input_values, scene_value
+from cosserat_casadi.model.inputs import HISTORY, input_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import RodMotion
@@ -96,7 +96,7 @@ class RodLoads:
         if member.seen_from(load) is not None and self.body_pose is None:
             return []
         values = input_values(self.discrete.layout, load, self.inputs)
-        site = site_of(self.discrete, self.rod, load)
+        site = self.site(load)
         data_size = member.data(load, site).shape[0]
         kernel = traced(member, load, values, data_size)
         if not kernel.pose_free or self._feels_motion(kernel):
@@ -113,6 +113,22 @@ class RodLoads:
         moment_line = self._line_wrench(kernel, site, None, moment)
         lines: list[RodLoad] = [line for line in (force_line, moment_line) if line is not None]
         return [*lines, *self._on_fixed_masses(kernel, force)]
+
+    def site(self, load: scenes.LoadRecord) -> Site:
+        """Sections of the rod that a load acts on, and what it remembers of them."""
+        return replace(site_of(self.discrete, self.rod, load), history=self._history(load))
+
+    def _history(self, load: scenes.LoadRecord) -> Matrix | None:
+        """What the load remembers of the sections at the nodes, h×M; None where it remembers nothing."""
+        entries = self.discrete.layout.of_load(load.name or "", HISTORY)
+        if entries is None:
+            return None
+        numbers = EFFECTS[load.kind].remembers(load)
+        history = ca.reshape(self.inputs[entries], numbers, (entries.stop - entries.start) // numbers)
+        own, remembered = self.discrete.rods[self.rod].grid, self.discrete.remembered[self.rod]
+        if own is remembered:
+            return history
+        return history @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
 
     def _on_fixed_masses(self, kernel: TracedLoad, force: Matrix | None) -> Iterator[WrenchAt]:
         """A force per mass on the masses that are fixed to sections."""

@@ -23,6 +23,7 @@ from cosserat_casadi.model.function_table import (
     scene_function,
 )
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
+from cosserat_casadi.model.load_memory import remembered
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_actuators import rod_actuation
 from cosserat_casadi.model.scene_equations import SceneEquations
@@ -169,6 +170,17 @@ class ModelFunctions:
         """(x, inputs) ↦ how deep nodes and bodies are inside obstacles, in widths; None without smooth contact."""
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
+
+    @scene_function(Output("history"), Output("slips"))
+    def memory(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, and where nodes slip: above 1.
+
+        None of a model without memory.
+        """
+        if written.discrete.layout.memory is None:
+            return None
+        kept, slips = remembered(written.system)
+        return [ca.vertcat(*map(ca.vec, kept)), ca.horzcat(*slips)]
 
     @scene_function(Output("positions", "m"))
     def contact_sections(self, written: Expressions) -> list[Matrix] | None:

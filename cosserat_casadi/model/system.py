@@ -471,18 +471,19 @@ class System:
 
     def _loads(self, rod: str) -> list[RodLoad]:
         """The scene's loads on a rod at the load factor, base frame."""
-        loads = self._rod_loads(rod).all()
+        loads = self.rod_loads(rod).all()
         return [scaled(load, self.arguments.load_factor) for load in loads]
 
     def loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
         """Wrenches of one load of the scene on a rod, base frame."""
-        return self._rod_loads(rod).of(load)
+        return self.rod_loads(rod).of(load)
 
     def resting_loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
         """Wrenches of one load on a rod that rests in this shape, base frame."""
-        return replace(self._rod_loads(rod), motion=None).of(load)
+        return replace(self.rod_loads(rod), motion=None).of(load)
 
-    def _rod_loads(self, rod: str) -> RodLoads:
+    def rod_loads(self, rod: str) -> RodLoads:
+        """The scene's loads on a rod, as its mechanics take them."""
         base = RodBase(self.base(rod).position, self._base_R_world[rod])
         ratio = ratio_of(self.discrete, rod, self.arguments)
         motion = self.motions.get(rod)

@@ -161,7 +161,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     @property
     def value(self) -> FloatArray:
         """Value of the input at factor 1, shaped as the input."""
-        return self.model.inputs.unpack(self.change)[self.name]
+        return self.model.inputs.unpack(self.inputs(1.0))[self.name]
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:
@@ -215,7 +215,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
         x = self.x[index]
-        inputs = self.inputs(float(self.factor[index]))
+        inputs = self.all_inputs[index]
         residual = column(self.model.residual(x, inputs))
         solution = Solution(
             self.model,

@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.equilibrium.strain_limits import first_beyond
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
@@ -29,6 +30,11 @@ from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
+from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
+
+
+FROM_NOWHERE = " Friction is counted from factor 0, where nothing rubs yet."
+"""What a path with friction does not know."""
 
 
 @dataclass(frozen=True)
@@ -143,6 +149,7 @@ def follow_path(
     *,
     branch: int = 0,
     settings: ArcSettings | None = None,
+    first: FrictionPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
     """Follow the equilibrium of a model while one input grows from zero to a value, through folds and back.
@@ -158,10 +165,12 @@ def follow_path(
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
         settings: limits.
+        first: of rods that rub: a path of the same scene, modes and nodes from whose end this one goes on, with what
+            friction remembers there; inputs that are not named keep their values.
         progress: receives the largest factor reached.
 
     Raises:
-        SceneError: the input is unknown, a value is refused, or contact alone would have to hold a free rod.
+        SceneError: the input is unknown, a value is refused, a branch of a path with friction is asked for, or contact alone would have to hold a free rod.
     """
     model = model.at()
     followed = _followed(model, name, value, values)
@@ -172,6 +181,22 @@ def follow_path(
         )
         message = _sentence(path.outcome, path.factor) + path.stopped_at
         return replace(path, message=message)
+    if model.scene.rubs:
+        if branch:
+            problem = "is of a path without friction: one that rubs goes on in increments"
+            raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
+        followed = _followed(model.with_memory, name, value, values, first)
+        rubbing = follow_friction_path(
+            followed.model,
+            name,
+            followed.base,
+            followed.change,
+            settings or ArcSettings(),
+            first=first,
+            progress=progress,
+        )
+        message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "")
+        return _within_limits(_unless_too_deep(replace(rubbing, message=message)))
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero, estimate_error=False)
     if not start.converged:
@@ -227,7 +252,13 @@ def _within_limits(path: EquilibriumPath) -> EquilibriumPath:
     return replace(path, outcome=outcome, message=message)
 
 
-def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str, npt.ArrayLike] | None) -> _Followed:
+def _followed(
+    model: Model,
+    name: str,
+    value: npt.ArrayLike,
+    values: Mapping[str, npt.ArrayLike] | None,
+    first: FrictionPath | None = None,
+) -> _Followed:
     """The input to follow, its value checked with the others.
 
     Raises:
@@ -235,6 +266,10 @@ def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str
     """
     given = dict(values or {})
     given[name] = value
+    if first is not None:
+        base = first.inputs(float(first.factor[-1]))
+        full = model.pack(model.inputs.unpack(base) | given)
+        return _Followed(model, name, base, full - base)
     full = model.pack(given)
     base = full.copy()
     # The followed input grows from zero, whatever the scene gives it; all others keep their values.

@@ -224,6 +224,11 @@ inputs = ["push.force", "cable.tension"]
         """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)
 
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction of contact."""
+        return any(obstacle.rubs for obstacle in self.obstacles)
+
     def in_proportion(self) -> Scene:
         """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""
         rods = []

@@ -1,0 +1,138 @@
+"""Paths with friction: one input grows in increments, and what the obstacles remember of the rods goes along.
+
+Friction at rest is known only from the way that led there. The path begins at the equilibrium without friction. In each
+increment the history is that of the point before, so that it ends at an equilibrium of known loads; there it is brought
+up to date. Between two points friction goes from the one state to the other: implicit Euler of Coulomb's law.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arclength import ArcSettings
+from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.numerics.trace import GROWTH, PathOutcome
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+
+SHORTEST = 1e-6
+"""Share of the input below which an increment counts as stalled."""
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class FrictionPath(EquilibriumPath):
+    """Equilibria of rods that rub on obstacles.
+
+    Attributes:
+        histories: inputs ``history`` of the model at each point, shape (k, h): those that friction is counted from.
+        slips: way over reach at the nodes, layer after layer, shape (k, nodes): where it is 1 or more the node slips,
+            and 0 where it is not pressed.
+    """
+
+    histories: FloatArray
+    slips: FloatArray
+
+    @property
+    def all_inputs(self) -> FloatArray:
+        """Stacked inputs at all points, shape (k, model.inputs.size)."""
+        inputs = super().all_inputs
+        inputs[:, self.model.inputs.memory] = self.histories
+        return inputs
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A point of the path.
+
+    Attributes:
+        factor: share of the input.
+        solution: equilibrium.
+        history: for the next increment, shape (h,).
+        slips: at the nodes.
+    """
+
+    factor: float
+    solution: Solution
+    history: FloatArray
+    slips: FloatArray
+
+
+def follow_friction_path(
+    model: Model,
+    name: str,
+    base: FloatArray,
+    change: FloatArray,
+    settings: ArcSettings,
+    *,
+    first: FrictionPath | None = None,
+    progress: Progress | None = None,
+) -> FrictionPath:
+    """Follow the equilibrium of rods that rub while one input grows to its value.
+
+    Args:
+        model: with memory.
+        name: the input.
+        base: stacked inputs at factor 0, without history.
+        change: their increments at factor 1.
+        first: a path from whose end this one goes on; by default nothing rubs at factor 0.
+        settings: limits, of which those of the load factor and of the length of a step are used.
+        progress: receives the factor reached.
+    """
+    memory = model.inputs.memory
+    assert memory is not None, "a model with memory"
+
+    def point(factor: float, solution: Solution) -> _Point:
+        history, slips = model.memory(solution.x, solution.inputs)
+        return _Point(factor, solution, column(history), column(slips.T))
+
+    start = solve(model, base, estimate_error=False) if first is None else first.solution(-1)
+    points = [point(0.0, start)] if start.converged else []
+    outcome: PathOutcome | None = None if points else PathOutcome.NO_START
+    step = settings.first
+    while outcome is None:
+        before = points[-1]
+        step = min(step, settings.load_factor_change)
+        factor = min(before.factor + step, 1.0)
+        if 1.0 - factor < SHORTEST:
+            factor = 1.0
+        inputs = base + factor * change
+        inputs[memory] = before.history
+        # What is remembered anew leaves the forces as they are: the point before is in balance with it.
+        settled = before.solution.inputs.copy()
+        settled[memory] = before.history
+        found = solve(model, inputs, start=replace(before.solution, inputs=settled), estimate_error=False)
+        if found.converged and float(np.linalg.norm(found.x - before.solution.x)) <= settings.longest:
+            points.append(point(factor, found))
+            step *= GROWTH
+        else:
+            step = (factor - before.factor) / 2
+        if progress is not None:
+            progress(points[-1].factor)
+        if points[-1].factor == 1.0:
+            outcome = PathOutcome.CONVERGED
+        elif step < SHORTEST:
+            outcome = PathOutcome.LOAD_STALLED
+        elif len(points) > settings.steps:
+            outcome = PathOutcome.MAX_STEPS
+    return FrictionPath(
+        model=model,
+        name=name,
+        base=base,
+        change=change,
+        outcome=outcome,
+        message=outcome.value,
+        factor=np.array([found.factor for found in points]),
+        x=np.array([found.solution.x for found in points]).reshape(-1, model.size),
+        smallest_eigenvalue=None,
+        neutral=None,
+        events=(),
+        histories=np.array([found.solution.inputs[memory] for found in points]).reshape(-1, memory.stop - memory.start),
+        slips=np.array([found.slips for found in points]).reshape(-1, model.memory.size_out(1)[1]),
+    )
