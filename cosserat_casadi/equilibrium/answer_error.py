@@ -148,7 +148,9 @@ def _friction_note(solution: Equilibrium[Any]) -> str:
         return ""
     if not any(obstacle.rubs for obstacle in solution.model.scene.obstacles):
         return ""
-    return " Friction acts in motion alone: at rest it would hold many other shapes too, and this one has none."
+    if solution.model.inputs.memory is not None:
+        return ""
+    return " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, runs
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.equilibrium.rod_contacts import contacts_of_rods
+from cosserat_casadi.equilibrium.rubbing import friction_between
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
 from cosserat_casadi.maths.grid import gauss_legendre
@@ -79,6 +80,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         per_length = pressure(layer, _gaps(solution, layer, X))
         along = normals(solution, layer.rod, layer.obstacle, X)
         force = length * (end - start) / 2 * ((weights * per_length) @ along)
+        force += friction_between(solution.model, layer, solution.x, solution.inputs, (start, end))
         yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
 
 

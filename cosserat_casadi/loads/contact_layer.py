@@ -17,9 +17,9 @@ In motion u is the velocity, and the length √(u² + s²): far above the slip s
 ½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
 
 Along a path u is how far the layer has been dragged: what it was dragged already at the last point of the path, and the
-displacement of the point that touched there since. The length is |u| or the reach a = μ f/k, whichever is more: a spring
-of the stiffness k that slips at μ f, and afterwards is dragged by a. That is the return map of plasticity without
-hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
+displacement of the point that touched there since. The length is |u| or the reach a = μ f/k, whichever is more: a
+spring of the stiffness k that slips at μ f, and afterwards is dragged by a. That is the return map of plasticity
+without hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
 
 Along the tangent of the rod, against it and across it the coefficient may be another. A single equilibrium, which
 remembers nothing, has no friction.
@@ -34,7 +34,7 @@ from typing import Literal, final
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.loads.load import Section, Site
+from cosserat_casadi.loads.load import Rubbing, Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -97,16 +97,19 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         """What friction remembers: where the layer would be free of drag, less the drag, and how the section stood."""
         return HISTORY if load.body is None and load.obstacle.rubs else 0
 
-    def remembered(self, load: ContactLayer, section: Section) -> tuple[Matrix, Matrix]:
-        """What is remembered at the next point of a path, and the way over the reach: where it is above 1 it slips."""
+    def rubbing(self, load: ContactLayer, section: Section) -> Rubbing:
+        """The section after an increment, whether it slips, and the force of friction."""
         normal = _normal(load, section)
-        drag = _drag(load, section, normal, _pressing(load, section))
-        assert drag is not None, "asked for of a layer that rubs"
+        pressing = _pressing(load, section)
+        drag = _drag(load, section, normal, pressing)
+        assert drag is not None, "asked for of a layer that rubs, of a section that moves or has a history"
+        slip = ca.if_else(pressing > 0.0, drag.share, -1.0)
+        friction = _friction(load, section, normal, pressing, drag)
         if _moves(section):
-            return ca.DM(HISTORY, 1), drag.share
-        kept = drag.way / ca.fmax(drag.share, 1.0)
+            return Rubbing(ca.DM(HISTORY, 1), slip, friction)
         known = _is_known(section)
-        return ca.vertcat(section.position - known * kept, ca.vec(section.rotation)), known * drag.share
+        origin = section.position - known * drag.way / ca.fmax(drag.share, 1.0)
+        return Rubbing(ca.vertcat(origin, ca.vec(section.rotation)), slip, friction)
 
     def data(self, load: ContactLayer, site: Site) -> Numbers:
         """Radius of the sections, m, and what friction remembers of them."""
@@ -207,7 +210,9 @@ def _along_surface(vector: Matrix, normal: Matrix) -> Matrix:
 
 def _normal(load: ContactLayer, section: Section) -> Matrix:
     """Normal of the obstacle, 3×1."""
-    return ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
+    distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+    normal: Matrix = ca.gradient(distance, section.position)
+    return normal
 
 
 def _pressing(load: ContactLayer, section: Section) -> Matrix:

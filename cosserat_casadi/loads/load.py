@@ -120,6 +120,21 @@ class BodyPoint:
     factor: Scalar = 1.0
 
 
+@dataclass(frozen=True)
+class Rubbing:
+    """How a section rubs on what it touches.
+
+    Attributes:
+        history: what is remembered of it at the next point of a path, h×1.
+        slip: how it has moved, over the way, or the speed, from which on it slips, 1×1; −1 where nothing presses it.
+        friction: force of friction, N/m, 3×1.
+    """
+
+    history: Matrix
+    slip: Matrix
+    friction: Matrix
+
+
 class Load(Kind, ABC, Generic[RecordType]):
     """One kind of load.
 
@@ -215,8 +230,8 @@ class Load(Kind, ABC, Generic[RecordType]):
         """How many numbers the load remembers of each section along a path; none by default."""
         return 0
 
-    def remembered(self, load: RecordType, section: Section) -> tuple[Matrix, Matrix]:
-        """What the load remembers of a section, h×1, and whether the section slips: above 1 it does."""
+    def rubbing(self, load: RecordType, section: Section) -> Rubbing:
+        """How a section rubs on what it touches, of a load that remembers."""
         raise NotImplementedError(f"{type(self).__name__} remembers nothing")
 
     def arrows(

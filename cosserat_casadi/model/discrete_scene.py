@@ -19,8 +19,8 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
@@ -30,7 +30,7 @@ from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, Unlo
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import HISTORY, Input, InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.registry import EFFECTS, remembering
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.scene_constraints import (
     FORCE_WEIGHT,
@@ -206,12 +206,11 @@ class DiscreteScene:
     def with_memory(self) -> DiscreteScene:
         """The same scene, in which loads that remember sections have an input for it."""
         entries = list(self.layout.entries)
-        for load in self.loads:
+        for load in remembering(self.loads):
             numbers = EFFECTS[load.kind].remembers(load)
-            if numbers:
-                default = np.zeros((numbers, self.rods[load.rod].grid.size))
-                declared = InputField("1", numbers, nonlinear=True)
-                entries.append(Input(load.name or "", HISTORY, declared, default, "none", False, np.inf))
+            default = np.zeros((numbers, self.rods[load.rod].grid.size))
+            declared = InputField("1", numbers, nonlinear=True)
+            entries.append(Input(load.name, HISTORY, declared, default, "none", False, np.inf))
         return replace(self, layout=InputLayout(tuple(entries)))
 
     @cached_property

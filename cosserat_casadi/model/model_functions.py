@@ -23,7 +23,7 @@ from cosserat_casadi.model.function_table import (
     scene_function,
 )
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
-from cosserat_casadi.model.load_memory import remembered
+from cosserat_casadi.model.load_memory import rubbing_at_nodes
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_actuators import rod_actuation
 from cosserat_casadi.model.scene_equations import SceneEquations
@@ -171,16 +171,21 @@ class ModelFunctions:
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
-    @scene_function(Output("history"), Output("slips"))
+    @scene_function(Output("history"), Output("slips"), Output("friction", "N/m"))
     def memory(self, written: Expressions) -> list[Matrix] | None:
-        """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, and where nodes slip: above 1.
+        """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, slip and friction at nodes.
 
-        None of a model without memory.
+        Of each load that remembers, side by side, 1×… and 3×…; None of a model without memory.
         """
         if written.discrete.layout.memory is None:
             return None
-        kept, slips = remembered(written.system)
-        return [ca.vertcat(*map(ca.vec, kept)), ca.horzcat(*slips)]
+        loads = rubbing_at_nodes(written.system)
+        histories = [ca.vec(load.history) for load in loads]
+        return [
+            ca.vertcat(*histories),
+            ca.horzcat(*[load.slip for load in loads]),
+            ca.horzcat(*[load.friction for load in loads]),
+        ]
 
     @scene_function(Output("positions", "m"))
     def contact_sections(self, written: Expressions) -> list[Matrix] | None:

@@ -14,6 +14,7 @@ from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
+from cosserat_casadi.model.load_memory import rubbing_at_nodes
 from cosserat_casadi.model.motion_energy import MotionEnergy
 from cosserat_casadi.model.scene_motion_equations import SceneMotionEquations
 
@@ -49,6 +50,15 @@ class MotionFunctions:
         """
         function: ca.Function = self.inverse_dynamics
         return function if chooses(function) else function.expand()
+
+    @scene_function(Output("slips"), arguments=VELOCITY)
+    def slips(self, written: Expressions) -> list[Matrix] | None:
+        """(x, v, inputs, inputs_rate) ↦ speed of nodes over the slip speed, −1 where nothing presses.
+
+        Of each load that rubs, side by side, 1×…; None without friction.
+        """
+        loads = rubbing_at_nodes(written.system)
+        return [ca.horzcat(*[load.slip for load in loads])] if loads else None
 
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:

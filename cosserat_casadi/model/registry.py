@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.muscle import MuscleActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
@@ -19,8 +22,9 @@ from cosserat_casadi.loads.penetration import PenetrationLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
 from cosserat_casadi.scene.families import register
+from cosserat_casadi.scene.load_records import LoadRecord
 
-__all__ = ["EFFECTS", "register"]
+__all__ = ["EFFECTS", "register", "remembering"]
 
 for shipped in (
     GravityLoad,
@@ -40,3 +44,8 @@ for shipped in (
 for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad, ContactLayerLoad):
     # What obstacles press with: no scene file names it as a load, so that the scene format does not know it.
     EFFECTS[found.kind] = found()
+
+
+def remembering(loads: Iterable[LoadRecord]) -> list[Any]:
+    """Loads that remember the sections of their ``rod``: those of an ``obstacle`` that rubs."""
+    return [load for load in loads if EFFECTS[load.kind].remembers(load)]

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.rubbing import RubbingStretch, rubbing_stretches
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint
@@ -253,6 +255,18 @@ class Motion(Result):
         if name not in self.model.joint:
             raise KeyError(_unknown(name, "a joint with a coordinate", "joints", list(self.model.joint)))
         return states_of(self.model.joint[name], self.x, self.inputs)
+
+    def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
+        """The stretches that stick, and those that slip, in a row; none in a scene without friction.
+
+        What creeps slower than the slip speed sticks.
+        """
+        if not self.model.scene.rubs:
+            return ()
+        # A motion keeps inputs without their rates.
+        rates = np.gradient(self.inputs, self.times, axis=0) if len(self.times) > 1 else np.zeros_like(self.inputs)
+        slip = self.model.slips(self.x[index], self.v[index], self.inputs[index], rates[index])
+        return rubbing_stretches(self.model, slip.full()[0])
 
     def at(self, time: float) -> MotionState:
         """The state at any time of the motion, by the dense output of the steps.

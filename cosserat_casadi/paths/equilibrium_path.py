@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.rubbing import RubbingStretch
+from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -175,6 +177,10 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         """The contacts at a point of the path; none in a scene without obstacles."""
         return ()
 
+    def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
+        """The stretches that stick, and those that slip, at a point of the path; none in a scene without friction."""
+        return ()
+
     def tip(self, rod: str | None = None) -> SolvedPoses:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
         name = self.model.rod_name(rod)
@@ -226,6 +232,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
             residual_norm=relative_norm(residual, x),
             iterations=0,
         )
+        solution = with_smooth_contacts(solution)
         stable = self.stable
         if stable is None or self.smallest_eigenvalue is None:
             return solution

@@ -32,7 +32,6 @@ from cosserat_casadi.paths.contact_path import follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
-
 FROM_NOWHERE = " Friction is counted from factor 0, where nothing rubs yet."
 """What a path with friction does not know."""
 
@@ -149,7 +148,7 @@ def follow_path(
     *,
     branch: int = 0,
     settings: ArcSettings | None = None,
-    first: FrictionPath | None = None,
+    first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
     """Follow the equilibrium of a model while one input grows from zero to a value, through folds and back.
@@ -170,9 +169,13 @@ def follow_path(
         progress: receives the largest factor reached.
 
     Raises:
-        SceneError: the input is unknown, a value is refused, a branch of a path with friction is asked for, or contact alone would have to hold a free rod.
+        SceneError: the input is unknown, a value is refused, a branch of a path with friction is asked for, or contact
+            alone would have to hold a free rod.
     """
     model = model.at()
+    if first is not None and not isinstance(first, FrictionPath):
+        problem = "is a path with friction from whose end another one goes on"
+        raise SceneError(Problem("first", problem, "leave it out: a path without friction does not depend on the way"))
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
         refuse_held_by_contact(model.scene)
@@ -257,7 +260,7 @@ def _followed(
     name: str,
     value: npt.ArrayLike,
     values: Mapping[str, npt.ArrayLike] | None,
-    first: FrictionPath | None = None,
+    first: EquilibriumPath | None = None,
 ) -> _Followed:
     """The input to follow, its value checked with the others.
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.rubbing import RubbingStretch, rubbing_stretches
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
@@ -32,8 +32,8 @@ class FrictionPath(EquilibriumPath):
 
     Attributes:
         histories: inputs ``history`` of the model at each point, shape (k, h): those that friction is counted from.
-        slips: way over reach at the nodes, layer after layer, shape (k, nodes): where it is 1 or more the node slips,
-            and 0 where it is not pressed.
+        slips: how far the nodes are dragged over the way at which they slip, load after load, shape (k, nodes); −1
+            where nothing presses.
     """
 
     histories: FloatArray
@@ -45,6 +45,10 @@ class FrictionPath(EquilibriumPath):
         inputs = super().all_inputs
         inputs[:, self.model.inputs.memory] = self.histories
         return inputs
+
+    def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
+        """The stretches that stick, and those that slip, at a point of the path."""
+        return rubbing_stretches(self.model, self.slips[index])
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,7 @@ def follow_friction_path(
     change: FloatArray,
     settings: ArcSettings,
     *,
-    first: FrictionPath | None = None,
+    first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> FrictionPath:
     """Follow the equilibrium of rods that rub while one input grows to its value.
@@ -89,7 +93,7 @@ def follow_friction_path(
     assert memory is not None, "a model with memory"
 
     def point(factor: float, solution: Solution) -> _Point:
-        history, slips = model.memory(solution.x, solution.inputs)
+        history, slips, _ = model.memory(solution.x, solution.inputs)
         return _Point(factor, solution, column(history), column(slips.T))
 
     start = solve(model, base, estimate_error=False) if first is None else first.solution(-1)

@@ -65,6 +65,7 @@ def follow(
     *,
     branch: int = 0,
     settings: ArcSettings | None = None,
+    first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath: ...
 
@@ -107,7 +108,8 @@ def follow(
         branch: of rods: number of the bifurcation, counted from 1, to leave at along the branch that crosses there;
             negative for the other half of that branch, 0 goes straight on.
         settings: limits.
-        first: an equilibrium of the same tubes to begin at, such as one of another path.
+        first: an equilibrium of the same tubes to begin at, such as one of another path; of a model of rods that rub a
+            path from whose end this one goes on, with what friction remembers there.
         progress: receives the largest factor reached.
         report: receives the discretisation of rods, in words.
 
@@ -124,8 +126,8 @@ def follow(
         options.pop("report", None)
         return follow_tubes(subject, name, value, values, **options)
     if options.pop("first", None) is not None:
-        problem = "is for concentric tubes: a path of rods begins without the input"
-        raise SceneError(Problem("first", problem, "leave it out"))
+        problem = "is for concentric tubes, and for friction on the modes and nodes of a model"
+        raise SceneError(Problem("first", problem, "leave it out, or follow the model of a path"))
     return _follow_refined(subject, name, value, values, **options)
 
 
@@ -142,18 +144,22 @@ def _follow_refined(
 ) -> EquilibriumPath:
     """Follow a path of rods on modes and nodes that meet the tolerance of their scene, as :func:`follow`."""
 
-    def followed(model: Model) -> EquilibriumPath:
+    def followed(model: Model, level: int = 0) -> EquilibriumPath:
         if report is not None:
             discretisations = model.discretisation.values()
             intervals = max(discretisation.nodes for discretisation in discretisations)
             report(f"{model.size} unknowns, {intervals} intervals")
+        limits = settings or ArcSettings()
+        if scene.rubs:
+            # Friction goes from point to point: their distance is refined with the modes, so that its error shows too.
+            limits = replace(limits, load_factor_change=limits.load_factor_change / 2**level)
         return follow_path(
             model,
             name,
             value,
             values,
             branch=branch,
-            settings=settings,
+            settings=limits,
             progress=progress,
         )
 
@@ -164,7 +170,7 @@ def _follow_refined(
         # There is nothing to refine, and so nothing to estimate an error by.
         return followed(build(scene))
     coarse: EquilibriumPath | None = None
-    for modes in seeing_modes(scene, MODES):
+    for level, modes in enumerate(seeing_modes(scene, MODES)):
         turn = 0.0
         if coarse is not None:
             turn = _largest_turn(coarse)
@@ -172,7 +178,7 @@ def _follow_refined(
         nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
         # The rotation of highest order: what changes from level to level is the modes' error alone.
         discretisation = discretise(scene, modes, nodes, "magnus8")
-        fine = followed(build(scene, discretisation))
+        fine = followed(build(scene, discretisation), level)
         if coarse is not None:
             change = path_distance(coarse, fine)
             if change <= accuracy.tolerance:

@@ -8,7 +8,8 @@ from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.paths.equilibrium_path import PathContact
+from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
@@ -25,6 +26,25 @@ def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, 
         | {pair.name: pair.width for pair in model.discrete.pairs},
         "depth": depths_along(model, x, inputs),
     }
+
+
+def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, Any]:
+    """The stretches of rods that stick or slip on obstacles, row after row; nothing in a scene without friction."""
+    if not result.model.scene.rubs:
+        return {}
+    stretches = [(row, stretch) for row in range(rows) for stretch in result.rubbing(row)]
+    rubbing = [
+        {
+            "row": row,
+            "obstacle": found.obstacle,
+            "rod": found.rod,
+            "from": found.start,
+            "to": found.end,
+            "slips": found.slips,
+        }
+        for row, found in stretches
+    ]
+    return {"rubbing": rubbing}
 
 
 def point_forces(contact: Contact | PathContact) -> dict[str, Any]:

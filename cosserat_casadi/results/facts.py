@@ -68,6 +68,7 @@ def path_facts(path: EquilibriumPath) -> Titled:
         facts.append(("points", f"{len(path.factor)}, to {path.factor[-1]:.6g} of the way"))
         facts += _first("tips", ends)
     facts.append(("events", _listed(f"{event.kind} at {event.factor:.6g}" for event in path.events)))
+    facts += _rubbing(path, len(path.factor))
     facts.append(("error", _error(path.error_estimate, scene.accuracy.tolerance)))
     return scene.title, facts
 
@@ -83,8 +84,20 @@ def motion_facts(motion: Motion) -> Titled:
     facts.append(("steps", str(motion.statistics.steps)))
     if scene.has_contact:
         facts.append(("events", str(len(motion.events))))
+    facts += _rubbing(motion, len(motion.times))
     facts.append(("error", _error(motion.error_estimate, scene.motion_tolerance)))
     return scene.title, facts
+
+
+def _rubbing(result: EquilibriumPath | Motion, rows: int) -> Facts:
+    """What sticks and what slips at the end; nothing in a scene without friction."""
+    if not rows or not result.model.scene.rubs:
+        return []
+    words = []
+    for found in result.rubbing(rows - 1):
+        does = "slips" if found.slips else "sticks"
+        words.append(f"{found.rod} {does} on {found.obstacle} from {found.start:.3g} to {found.end:.3g}")
+    return [("at the end", _listed(words))]
 
 
 def modes_facts(modes: Modes) -> Titled:

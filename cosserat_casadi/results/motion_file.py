@@ -22,7 +22,7 @@ from cosserat_casadi.motion.checkpoint import KEY
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.results.contact_entry import contact_entry
+from cosserat_casadi.results.contact_entry import contact_entry, rubbing_entries
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
@@ -115,7 +115,8 @@ def motion_result(motion: Motion) -> dict[str, Any]:
 def _contact_entry(motion: Motion) -> dict[str, Any]:
     """Contact with obstacles: depth of rods inside obstacles with a width; contacts with the others, and impacts."""
     if not motion.model.scene.touches_exactly:
-        return contact_entry(motion.model, motion.x, motion.inputs)
+        entry = contact_entry(motion.model, motion.x, motion.inputs)
+        return entry | rubbing_entries(motion, len(motion.times))
     numbered = [(row, contact) for row, contacts in enumerate(motion.contacts) for contact in contacts]
     contacts = [contact for _, contact in numbered]
     return {

@@ -8,7 +8,7 @@ from typing import Any
 from cosserat_casadi.equilibrium.solution import SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
-from cosserat_casadi.results.contact_entry import contact_entry, point_forces
+from cosserat_casadi.results.contact_entry import contact_entry, point_forces, rubbing_entries
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
@@ -54,7 +54,8 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
     }
     scene = path.model.scene
     if scene.has_contact and not scene.touches_exactly:
-        data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
+        entry = contact_entry(path.model, path.x, path.all_inputs)
+        data["contact"] = entry | rubbing_entries(path, len(path.factor))
     return data
 
 

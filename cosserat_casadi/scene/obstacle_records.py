@@ -116,11 +116,13 @@ class ObstacleRecord(Entry):
     )
     friction: Coefficients = Field(
         0.0,
-        description="with width: coefficient μ of Coulomb's friction in motion, without unit, or a table of those "
-        "along a rod, back and across it",
+        description="with width: coefficient μ of Coulomb's friction in motion and along paths, without unit, or a "
+        "table of those along a rod, back and across it",
     )
     slip_speed: Positive = Field(
-        1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"
+        1e-3,
+        description="with friction: speed, m/s, below which what sticks creeps in motion, under a force that grows "
+        "with it",
     )
     restitution: Share = Field(
         0.0,

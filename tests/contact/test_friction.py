@@ -126,6 +126,10 @@ def test_what_sticks_creeps_slower_than_the_slip_speed() -> None:
     speed = (positions[-1] - positions[late]) / (motion.times[-1] - motion.times[late])
     wanted = SLIP * np.tan(slope) / np.sqrt(friction**2 - np.tan(slope) ** 2)
     assert_allclose(speed, wanted, rtol=3e-2, atol=0)
+    # Once the layer bears the rod all of it is pressed, and sticks; on a steep slope it slips.
+    last = len(motion.times) - 1
+    assert [(found.rod, found.obstacle, found.slips) for found in motion.rubbing(last)] == [("rod", "plane", False)]
+    assert "rod sticks on plane from 0 to 1" in repr(motion)
 
 
 def test_friction_takes_the_energy_of_the_way() -> None:
@@ -136,6 +140,9 @@ def test_friction_takes_the_energy_of_the_way() -> None:
     assert_allclose(motion.energy.dissipated[-1], wanted, rtol=1e-2, atol=0)
     assert np.abs(motion.energy.imbalance).max() < 1e-2 * wanted
     assert np.all(np.diff(motion.energy.dissipated) >= 0)
+    *_, stretch = motion.to_dict()["contact"]["rubbing"]
+    last = {"row": len(motion.times) - 1, "obstacle": "plane", "rod": "rod", "from": 0.0, "to": 1.0, "slips": True}
+    assert stretch == last
 
 
 def test_at_rest_nothing_rubs_and_it_is_said() -> None:
@@ -147,7 +154,7 @@ def test_at_rest_nothing_rubs_and_it_is_said() -> None:
     plain, with_friction = build(lying), build(rubbing)
     assert with_friction.residual.n_instructions() == plain.residual.n_instructions()
     found = solve(with_friction)
-    assert found.contacts and "Friction acts in motion alone" in found.message
+    assert found.contacts and "Friction acts in motion and on paths" in found.message
     assert "Friction" not in solve(plain).message
 
 

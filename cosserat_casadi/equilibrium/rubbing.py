@@ -1,0 +1,94 @@
+"""Stretches of rods that rub on obstacles, and whether they stick or slip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.gaps import runs
+from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.registry import EFFECTS, remembering
+
+SLIPS = 1.0 - 1e-6
+"""Way over reach, or speed over slip speed, from which on a section slips."""
+
+
+@dataclass(frozen=True)
+class RubbingStretch:
+    """A stretch of a rod that an obstacle with friction presses, and that sticks or slips as a whole.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        start: abscissa X at which the stretch begins.
+        end: abscissa at which it ends.
+        slips: whether it slips; else it sticks.
+    """
+
+    obstacle: str
+    rod: str
+    start: float
+    end: float
+    slips: bool
+
+
+def rubbing_stretches(model: Model, slip: FloatArray) -> tuple[RubbingStretch, ...]:
+    """The stretches that stick and those that slip, resolved to the distance of nodes.
+
+    Args:
+        model: the model.
+        slip: of the nodes, load after load, as ``model.memory`` and ``model.slips`` give it.
+    """
+    return tuple(_stretches(model, slip))
+
+
+def friction_between(
+    model: Model, layer: ContactLayer, x: FloatArray, inputs: FloatArray, ends: tuple[float, float]
+) -> FloatArray:
+    """Resultant of friction on a stretch of a rod, world axes, shape (3,), N; zero in a model without memory.
+
+    Args:
+        model: the model.
+        layer: the push of the obstacle on the rod.
+        x: unknowns, shape (model.size,).
+        inputs: stacked inputs, shape (model.inputs.size,).
+        ends: abscissae between which the stretch lies.
+    """
+    if model.memory is None or not EFFECTS[layer.kind].remembers(layer):
+        return np.zeros(3)
+    _, _, friction = model.memory(x, inputs)
+    for load, nodes in _nodes(model):
+        if load.name == layer.name:
+            rod = model.discrete.rods[load.rod]
+            X = known(rod.grid.nodes)
+            lengths = model.length_ratio(load.rod, inputs) * known(rod.node_lengths) * ((ends[0] <= X) & (ends[1] >= X))
+            return np.asarray(friction.full()[:, nodes] @ lengths)
+    raise KeyError(layer.name)
+
+
+def _nodes(model: Model) -> Iterator[tuple[Any, slice]]:
+    """Loads that remember, with their nodes among all."""
+    begin = 0
+    for load in remembering(model.discrete.loads):
+        end = begin + model.discrete.rods[load.rod].grid.size
+        yield load, slice(begin, end)
+        begin = end
+
+
+def _stretches(model: Model, slip: FloatArray) -> Iterator[RubbingStretch]:
+    for load, span in _nodes(model):
+        own = slip[span]
+        nodes = known(model.at().discrete.rods[load.rod].grid.nodes)
+        # Nodes stand for the rod to the middle between them and their neighbours.
+        ends = np.concatenate([[0.0], (nodes[1:] + nodes[:-1]) / 2, [1.0]])
+        for slips in (False, True):
+            for part in runs((own >= 0.0) & ((own >= SLIPS) == slips)):
+                yield RubbingStretch(
+                    load.obstacle.name, load.rod, float(ends[part.start]), float(ends[part.stop]), slips
+                )
