@@ -142,15 +142,25 @@ def with_notes(solution: Answer) -> Answer:
     return replace(solution, message=solution.message + _tolerance_note(solution) + _friction_note(solution))
 
 
+FRICTION_OF_OBSTACLES = (
+    " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
+)
+"""A sentence on an equilibrium of rods that rub on obstacles."""
+
+FRICTION_OF_RODS = " Friction between rods acts in motion alone, and is left out."
+"""A sentence on equilibria of rods that rub on each other."""
+
+
 def _friction_note(solution: Equilibrium[Any]) -> str:
     """A sentence for an equilibrium in contact with obstacles that rub; empty for other answers."""
     if not solution.converged or not isinstance(solution, Solution) or not solution.contacts:
         return ""
-    if not any(obstacle.rubs for obstacle in solution.model.scene.obstacles):
-        return ""
-    if solution.model.inputs.memory is not None:
-        return ""
-    return " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
+    scene = solution.model.scene
+    if scene.rubs and solution.model.inputs.memory is None:
+        return FRICTION_OF_OBSTACLES
+    if any(contact.friction for contact in scene.rod_contacts):
+        return FRICTION_OF_RODS
+    return ""
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

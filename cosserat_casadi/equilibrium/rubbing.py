@@ -39,7 +39,7 @@ class RubbingStretch:
 
 
 def rubbing_stretches(model: Model, slip: FloatArray) -> tuple[RubbingStretch, ...]:
-    """The stretches that stick and those that slip, resolved to the distance of nodes.
+    """The stretches that stick or slip, resolved to the distance of nodes.
 
     Args:
         model: the model.

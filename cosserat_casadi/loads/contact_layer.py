@@ -16,7 +16,7 @@ against the way u along the surface and over a regularised length of it, as long
 In motion u is the velocity, and the length √(u² + s²): far above the slip speed s that is Coulomb's law to the share
 ½ (s/u)²; what Coulomb's law lets stick creeps, slower than s until it is close to slipping.
 
-Along a path u is how far the layer has been dragged: what it was dragged already at the last point of the path, and the
+Along a path u is how far the layer has been dragged: the drag that remained at the last point of the path, and the
 displacement of the point that touched there since. The length is |u| or the reach a = μ f/k, whichever is more: a
 spring of the stiffness k that slips at μ f, and afterwards is dragged by a. That is the return map of plasticity
 without hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
@@ -94,7 +94,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return pressing * normal + rubbing, ca.cross(touching, rubbing)
 
     def remembers(self, load: ContactLayer) -> int:
-        """What friction remembers: where the layer would be free of drag, less the drag, and how the section stood."""
+        """Size of the history: the place at which the layer would not be dragged, and the rotation of the section."""
         return HISTORY if load.body is None and load.obstacle.rubs else 0
 
     def rubbing(self, load: ContactLayer, section: Section) -> Rubbing:
@@ -112,7 +112,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return Rubbing(ca.vertcat(origin, ca.vec(section.rotation)), slip, friction)
 
     def data(self, load: ContactLayer, site: Site) -> Numbers:
-        """Radius of the sections, m, and what friction remembers of them."""
+        """Radius of the sections, m, and their history."""
         radii = stacked_rows([section_radii(site.rod, site.X)])
         if site.history is None:
             return radii

@@ -87,8 +87,8 @@ class Site:
         rod: what the rod is made of.
         X: abscissae of the sections, shape (k,), numbers, or expressions where a parameter moves elements.
         unloaded: poses of the sections in the unloaded scene, found when they are asked for.
-        history: what a load remembers of the sections from the last point of a path, h×k; None where it remembers
-            nothing.
+        history: numbers of the sections that a load keeps from the last point of a path, h×k; None where it keeps
+            none.
     """
 
     rod: RodProperties
@@ -122,10 +122,10 @@ class BodyPoint:
 
 @dataclass(frozen=True)
 class Rubbing:
-    """How a section rubs on what it touches.
+    """How a section rubs on an obstacle.
 
     Attributes:
-        history: what is remembered of it at the next point of a path, h×1.
+        history: numbers of the section that the next point of a path is counted from, h×1.
         slip: how it has moved, over the way, or the speed, from which on it slips, 1×1; −1 where nothing presses it.
         friction: force of friction, N/m, 3×1.
     """
@@ -231,7 +231,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         return 0
 
     def rubbing(self, load: RecordType, section: Section) -> Rubbing:
-        """How a section rubs on what it touches, of a load that remembers."""
+        """How a section rubs on its obstacle, of a load that remembers."""
         raise NotImplementedError(f"{type(self).__name__} remembers nothing")
 
     def arrows(

@@ -24,7 +24,7 @@ each pair of panels.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import casadi as ca
@@ -37,10 +37,14 @@ PANEL = 32
 DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
 
-LAW = 3
+MOTION = 6
+"""Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s."""
+
+LAW = 5
 """Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
 
-It is so far at least. Of two rods every pair counts; of one and itself each pair once.
+It is so far at least. Of two rods every pair counts; of one and itself each pair once. The coefficient of friction and
+the slip speed, m/s, follow.
 """
 
 FAR = -1.0
@@ -82,7 +86,7 @@ def pair_kernels() -> PairKernels:
     places = [ca.SX.sym(name, 3) for name in ("first", "second")]
     data = [ca.SX.sym(name, DATA) for name in ("first_data", "second_data")]
     law = ca.SX.sym("law", LAW)
-    width, stiffness, nearest = ca.vertsplit(law)
+    width, stiffness, nearest, _, _ = ca.vertsplit(law)
     (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own) for own in data)
     touching = radius + other_radius
     square = ca.sumsqr(places[0] - places[1])
@@ -104,9 +108,37 @@ def pair_kernels() -> PairKernels:
     )
 
 
-def _panels() -> list[ca.MX]:
+@cache
+def friction_kernel() -> ca.Function:
+    """(position, data and motion, position, data and motion, law) ↦ [force; moment] on the first, on the second, 12×1.
+
+    Coulomb's law of :mod:`cosserat_casadi.loads.contact_layer` with the relative velocity of the points of both
+    sections that touch. They are one point on the line of the centres, so that neither a sum nor a moment remains.
+    """
+    places = [ca.SX.sym(name, 3) for name in ("first", "second")]
+    data = [ca.SX.sym(name, DATA + MOTION) for name in ("first_data", "second_data")]
+    law = ca.SX.sym("law", LAW)
+    width, stiffness, nearest, friction, slip_speed = ca.vertsplit(law)
+    (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own[:DATA]) for own in data)
+    touching = radius + other_radius
+    apart = places[0] - places[1]
+    square = ca.sumsqr(apart)
+    inside = ca.fmax((touching + width) ** 2 - square, 0.0)
+    meets = other_along - along >= nearest
+    # Minus the derivative of the energy with the distance d, over d.
+    by_distance = 6 * meets * length * other_length * coefficient(width, stiffness, touching) * inside**2
+    arms = [-radius / touching * apart, other_radius / touching * apart]
+    speeds = [own[DATA : DATA + 3] + ca.cross(own[DATA + 3 :], arm) for own, arm in zip(data, arms, strict=True)]
+    velocity = speeds[0] - speeds[1]
+    sliding = velocity - apart * (ca.dot(apart, velocity) / square)
+    force = -friction * by_distance * ca.sqrt(square) / ca.sqrt(ca.sumsqr(sliding) + slip_speed**2) * sliding
+    loads = ca.vertcat(force, ca.cross(arms[0], force), -force, -ca.cross(arms[1], force))
+    return ca.Function("contact_friction", [places[0], data[0], places[1], data[1], law], ca.cse([loads]))
+
+
+def _panels(data: int = DATA) -> list[ca.MX]:
     """Symbols of the positions and the data of two panels, and of the law."""
-    sizes = {"positions": 3, "data": DATA}
+    sizes = {"positions": 3, "data": data}
     symbols = [ca.MX.sym(f"{name}_{kind}", rows, PANEL) for name in ("first", "second") for kind, rows in sizes.items()]
     return [*symbols, ca.MX.sym("law", LAW)]
 
@@ -158,6 +190,49 @@ def panel_gradient() -> ca.Function:
 
 
 @cache
+def panel_friction() -> ca.Function:
+    """The same with motions behind the data ↦ [force; moment] of friction on the sections of both, 6×PANEL each."""
+    arguments = _panels(DATA + MOTION)
+    first, second = ca.vertsplit(_by_pair(friction_kernel(), arguments), 6)
+    results = [_over_second(first), _over_first(second)]
+    # Directions are multiplied with one Jacobian, which is put together from those of the pairs.
+    options = {"custom_jacobian": _friction_jacobian(arguments, results), "jac_penalty": 0.0, "never_inline": True}
+    friction = ca.Function("friction_of_panels", arguments, results, options)
+    symbols = _panels(DATA + MOTION)
+    return ca.Function("friction", symbols, friction.call(symbols))
+
+
+def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix]) -> ca.Function:
+    """Derivatives of friction on both panels with positions, data and law, which is constant."""
+    kernel = friction_kernel()
+    symbols = kernel.sx_in()
+    (loads,) = kernel.call(symbols)
+    parts = ca.vertsplit(loads, 6)
+    derivatives = [ca.densify(ca.jacobian(part, symbol)) for part in parts for symbol in symbols[:4]]
+    # Of the first load with the second section: transposed, so that sections of the first stand below each other.
+    turned = [derivative.T if index in (2, 3) else derivative for index, derivative in enumerate(derivatives)]
+    pairs = ca.Function("by_pair", symbols, ca.cse(turned)).map(PANEL**2)
+    owners = ("first", "first", "second", "second", "law")
+    by_pair = pairs.call(
+        [_arranged(field, owner, PANEL, PANEL) for field, owner in zip(arguments, owners, strict=True)]
+    )
+    columns = [symbol.shape[0] for symbol in symbols[:4]]
+    blocks = []
+    for load in range(2):
+        for index in range(4):
+            values = by_pair[4 * load + index]
+            if (load, index // 2) in ((0, 0), (1, 1)):
+                summed = _over_second(values) if load == 0 else _over_first(values)
+                blocks.append(ca.diagcat(*ca.horzsplit(summed, columns[index])))
+            else:
+                chunks = ca.vertcat(*ca.horzsplit(values, values.shape[1] // PANEL))
+                blocks.append(chunks.T if load == 0 else chunks)
+        blocks.append(ca.MX(6 * PANEL, LAW))
+    outputs = [ca.MX.sym(f"out_{number}", *result.shape) for number, result in enumerate(results)]
+    return ca.Function("jac_friction_of_panels", [*arguments, *outputs], blocks)
+
+
+@cache
 def panel_stiffness(count: int) -> ca.Function:
     """The same, and a motion of the second panel ↦ second derivatives of the energy.
 
@@ -202,10 +277,12 @@ class SectionsInContact:
     Attributes:
         positions: world axes, 3×S, m, with S a multiple of PANEL.
         data: DATA×S.
+        motion: MOTION×S, world axes; without columns at rest.
     """
 
     positions: Matrix
     data: Matrix
+    motion: Matrix = ca.DM(MOTION, 0)
 
     @property
     def panels(self) -> int:
@@ -216,7 +293,7 @@ class SectionsInContact:
     @cached_property
     def balls(self) -> Matrix:
         """Centre and radius of a ball about each panel, and its ends along the rod, 6×panels, m."""
-        balls: Matrix = _ball().map(self.panels)(self.positions, self.data)
+        balls: Matrix = _ball().map(self.panels)(self.positions, self.data[:DATA, :])
         return balls
 
     @cached_property
@@ -265,6 +342,13 @@ class SectionPairs:
     def gradient(self) -> tuple[Matrix, Matrix]:
         """Derivatives of the energy with the positions of both, 3×S each, N."""
         first, second = self._over_pairs(panel_gradient())
+        return self._of_first(first), self._of_second(second)
+
+    @cached_property
+    def friction(self) -> tuple[Matrix, Matrix]:
+        """[Force; moment] of friction on the sections of both, 6×S each, N and N m, of sections in motion."""
+        moving = [replace(own, data=ca.vertcat(own.data, own.motion)) for own in (self.first, self.second)]
+        first, second = replace(self, first=moving[0], second=moving[1])._over_pairs(panel_friction())
         return self._of_first(first), self._of_second(second)
 
     def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:

@@ -58,6 +58,8 @@ class ContactPair:
         sections: number of sections of each rod.
         thickness: distance of the centres of sections that touch, where it is least, m.
         length: of the first rod, m.
+        friction: coefficient of friction in motion.
+        slip_speed: speed below which sticking sections creep, m/s.
     """
 
     name: str
@@ -68,6 +70,8 @@ class ContactPair:
     sections: tuple[int, int]
     thickness: float
     length: float
+    friction: float
+    slip_speed: float
 
     @property
     def itself(self) -> bool:
@@ -89,7 +93,7 @@ class ContactPair:
     @property
     def law(self) -> ca.DM:
         """Numbers of the law, as loads/rod_contact.py takes them."""
-        return ca.DM([self.width, self.stiffness, self.apart])
+        return ca.DM([self.width, self.stiffness, self.apart, self.friction, self.slip_speed])
 
 
 def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
@@ -144,6 +148,8 @@ def contact_pairs(
             sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
             thickness=thinnest,
             length=nominal[pair[0]].properties.length,
+            friction=contact.friction,
+            slip_speed=contact.slip_speed,
         )
 
 

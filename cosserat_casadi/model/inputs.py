@@ -27,7 +27,7 @@ from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.records import Entry
 
 HISTORY = "history"
-"""Field of what a load remembers of the sections of a rod from the last point of a path."""
+"""Field of the numbers of sections that a load keeps from the last point of a path."""
 
 SHORTEST = 1e-3
 """Least value of a length as an input, relative to the scene's."""
@@ -124,7 +124,7 @@ class InputLayout(StackedLayout[Input]):
 
     @cached_property
     def memory(self) -> slice | None:
-        """What loads remember, stacked; None without memory."""
+        """Entries of the histories of all loads; None without memory."""
         spans = [span for entry, span in self if entry.field == HISTORY]
         return slice(spans[0].start, spans[-1].stop) if spans else None
 

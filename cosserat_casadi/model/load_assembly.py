@@ -115,11 +115,11 @@ class RodLoads:
         return [*lines, *self._on_fixed_masses(kernel, force)]
 
     def site(self, load: scenes.LoadRecord) -> Site:
-        """Sections of the rod that a load acts on, and what it remembers of them."""
+        """Sections of the rod that a load acts on, with their history."""
         return replace(site_of(self.discrete, self.rod, load), history=self._history(load))
 
     def _history(self, load: scenes.LoadRecord) -> Matrix | None:
-        """What the load remembers of the sections at the nodes, h×M; None where it remembers nothing."""
+        """History of the sections at the nodes, h×M; None of a load without one."""
         entries = self.discrete.layout.of_load(load.name or "", HISTORY)
         if entries is None:
             return None

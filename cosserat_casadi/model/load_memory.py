@@ -1,4 +1,4 @@
-"""How rods rub on what they touch, at their nodes: in motion, and from one point of a path to the next."""
+"""Friction of rods on obstacles at their nodes: in motion, and from one point of a path to the next."""
 
 from __future__ import annotations
 

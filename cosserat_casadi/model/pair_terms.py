@@ -8,6 +8,7 @@ the strains of their rod and by its base, where that floats.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
@@ -17,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.obstacle_load import section_radii
-from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
+from cosserat_casadi.loads.rod_contact import MOTION, PANEL, SectionPairs, SectionsInContact
 from cosserat_casadi.maths.numbers import as_matrix, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair
@@ -83,18 +84,30 @@ class ContactSide:
         along = rod.properties.length * as_matrix(X)
         data = ca.horzcat(lengths, radii, along).T
         origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.columns)
-        return SectionsInContact(origin + self._arms, data)
+        return SectionsInContact(origin + self._arms, data, self._velocities)
 
-    def wrench(self, gradient: Matrix, factor: Matrix | float) -> LineWrench:
-        """Forces on the nodes that do the work of those on the sections, as a force per length, base axes.
+    @property
+    def _velocities(self) -> Matrix:
+        """Velocities and angular velocities of the sections, world axes, 6×S; without columns at rest."""
+        motion = self.system.motions.get(self.rod)
+        if motion is None:
+            return ca.DM(MOTION, 0)
+        nodal = [self._rotation @ rate for rate in (motion.velocity, motion.angular_velocity)]
+        return ca.densify(ca.vertcat(*nodal) @ self.interpolation.T)
+
+    def wrench(self, force: Matrix, moment: Matrix | None = None) -> LineWrench:
+        """Load on the nodes that does the work of forces and moments on the sections, per length, base axes.
 
         Args:
-            gradient: derivative of the energy with the positions, 3×S, N, world axes.
-            factor: of the energy.
+            force: on the sections, 3×S, N, world axes.
+            moment: likewise, N m.
         """
-        at_nodes = -factor * gradient @ self.interpolation
         lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
-        return LineWrench(self._rotation.T @ at_nodes / lengths, None, None, follower=False)
+        per_length = [
+            None if part is None else self._rotation.T @ (part @ self.interpolation) / lengths
+            for part in (force, moment)
+        ]
+        return LineWrench(per_length[0], per_length[1], None, follower=False)
 
     @cached_property
     def base_frame(self) -> FrameName | None:
@@ -170,15 +183,40 @@ class PairTerms:
         return self._factor * self.section_pairs.energy
 
     def wrenches(self, rod: str) -> list[LineWrench]:
-        """The push on a rod, base axes; none on a rod that is not of the pair."""
-        first, second = self.section_pairs.gradient
-        gradients = [first + second] if self.pair.itself else [first, second]
-        factor = self._factor
-        return [
-            side.wrench(gradient, factor)
-            for side, gradient in zip(self.sides, gradients, strict=True)
-            if side.rod == rod
+        """The push on a rod, and friction, base axes; none on a rod that is not of the pair."""
+        pushes = zip(self.sides, self._gradients, strict=True)
+        loads = [side.wrench(-self._factor * gradient) for side, gradient in pushes if side.rod == rod]
+        rubs = zip(self.sides, self.frictions, strict=False)
+        return loads + [side.wrench(friction[:3, :], friction[3:, :]) for side, friction in rubs if side.rod == rod]
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction: in motion alone."""
+        return self.pair.friction > 0.0 and bool(self.system.motions)
+
+    @property
+    def dissipated_power(self) -> Matrix:
+        """Power that friction takes, 1×1, W."""
+        powers = [
+            -ca.dot(friction, side.sections.motion) for side, friction in zip(self.sides, self.frictions, strict=True)
         ]
+        return sum(powers[1:], powers[0])
+
+    @property
+    def _gradients(self) -> list[Matrix]:
+        """Derivatives of the energy with the positions of the sections of each side, 3×S, N."""
+        first, second = self.section_pairs.gradient
+        return [first + second] if self.pair.itself else [first, second]
+
+    @cached_property
+    def frictions(self) -> Sequence[Matrix]:
+        """[Force; moment] of friction on the sections of each side, 6×S; none without."""
+        if not self.rubs:
+            return []
+        if self.pair.name in self.system.friction:
+            return self.system.friction[self.pair.name]
+        first, second = self.section_pairs.friction
+        return [first + second] if self.pair.itself else [first, second]
 
     @cached_property
     def stiffness(self) -> dict[tuple[str, str], Matrix]:

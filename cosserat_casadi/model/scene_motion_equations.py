@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
-from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_symbolic, is_zero
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.floating_frames import FrameName
@@ -94,11 +95,34 @@ class SceneMotionEquations:
             mass.add(flows, flows, relaxation.matrices.by_acceleration)
         for _, entries, coefficient in self._damped_coordinates:
             damping.add(entries, entries, coefficient)
+        by_friction = self._by_friction
         return MotionMatrices(
-            stiffness=SceneEquations(self.system).jacobian + stiffness.matrix(),
-            damping=damping.matrix(),
+            stiffness=SceneEquations(self.system).jacobian + stiffness.matrix() + by_friction[0],
+            damping=damping.matrix() + by_friction[1],
             mass=mass.matrix(),
         )
+
+    @property
+    def _by_friction(self) -> tuple[Matrix, Matrix]:
+        """Derivatives with x and v by the change of friction between rods with both.
+
+        The equations are linear in it, and at fixed friction their derivatives are those of any dead load.
+        """
+        rubbing = [terms for terms in self.system.pairs if terms.rubs]
+        size = self.system.discrete.size
+        if not rubbing or not is_symbolic(self._velocity):
+            return ca.DM(size, size), ca.DM(size, size)
+        frictions = [friction for terms in rubbing for friction in terms.frictions]
+        loads = ca.vertcat(*map(ca.vec, frictions))
+        symbol = ca.MX.sym("friction", loads.shape[0])
+        ends = np.cumsum([0, *(friction.numel() for friction in frictions)]).tolist()
+        parts = iter(ca.reshape(part, 6, part.numel() // 6) for part in ca.vertsplit(symbol, ends))
+        given = {terms.pair.name: [next(parts) for _ in terms.frictions] for terms in rubbing}
+        rows = SceneEquations(replace(self.system, friction=given)).residual
+        with_x, with_v = (ca.jacobian(loads, argument) for argument in (self.system.arguments.x, self._velocity))
+        changes = [ca.jtimes(rows, symbol, ca.densify(change)) for change in (with_x, with_v)]
+        by_x, by_v = ca.substitute(changes, [symbol], [loads])
+        return by_x, by_v
 
     @property
     def _velocity(self) -> Matrix:

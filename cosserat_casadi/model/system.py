@@ -7,7 +7,7 @@ sections 2 to 8.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -95,11 +95,13 @@ class System:
         discrete: constant matrices of the scene.
         arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
+        friction: [force; moment] on the sections of both sides of pairs of rods that rub, 6×S each, by pair; computed where it is left out.
     """
 
     discrete: DiscreteScene
     arguments: Arguments
     columns: Mapping[str, Columns] = field(default_factory=dict)
+    friction: Mapping[str, Sequence[Matrix]] = field(default_factory=dict)
 
     @cached_property
     def rods(self) -> dict[str, InverseGeometricModel]:

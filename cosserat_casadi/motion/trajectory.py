@@ -257,9 +257,9 @@ class Motion(Result):
         return states_of(self.model.joint[name], self.x, self.inputs)
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick, and those that slip, in a row; none in a scene without friction.
+        """The stretches that stick or slip in a row; none in a scene without friction.
 
-        What creeps slower than the slip speed sticks.
+        A section that creeps slower than the slip speed sticks.
         """
         if not self.model.scene.rubs:
             return ()

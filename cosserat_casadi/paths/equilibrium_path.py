@@ -178,7 +178,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return ()
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick, and those that slip, at a point of the path; none in a scene without friction."""
+        """The stretches that stick or slip at a point of the path; none in a scene without friction."""
         return ()
 
     def tip(self, rod: str | None = None) -> SolvedPoses:

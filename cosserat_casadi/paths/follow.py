@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.answer_error import FRICTION_OF_RODS
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
@@ -33,7 +34,7 @@ from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = " Friction is counted from factor 0, where nothing rubs yet."
-"""What a path with friction does not know."""
+"""A sentence on the beginning of a path with friction."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +209,10 @@ def follow_path(
         return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
-    return _within_limits(_unless_too_deep(followed.record(traced)))
+    path = _within_limits(_unless_too_deep(followed.record(traced)))
+    if any(contact.friction for contact in model.scene.rod_contacts):
+        return replace(path, message=path.message + FRICTION_OF_RODS)
+    return path
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:

@@ -1,4 +1,4 @@
-"""Paths with friction: one input grows in increments, and what the obstacles remember of the rods goes along.
+"""Paths with friction: one input grows in increments, and a history of the rods goes along.
 
 Friction at rest is known only from the way that led there. The path begins at the equilibrium without friction. In each
 increment the history is that of the point before, so that it ends at an equilibrium of known loads; there it is brought
@@ -31,7 +31,7 @@ class FrictionPath(EquilibriumPath):
     """Equilibria of rods that rub on obstacles.
 
     Attributes:
-        histories: inputs ``history`` of the model at each point, shape (k, h): those that friction is counted from.
+        histories: inputs ``history`` of the model at each point, shape (k, h), from which friction is counted.
         slips: how far the nodes are dragged over the way at which they slip, load after load, shape (k, nodes); −1
             where nothing presses.
     """
@@ -47,7 +47,7 @@ class FrictionPath(EquilibriumPath):
         return inputs
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick, and those that slip, at a point of the path."""
+        """The stretches that stick or slip at a point of the path."""
         return rubbing_stretches(self.model, self.slips[index])
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact
+from cosserat_casadi.paths.equilibrium_path import PathContact
+
+if TYPE_CHECKING:
+    from cosserat_casadi.motion.trajectory import Motion
+    from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:

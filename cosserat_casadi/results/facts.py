@@ -90,7 +90,7 @@ def motion_facts(motion: Motion) -> Titled:
 
 
 def _rubbing(result: EquilibriumPath | Motion, rows: int) -> Facts:
-    """What sticks and what slips at the end; nothing in a scene without friction."""
+    """Stretches that stick or slip at the end; nothing in a scene without friction."""
     if not rows or not result.model.scene.rubs:
         return []
     words = []

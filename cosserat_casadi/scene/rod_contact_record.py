@@ -10,7 +10,7 @@ from pydantic import Field
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import is_round
-from cosserat_casadi.scene.values import Name, Names, Positive
+from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive
 
 MOST_RODS = 2
 """Rods of a pair."""
@@ -41,6 +41,12 @@ width = 5e-4
         None,
         description="rate of the force per length with the gap where the gap of parallel rods is zero, N/m²; "
         "30 EI/(L² width²) of the stiffer rod when left out",
+    )
+    friction: NotNegative = Field(
+        0.0, description="coefficient μ of Coulomb's friction in motion, without unit, the same in all directions"
+    )
+    slip_speed: Positive = Field(
+        1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"
     )
 
     @property

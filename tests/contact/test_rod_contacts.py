@@ -30,7 +30,7 @@ def pushed(positions: FloatArray, other: FloatArray) -> tuple[float, FloatArray]
     along = (np.arange(SECTIONS) + 0.5) / SECTIONS
     data = ca.DM(np.vstack([np.full(SECTIONS, 0.2 / SECTIONS), np.full(SECTIONS, RADIUS), along]))
     sections = [SectionsInContact(ca.MX(ca.DM(own)), data) for own in (positions, other)]
-    pairs = SectionPairs(*sections, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    pairs = SectionPairs(*sections, ca.DM([WIDTH, STIFFNESS, -1e100, 0.4, 1e-3]))
     energy, first, second = (ca.evalf(value).full() for value in (pairs.energy, *pairs.gradient))
     assert_allclose(first.sum(axis=1), -second.sum(axis=1), rtol=0, atol=1e-12)
     return float(energy[0, 0]), -second.sum(axis=1)
@@ -287,7 +287,7 @@ def test_rods_that_are_apart_cost_no_pair() -> None:
     """Bounds of the operations: without the pairs they grow as the sections do."""
     along = np.linspace(0.0, 1.0, 4 * PANEL)
     far = [SectionsInContact(ca.MX.sym("x", 3, count * PANEL), ca.DM(3, count * PANEL)) for count in (4, 4)]
-    pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100]))
+    pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100, 0.4, 1e-3]))
     gradient = ca.Function("gradient", [own.positions for own in far], list(pairs.gradient))
     calls = [function for function in gradient.find_functions() if function.class_name() == "Switch"]
     # One for the rods, one for the panels: nothing of either is called where rods are apart.

@@ -1,0 +1,133 @@
+"""Friction between rods that touch: sliding against a point mass, action and reaction, derivatives, energy."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import casadi as ca
+import numpy as np
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import Model, build, discretise, scene_from_dict, simulate, solve
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
+from cosserat_casadi.maths.typing import FloatArray
+
+RADIUS = 5e-3
+DENSITY = 1000.0
+LENGTH = 0.03
+FRICTION = 0.3
+SLIP = 1e-3
+DURATION = 0.002
+
+
+@cache
+def sliding(push: float = 0.0, friction: float = FRICTION, moving: bool = True) -> Model:
+    """A stiff rod on a rail, along a longer one into whose layer it is pressed."""
+    common = {
+        "strain": "planar",
+        "section": {"shape": "circle", "radius": RADIUS},
+        "material": {"youngs_modulus": 1e12, "poisson_ratio": 0.3, "density": DENSITY},
+    }
+    lower = {"name": "lower", "length": 2 * LENGTH, "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]}, **common}
+    base = {"position": [LENGTH / 3, 0, 2 * RADIUS + 1e-3], "tangent": [1, 0, 0]}
+    rail = {"name": "rail", "kind": "prismatic", "rod": "upper", "at": 0.0, "axis": [1, 0, 0]}
+    touch = {"rods": ["lower", "upper"], "width": 2e-3, "stiffness": 1e5, "friction": friction, "slip_speed": SLIP}
+    scene = scene_from_dict(
+        {
+            "schema": 1,
+            "rods": [lower, {"name": "upper", "length": LENGTH, "base": base, **common}],
+            "joints": [rail | {"stiffness": 1e-6}],
+            "rod_contacts": [touch],
+            "loads": [{"name": "push", "kind": "point_wrench", "rod": "upper", "at": 1.0, "force": [push, 0, 0]}],
+            "simulation": {"duration": DURATION, "start": "unloaded", "tolerance": 1e-3},
+        }
+    )
+    return build(scene, discretise(scene, 1, 4), moving=moving)
+
+
+def pressing() -> float:
+    """Force between the rods, N."""
+    (contact,) = solve(sliding(moving=False)).contacts
+    return float(np.linalg.norm(contact.force))
+
+
+def slid(push: float) -> float:
+    """Way of a point mass by SciPy, with the friction of the scene, m."""
+    mass = DENSITY * np.pi * RADIUS**2 * LENGTH
+
+    def rates(_: float, state: FloatArray) -> FloatArray:
+        rubbing = FRICTION * pressed * state[1] / np.hypot(state[1], SLIP)
+        return np.array([state[1], (push - rubbing) / mass])
+
+    pressed = pressing()
+    return float(solve_ivp(rates, (0, DURATION), [0, 0], "Radau", rtol=1e-10, atol=1e-13).y[0, -1])
+
+
+def test_a_rod_slides_on_a_rod_as_a_point_mass() -> None:
+    """With the push less μ N over its mass; friction takes the energy of the way."""
+    push = 2 * FRICTION * pressing()
+    motion = simulate(sliding(push))
+    assert motion.converged, motion.message
+    positions = motion.tip("upper").position[:, 0]
+    way = positions[-1] - positions[0]
+    assert_allclose(way, slid(push), rtol=2e-3, atol=0)
+    assert_allclose(motion.energy.dissipated[-1], FRICTION * pressing() * way, rtol=2e-2, atol=0)
+    assert np.abs(motion.energy.imbalance).max() < 1e-3
+
+
+def test_friction_between_sections_has_neither_a_sum_nor_a_moment() -> None:
+    """And is opposite to the relative velocity of the points that touch: a rod that rolls on a rod has none."""
+    rng = np.random.default_rng(1)
+    along = (np.arange(2 * PANEL) + 0.5) / (2 * PANEL)
+    data = ca.DM(np.vstack([np.full(len(along), 0.2 / len(along)), np.full(len(along), RADIUS), along]))
+    none = 0 * along
+    lines = [np.array([0.2 * along, none, none]), np.array([0.2 * along, 0.1 * along, none + 2 * RADIUS + 2e-4])]
+
+    def loads(*motions: FloatArray) -> list[FloatArray]:
+        sides = [
+            SectionsInContact(ca.MX(ca.DM(line)), data, ca.DM(motion))
+            for line, motion in zip(lines, motions, strict=True)
+        ]
+        pairs = SectionPairs(*sides, ca.DM([1e-3, 1e5, -1e100, FRICTION, SLIP]))
+        return [ca.evalf(load).full() for load in pairs.friction]
+
+    first, second = loads(rng.standard_normal((6, len(along))), rng.standard_normal((6, len(along))))
+    size = np.abs(first[:3]).sum()
+    assert size > 1e-3
+    assert_allclose(first[:3].sum(axis=1) + second[:3].sum(axis=1), 0, rtol=0, atol=1e-13 * size)
+    moments = [
+        np.cross(line.T, load[:3].T).sum(axis=0) + load[3:].sum(axis=1)
+        for line, load in zip(lines, (first, second), strict=True)
+    ]
+    assert_allclose(moments[0] + moments[1], 0, rtol=0, atol=1e-13 * size)
+
+
+def test_derivatives_are_those_of_differences() -> None:
+    model = sliding()
+    rng = np.random.default_rng(2)
+    x = 1e-4 * rng.standard_normal(model.size)
+    v = 1e-2 * rng.standard_normal(model.size)
+    a = np.zeros(model.size)
+    inputs = model.pack()
+    still = np.zeros_like(inputs)
+
+    def balance(x: FloatArray, v: FloatArray) -> FloatArray:
+        return np.asarray(model.inverse_dynamics(x, v, a, inputs, still, still)).ravel()
+
+    stiffness, damping, _, residual = model.dynamics_jacobian(x, v, a, inputs, still, still)
+    assert_allclose(residual.full()[:, 0], balance(x, v), rtol=0, atol=1e-12)
+    steps = 1e-7 * np.eye(model.size)
+    by_x = np.array([(balance(x + step, v) - balance(x - step, v)) / 2e-7 for step in steps]).T
+    by_v = np.array([(balance(x, v + step) - balance(x, v - step)) / 2e-7 for step in steps]).T
+    assert_allclose(stiffness.full(), by_x, rtol=1e-5, atol=1e-6 * np.abs(by_x).max())
+    assert_allclose(damping.full(), by_v, rtol=1e-5, atol=1e-6 * np.abs(by_v).max())
+    assert np.abs(by_v).max() > 0
+
+
+def test_at_rest_rods_do_not_rub() -> None:
+    """Statics have not one instruction more, and say so."""
+    rubbing, plain = sliding(moving=False), sliding(friction=0.0, moving=False)
+    assert rubbing.residual.n_instructions() == plain.residual.n_instructions()
+    assert "Friction between rods acts in motion alone" in solve(rubbing).message
+    assert "Friction" not in solve(plain).message
