@@ -40,6 +40,9 @@ DATA = 3
 MOTION = 6
 """Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s."""
 
+STILL = ca.DM(MOTION, 0)
+"""Motion of sections at rest."""
+
 LAW = 5
 """Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
 
@@ -282,7 +285,7 @@ class SectionsInContact:
 
     positions: Matrix
     data: Matrix
-    motion: Matrix = ca.DM(MOTION, 0)
+    motion: Matrix = STILL
 
     @property
     def panels(self) -> int:

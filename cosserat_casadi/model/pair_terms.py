@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.obstacle_load import section_radii
-from cosserat_casadi.loads.rod_contact import MOTION, PANEL, SectionPairs, SectionsInContact
+from cosserat_casadi.loads.rod_contact import PANEL, STILL, SectionPairs, SectionsInContact
 from cosserat_casadi.maths.numbers import as_matrix, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair
@@ -91,7 +91,7 @@ class ContactSide:
         """Velocities and angular velocities of the sections, world axes, 6×S; without columns at rest."""
         motion = self.system.motions.get(self.rod)
         if motion is None:
-            return ca.DM(MOTION, 0)
+            return STILL
         nodal = [self._rotation @ rate for rate in (motion.velocity, motion.angular_velocity)]
         return ca.densify(ca.vertcat(*nodal) @ self.interpolation.T)
 
