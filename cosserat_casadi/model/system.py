@@ -95,7 +95,8 @@ class System:
         discrete: constant matrices of the scene.
         arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
-        friction: [force; moment] on the sections of both sides of pairs of rods that rub, 6×S each, by pair; computed where it is left out.
+        friction: [force; moment] on the sections of both sides of pairs of rods that rub, 6×S each, by pair; computed
+            where it is left out.
     """
 
     discrete: DiscreteScene
