@@ -58,6 +58,7 @@ SCENES = (
     "wire_in_vessel",
     "robot_leans_on_wall",
     "finger_on_finger",
+    "crossing_fingers",
     "felt_loads",
     "concentric_tubes",
     "loaded_tubes",
