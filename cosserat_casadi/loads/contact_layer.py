@@ -43,6 +43,9 @@ from cosserat_casadi.obstacles.registry import SURFACES
 STANDING = 1e-3
 """Cosine of a rod to the surface below which its tangent along the surface fades."""
 
+HISTORY_FIELD = "history"
+"""Input of the numbers that friction remembers at the nodes."""
+
 HISTORY = 12
 """Numbers that friction remembers of a section: a position, m, and a rotation matrix, column after column."""
 
@@ -70,6 +73,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
     record = ContactLayer
     # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
     growth = 2
+    nodal = HISTORY_FIELD
 
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
         """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body; None where friction takes part in the force."""
@@ -114,9 +118,9 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
     def data(self, load: ContactLayer, site: Site) -> Numbers:
         """Radius of the sections, m, and their history."""
         radii = stacked_rows([section_radii(site.rod, site.X)])
-        if site.history is None:
+        if site.nodal is None:
             return radii
-        return ca.vertcat(as_matrix(radii), site.history)
+        return ca.vertcat(as_matrix(radii), site.nodal)
 
 
 @dataclass(frozen=True)

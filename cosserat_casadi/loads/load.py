@@ -87,14 +87,13 @@ class Site:
         rod: what the rod is made of.
         X: abscissae of the sections, shape (k,), numbers, or expressions where a parameter moves elements.
         unloaded: poses of the sections in the unloaded scene, found when they are asked for.
-        history: numbers of the sections that a load keeps from the last point of a path, h×k; None where it keeps
-            none.
+        nodal: numbers of the sections from the input of the load that holds such, h×k; None without.
     """
 
     rod: RodProperties
     X: Numbers
     unloaded: Callable[[], UnloadedPoses]
-    history: Matrix | None = None
+    nodal: Matrix | None = None
 
     @cached_property
     def unloaded_position(self) -> Numbers:
@@ -146,6 +145,7 @@ class Load(Kind, ABC, Generic[RecordType]):
         kind: the word of the scene format.
         growth: power of the load factor by which a load that hangs on the pose grows from the unloaded scene.
         per_mass: whether its force is one per mass, which acts on masses that are fixed to sections as well.
+        nodal: name of an input that holds numbers of each node of the rod; empty for none.
     """
 
     record: ClassVar[type[LoadRecord]]
@@ -153,6 +153,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     kinds = EFFECTS
     growth: ClassVar[int] = 1
     per_mass: ClassVar[bool] = False
+    nodal: ClassVar[str] = ""
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes.

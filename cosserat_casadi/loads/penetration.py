@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi.loads.load import Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
@@ -22,11 +22,11 @@ from cosserat_casadi.scene.input_fields import InputField
 
 
 class Penetration(ObstacleLoadRecord):
-    """A soft obstacle, whose surface is raised by one height all along the rod, or by one at each node."""
+    """A soft obstacle, whose surface is raised by a height at each node of the rod."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {
         "stiffness": InputField("N/m³", 1),
-        "raised": InputField("m", 1, polynomial=True),
+        "raised": InputField("m", 1, polynomial=True, nodal=True),
     }
 
     kind: Literal["penetration"] = "penetration"
@@ -43,6 +43,7 @@ class PenetrationLoad(ObstacleLoad[Penetration]):
     """
 
     record = Penetration
+    nodal = "raised"
 
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """k/3 (ρ − d)³, J/m, or J of a body."""
@@ -50,18 +51,18 @@ class PenetrationLoad(ObstacleLoad[Penetration]):
         if load.body is not None:
             depth = load.radius - distance
         else:
-            raised = ca.mtimes(values["raised"], section.data[1:])
-            depth = section.data[0] + raised - distance
+            radius, raised = section.data[0], section.data[1]
+            depth = radius + raised - distance
         depth = ca.fmax(depth, 0.0)
         energy: Matrix = values["stiffness"] / 3 * depth**3
         return energy
 
-    def data(self, load: Penetration, site: Site) -> FloatArray:
-        """Radius of the sections, m, and how much each height raises the obstacle there."""
-        X = known(site.X)
-        count = len(load.raised[0])
-        shares = np.eye(count) if count == len(X) else np.ones((count, len(X)))
-        return np.vstack([section_radius(site.rod, X), shares])
+    def data(self, load: Penetration, site: Site) -> Numbers:
+        """Radius of the sections, m, and how much the obstacle is raised there, m."""
+        radii = section_radius(site.rod, known(site.X))[None]
+        if site.nodal is None:
+            return np.vstack([radii, np.zeros_like(radii)])
+        return ca.vertcat(ca.DM(radii), site.nodal)
 
 
 def section_radius(rod: RodProperties, X: FloatArray) -> FloatArray:

@@ -209,7 +209,7 @@ class DiscreteScene:
         for load in remembering(self.loads):
             numbers = EFFECTS[load.kind].remembers(load)
             default = np.zeros((numbers, self.rods[load.rod].grid.size))
-            declared = InputField("1", numbers, nonlinear=True)
+            declared = InputField("1", numbers, nonlinear=True, nodal=True)
             entries.append(Input(load.name, HISTORY, declared, default, "none", False, np.inf))
         return replace(self, layout=InputLayout(tuple(entries)))
 

@@ -129,6 +129,12 @@ class InputLayout(StackedLayout[Input]):
         return slice(spans[0].start, spans[-1].stop) if spans else None
 
     @cached_property
+    def nodal(self) -> frozenset[int]:
+        """Indices of the inputs that hold numbers of nodes."""
+        spans = [span for entry, span in self if entry.declared.nodal]
+        return frozenset(index for span in spans for index in range(span.start, span.stop))
+
+    @cached_property
     def geometry(self) -> list[int]:
         """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
         indices: list[int] = []

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.numbers import (
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.inputs import HISTORY, input_values, scene_value
+from cosserat_casadi.model.inputs import input_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import RodMotion
@@ -95,7 +95,7 @@ class RodLoads:
             return []
         if member.seen_from(load) is not None and self.body_pose is None:
             return []
-        values = input_values(self.discrete.layout, load, self.inputs)
+        values = self._values(load)
         site = self.site(load)
         data_size = member.data(load, site).shape[0]
         kernel = traced(member, load, values, data_size)
@@ -114,21 +114,26 @@ class RodLoads:
         lines: list[RodLoad] = [line for line in (force_line, moment_line) if line is not None]
         return [*lines, *self._on_fixed_masses(kernel, force)]
 
-    def site(self, load: scenes.LoadRecord) -> Site:
-        """Sections of the rod that a load acts on, with their history."""
-        return replace(site_of(self.discrete, self.rod, load), history=self._history(load))
+    def _values(self, load: scenes.LoadRecord) -> dict[str, Matrix]:
+        """Inputs of a load that all its sections share."""
+        values = input_values(self.discrete.layout, load, self.inputs)
+        values.pop(EFFECTS[load.kind].nodal, None)
+        return values
 
-    def _history(self, load: scenes.LoadRecord) -> Matrix | None:
-        """History of the sections at the nodes, h×M; None of a load without one."""
-        entries = self.discrete.layout.of_load(load.name or "", HISTORY)
+    def site(self, load: scenes.LoadRecord) -> Site:
+        """Sections of the rod that a load acts on, with its numbers of them."""
+        return replace(site_of(self.discrete, self.rod, load), nodal=self._nodal(load))
+
+    def _nodal(self, load: scenes.LoadRecord) -> Matrix | None:
+        """Numbers of the nodes in an input of a load, h×M; None of a load without such an input."""
+        entries = self.discrete.layout.of_load(load.name or "", EFFECTS[load.kind].nodal)
         if entries is None:
             return None
-        numbers = EFFECTS[load.kind].remembers(load)
-        history = ca.reshape(self.inputs[entries], numbers, (entries.stop - entries.start) // numbers)
         own, remembered = self.discrete.rods[self.rod].grid, self.discrete.remembered[self.rod]
+        numbers = ca.reshape(self.inputs[entries], (entries.stop - entries.start) // remembered.size, remembered.size)
         if own is remembered:
-            return history
-        return history @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
+            return numbers
+        return numbers @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
 
     def _on_fixed_masses(self, kernel: TracedLoad, force: Matrix | None) -> Iterator[WrenchAt]:
         """A force per mass on the masses that are fixed to sections."""
@@ -161,7 +166,7 @@ class RodLoads:
     def _pose_wrench(self, kernel: TracedLoad, site: Site) -> PoseWrench:
         """A load that depends on the pose of its sections: its kernel, evaluated at each of them."""
         at = kernel.member.abscissa(kernel.load)
-        values = input_values(self.discrete.layout, kernel.load, self.inputs)
+        values = self._values(kernel.load)
         section_kernel = kernel.kernel
         motion = None
         if self._feels_motion(kernel):

@@ -43,16 +43,21 @@ def unloaded_response(
     origin[geometry] = discrete.layout.pack()[geometry]
     jacobian = path_jacobian(unloaded, origin, 0.0)
     # The rate at the origin, and with one input at a time set to one.
-    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
-    probes[:, 1:][:, geometry] = 0.0
-    all_rates = path_rate.map(size + 1)
-    rates = all_rates(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
+    linear = np.setdiff1d(np.arange(size), geometry)
+    probes = np.hstack([np.zeros((size, 1)), np.eye(size)[:, linear]])
+    at_probes = path_rate.map(len(linear) + 1)(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
+    rates = np.repeat(at_probes[:, :1], size + 1, axis=1)
+    rates[:, 1 + linear] = at_probes[:, 1:]
     deviation = inputs
     if geometry:
-        rate = path_rate(unloaded, inputs, 0.0, no_rate, 1.0)
-        slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
-        slopes = slope(discrete.layout.pack()).full()
-        rates[:, 1:][:, geometry] = rates[:, :1] + slopes[:, geometry]
+        # Numbers of nodes, by which obstacles are raised and rub, do nothing in the unloaded scene.
+        felt = [index for index in geometry if index not in discrete.layout.nodal]
+        values = discrete.layout.pack()
+        moved = ca.MX.sym("moved", len(felt))
+        places = ca.DM(np.eye(size)[:, felt])
+        rate = path_rate(unloaded, ca.DM(values) + places @ (moved - ca.DM(values[felt])), 0.0, no_rate, 1.0)
+        slope = ca.Function("slope", [moved], [ca.jacobian(rate, moved)])
+        rates[:, 1 + np.asarray(felt, dtype=int)] += slope(values[felt]).full()
         deviation = inputs - ca.DM(origin)
     response = rates
     # A scene whose rods admit no strain has nothing to solve for.

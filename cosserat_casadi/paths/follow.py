@@ -33,7 +33,9 @@ from cosserat_casadi.paths.contact_path import follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
-FROM_NOWHERE = " Friction is counted from factor 0, where nothing rubs yet."
+FROM_NOWHERE = (
+    " Friction is counted from factor 0, where nothing rubs yet; no limit points and branches are looked for."
+)
 """A sentence on the beginning of a path with friction."""
 
 

@@ -29,6 +29,7 @@ class InputField:
         continuous: whether its path in a motion must not jump: it prescribes a length.
         on_request: whether it stays free only where the scene lists it: it is no magnitude.
         nonlinear: whether the equations are not linear in it.
+        nodal: whether it holds numbers of each node of a rod.
     """
 
     unit: str
@@ -42,6 +43,7 @@ class InputField:
     continuous: bool = False
     on_request: bool = False
     nonlinear: bool = False
+    nodal: bool = False
 
     @property
     def moves(self) -> bool:

@@ -109,7 +109,7 @@ class Pressure:
 
 
 def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
-    """The scene with cushions for obstacles, on coarse elements.
+    """The scene with cushions for obstacles, on coarse elements; those of rods may be raised at each node.
 
     Args:
         scene: without contacts.
@@ -117,11 +117,13 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     """
     cushions: list[Penetration] = []
     records = {rod.name: rod for rod in scene.rods}
+    discretisation = {rod.name: _coarse(scene, rod) for rod in scene.rods}
     for number, (rod_name, obstacle) in enumerate(pairs(scene), start=1):
         record = records[rod_name]
         stiffness = _unit(record) * max(STIFFNESS, THIN_FORCE * _thinness(obstacle, record) ** 3) * factor
+        nodes = (len(discretisation[rod_name].breaks) - 1) * (NODES + 1)
         cushion = Penetration.model_construct(
-            name=f"cushion {number}", rod=rod_name, obstacle=obstacle, stiffness=stiffness
+            name=f"cushion {number}", rod=rod_name, obstacle=obstacle, stiffness=stiffness, raised=((0.0,) * nodes,)
         )
         cushions.append(cushion)
     cushions += _cushions_of_bodies(scene, factor)
@@ -130,22 +132,20 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         names = [f"{cushion.name}.stiffness" for cushion in cushions]
         names += [f"{cushion.name}.raised" for cushion in cushions if cushion.rod is not None]
         changes["inputs"] = (*scene.inputs, *names)
-    soft = scene.model_copy(update=changes)
-    discretisation = {}
-    for rod in scene.rods:
-        own = element_ends(scene, rod.name)
-        if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
-            discretisation[rod.name] = Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
-            continue
-        # None as short as the distance of an end of the loads from one of ours may be.
-        thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
-        # Nodes are no farther apart than the thinnest bar is thick.
-        # The ratio may be beyond all range: it is bounded before it becomes a whole number.
-        elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
-        further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
-        modes = (MODES,) * len(rod.admitted)
-        discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
-    return build(soft, discretisation)
+    return build(scene.model_copy(update=changes), discretisation)
+
+
+def _coarse(scene: scenes.Scene, rod: scenes.Rod) -> Discretisation:
+    """Coarse elements of a rod, whose nodes are no farther apart than the thinnest bar is thick."""
+    own = element_ends(scene, rod.name)
+    if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
+        return Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
+    # None as short as the distance of an end of the loads from one of ours may be.
+    thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
+    # The ratio may be beyond all range: it is bounded before it becomes a whole number.
+    elements = max(ELEMENTS, ceil(min(thinnest / (2 * NODES), MOST_ELEMENTS)))
+    further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
+    return Discretisation((MODES,) * len(rod.admitted), NODES, tuple(sorted([*own, *map(float, further)])))
 
 
 def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetration]:

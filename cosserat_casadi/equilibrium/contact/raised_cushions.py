@@ -20,7 +20,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import Penetration
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import Equations, NewtonResult, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene.load_records import LoadRecord
@@ -66,12 +66,11 @@ def sharpened(cushioned: Solution) -> Sharpened | None:
     Returns:
         shape and pressure; None where Newton's method does not end on the way.
     """
-    model = _raisable(cushioned.model)
+    model = cushioned.model
     cushions = _cushions(model)
-    values = {name: np.asarray(value) for name, value in cushioned.model.inputs.unpack(cushioned.inputs).items()}
+    values = {name: np.asarray(value) for name, value in model.inputs.unpack(cushioned.inputs).items()}
     raised = {cushion.name: np.zeros(len(cushion.raised[0])) for cushion in cushions if cushion.rod is not None}
-    values |= {f"{name}.raised": heights for name, heights in raised.items()}
-    solution = replace(cushioned, model=model, inputs=model.pack(values))
+    solution = cushioned
     for number in range(ROUNDS):
         factor = STIFFER if number < STIFFENINGS else 1.0
         for cushion in cushions:
@@ -102,17 +101,6 @@ def sharpened(cushioned: Solution) -> Sharpened | None:
 def _cushions(model: Model) -> list[Penetration]:
     loads: Sequence[LoadRecord] = model.scene.loads
     return [load for load in loads if isinstance(load, Penetration)]
-
-
-def _raisable(model: Model) -> Model:
-    """The same rods on cushions with a height at each node; those of bodies as they are."""
-    raised: dict[str, LoadRecord] = {
-        cushion.name: cushion.model_copy(update={"raised": ((0.0,) * len(_nodes(model, cushion.rod)),)})
-        for cushion in _cushions(model)
-        if cushion.rod is not None
-    }
-    loads = tuple(raised.get(load.name, load) for load in model.scene.loads)
-    return build(model.scene.model_copy(update={"loads": loads}), model.discretisation)
 
 
 def _nodes(model: Model, rod: str) -> FloatArray:
