@@ -83,8 +83,9 @@ def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None
 
 
 def is_damped(scene: scenes.Scene) -> bool:
-    """Whether a rod of the scene is damped, or the contact with an obstacle takes energy."""
+    """Whether a rod of the scene is damped, or contact takes energy."""
     rods = any(rod.damping is not None for rod in scene.rods)
+    rods = rods or any(contact.friction for contact in scene.rod_contacts)
     return rods or any(obstacle.damping > 0.0 or obstacle.rubs for obstacle in scene.obstacles)
 
 
@@ -92,10 +93,13 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
     """The scene without damping and friction, and without the parameters that were of them."""
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
     obstacles = tuple(obstacle.model_copy(update={"damping": 0.0, "friction": 0.0}) for obstacle in scene.obstacles)
+    contacts = tuple(contact.model_copy(update={"friction": 0.0}) for contact in scene.rod_contacts)
     # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
     named = zip(scene.parameters, scene.parameter_names(), strict=True)
     parameters = tuple(entry for entry, name in named if name.split(".")[1] not in ("damping", "friction"))
-    return scene.model_copy(update={"rods": rods, "obstacles": obstacles, "parameters": parameters})
+    return scene.model_copy(
+        update={"rods": rods, "obstacles": obstacles, "rod_contacts": contacts, "parameters": parameters}
+    )
 
 
 def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:

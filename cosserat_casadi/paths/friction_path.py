@@ -7,17 +7,21 @@ up to date. Between two points friction goes from the one state to the other: im
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.judge import judge
+from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.rubbing import RubbingStretch, rubbing_stretches
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcSettings
+from cosserat_casadi.numerics.newton import NewtonSettings, newton
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import GROWTH, PathOutcome
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
@@ -68,6 +72,33 @@ class _Point:
     slips: FloatArray
 
 
+def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longest: float) -> Solution | None:
+    """Equilibrium next to that of the last point of a path; None where none is found.
+
+    Newton's method begins where the last increment leads to, for sections that slip go on as they did; and else at the
+    last point, whose sections are at the brink.
+
+    Args:
+        model: with memory.
+        inputs: stacked inputs with the history of the last point.
+        before: the last two points, or the first one.
+        longest: most that the unknowns may change by, in their 2-norm.
+    """
+    last = before[-1]
+    limits = NewtonSettings()
+    equations = input_path(model, last.x, inputs, inputs).at(1.0)
+    for start in (2 * last.x - before[0].x, last.x):
+        end = newton(equations, start, limits)
+        near = float(np.linalg.norm(end.x - last.x)) <= longest
+        if end.outcome is Outcome.CONVERGED and near:
+            barriers = SmoothBarriers(model)
+            if barriers.any and barriers.are_between(last.x, end.x, (last.inputs, inputs)):
+                return None
+            found = judge(model, inputs, end.x, end.outcome, end.iterations, 1.0, limits.tolerance)
+            return found if found.converged else None
+    return None
+
+
 def follow_friction_path(
     model: Model,
     name: str,
@@ -108,11 +139,8 @@ def follow_friction_path(
             factor = 1.0
         inputs = base + factor * change
         inputs[memory] = before.history
-        # What is remembered anew leaves the forces as they are: the point before is in balance with it.
-        settled = before.solution.inputs.copy()
-        settled[memory] = before.history
-        found = solve(model, inputs, start=replace(before.solution, inputs=settled), estimate_error=False)
-        if found.converged and float(np.linalg.norm(found.x - before.solution.x)) <= settings.longest:
+        found = _equilibrium(model, inputs, [point.solution for point in points[-2:]], settings.longest)
+        if found is not None:
             points.append(point(factor, found))
             step *= GROWTH
         else:

@@ -199,6 +199,38 @@ def test_a_band_round_a_post_is_a_capstan(friction: float, width: float, stiffne
     assert all(stretch.slips for stretch in path.rubbing(-1) if stretch.end - stretch.start > 0.2)
 
 
+@pytest.mark.slow  # three models
+def test_a_wire_that_is_pushed_through_a_bent_lumen_needs_the_force_back_that_friction_took() -> None:
+    """More friction takes more force, and pulls on the way back; a whole cycle takes work."""
+    forces, works = [], []
+    for friction in (0.0, 0.1, 0.3):
+        changes = [
+            'wire.strain="planar"',
+            "wire.length=0.15",
+            "vessel.width=1e-3",
+            f"vessel.friction={friction}",
+            'inputs=["wire.base.position"]',
+            "accuracy.modes=4",
+            "accuracy.nodes=8",
+        ]
+        model = build(read_scene(ROOT / "examples" / "wire_in_vessel.toml", changes))
+        pushed_in = follow(model, "wire.base.position", [0, 0, 0.03])
+        if not friction:
+            forces.append(pushed_in.solution(-1).base_wrench().force[2])
+            continue
+        pulled_out = follow(pushed_in.model, "wire.base.position", [0, 0, 0], first=pushed_in)
+        assert pushed_in.converged and pulled_out.converged
+        work = 0.0
+        for path in (pushed_in, pulled_out):
+            force = np.array([path.solution(i).base_wrench().force[2] for i in range(len(path.factor))])
+            work += float(np.sum((force[1:] + force[:-1]) / 2 * np.diff(path.position(0.0)[:, 2])))
+        works.append(work)
+        forces.append(pushed_in.solution(-1).base_wrench().force[2])
+        assert pulled_out.solution(-1).base_wrench().force[2] < forces[0] / 2
+    assert forces[0] < forces[1] < forces[2]
+    assert 0.0 < works[0] < works[1]
+
+
 @pytest.mark.slow
 def test_a_scene_with_a_tolerance_is_refined_in_modes_and_increments() -> None:
     """Friction holds the tip back, which slides outwards as the rod comes down."""
