@@ -14,6 +14,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
@@ -127,6 +128,14 @@ class InputLayout(StackedLayout[Input]):
         """Entries of the histories of all loads; None without memory."""
         spans = [span for entry, span in self if entry.field == HISTORY]
         return slice(spans[0].start, spans[-1].stop) if spans else None
+
+    @cached_property
+    def of_memory(self) -> npt.NDArray[np.bool_]:
+        """Which inputs are histories of loads, shape (size,)."""
+        flags = np.zeros(self.size, dtype=bool)
+        if self.memory is not None:
+            flags[self.memory] = True
+        return flags
 
     @cached_property
     def nodal(self) -> frozenset[int]:

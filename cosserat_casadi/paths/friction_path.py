@@ -7,7 +7,7 @@ up to date. Between two points friction goes from the one state to the other: im
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import GROWTH, PathOutcome
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+
+QUICK = NewtonSettings(iterations=20)
+"""Limits of Newton's method at an increment."""
 
 SHORTEST = 1e-6
 """Share of the input below which an increment counts as stalled."""
@@ -75,8 +78,9 @@ class _Point:
 def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longest: float) -> Solution | None:
     """Equilibrium next to that of the last point of a path; None where none is found.
 
-    Newton's method begins where the last increment leads to, for sections that slip go on as they did; and else at the
-    last point, whose sections are at the brink.
+    Newton's method begins where the last increment leads to, for sections that slip go on as they did, then at the last
+    point, whose sections are at the brink. Where many sections go from sticking to slipping it may find neither: the
+    inputs are then moved in parts.
 
     Args:
         model: with memory.
@@ -85,18 +89,21 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
         longest: most that the unknowns may change by, in their 2-norm.
     """
     last = before[-1]
-    limits = NewtonSettings()
+    barriers = SmoothBarriers(model)
     equations = input_path(model, last.x, inputs, inputs).at(1.0)
+    found: Solution | None = None
     for start in (2 * last.x - before[0].x, last.x):
-        end = newton(equations, start, limits)
-        near = float(np.linalg.norm(end.x - last.x)) <= longest
-        if end.outcome is Outcome.CONVERGED and near:
-            barriers = SmoothBarriers(model)
-            if barriers.any and barriers.are_between(last.x, end.x, (last.inputs, inputs)):
-                return None
-            found = judge(model, inputs, end.x, end.outcome, end.iterations, 1.0, limits.tolerance)
-            return found if found.converged else None
-    return None
+        end = newton(equations, start, QUICK)
+        if end.outcome is Outcome.CONVERGED and np.linalg.norm(end.x - last.x) <= longest:
+            found = judge(model, inputs, end.x, end.outcome, end.iterations, 1.0, QUICK.tolerance)
+            break
+    if found is None:
+        # A new history leaves the forces as they are: the last point is in balance with it.
+        settled = np.where(model.inputs.of_memory, inputs, last.inputs)
+        found = solve(model, inputs, start=replace(last, inputs=settled), estimate_error=False)
+    near = np.linalg.norm(found.x - last.x) <= longest
+    passes = barriers.any and barriers.are_between(last.x, found.x, (last.inputs, inputs))
+    return found if found.converged and near and not passes else None
 
 
 def follow_friction_path(
