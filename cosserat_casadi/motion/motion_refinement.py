@@ -14,12 +14,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from cosserat_casadi.accuracy.levels import SPARE_NODES, seeing_modes
+from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, seeing_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
@@ -65,6 +66,12 @@ FASTEST = 0.1
 
 SLOWEST = 0.9
 """Largest such share: beyond it nothing converges."""
+
+FEW_MODES = 4
+"""Modes of the first level of rods that are cut into short elements, each of which sees less of a rod."""
+
+SHORT = 0.25
+"""Length of an element over that of its rod, up to which it is short."""
 
 MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
@@ -264,7 +271,7 @@ def _finer(discretisation: Discretisation) -> Discretisation:
 
 def _with_tolerance(search: _Search) -> Motion:
     """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
-    ladder = seeing_modes(search.scene)
+    ladder = _ladder(search.scene)
     rung: int | None = 0
     without_start = 0
     while rung is not None:
@@ -306,6 +313,14 @@ def _with_tolerance(search: _Search) -> Motion:
     if len(search.levels) > 1:
         companions.append(Companion(search.levels[-2].history, search.left_over_distance))
     return _judged(search, finest, search.space_error + timed.error, companions)
+
+
+def _ladder(scene: Scene) -> tuple[int, ...]:
+    """Modes of every strain in each element, level by level."""
+    widths = np.concatenate([np.diff(element_ends(scene, rod.name)) for rod in scene.rods])
+    if widths.max() > SHORT + NARROWEST:
+        return seeing_modes(scene)
+    return seeing_modes(scene, (FEW_MODES, *VERIFIED_MODES))
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:

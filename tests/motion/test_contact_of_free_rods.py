@@ -248,3 +248,20 @@ def test_a_thrown_rod_tumbles_and_comes_to_rest() -> None:
     weight = 1100.0 * np.pi * 8e-3**2 * 0.4 * 9.81
     resultant = sum(contact.force[2] for contact in motion.contacts[-1])
     assert_allclose(resultant, weight, rtol=0.05, atol=0)
+
+
+@pytest.mark.slow
+def test_a_rod_dropped_on_a_soft_table_is_as_exact_as_it_says() -> None:
+    """At the default tolerance, on few modes of each of its four elements, vs a motion ten times as exact."""
+    soft = RUBBER.replace("2e7", "5e6")
+    text = FREE.replace("accuracy = {{ modes = {modes}, nodes = 10, tolerance = 1e-4 }}\n", "")
+    text = text.format(stuff=soft, duration=0.15, tangent="1, 0, 0.15", along=0.0, strain="planar")
+    text += FLOOR + "width = 4e-3\nstiffness = 1e5\ndamping = 0.3\n"
+    dropped = simulate(parse_scene(text))
+    exact = simulate(parse_scene(text, ["simulation.tolerance=1e-4"]))
+    assert dropped.converged
+    assert exact.converged
+    assert dropped.model.discretisation["rod"].modes == (6,)
+    distance = np.linalg.norm(dropped.tip().position - exact.tip().position, axis=1).max() / LENGTH
+    assert distance < dropped.error_estimate + exact.error_estimate
+    assert 1e-6 < dropped.error_estimate < 1e-3

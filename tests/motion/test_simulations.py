@@ -284,3 +284,12 @@ def test_modes_that_are_never_tried_count_by_the_last_coefficients_there_are() -
     motion = simulate(scene_from_dict(table(damped, motions=[lifted], simulation=asked(duration=1.0))))
     assert motion.converged, motion.message
     assert 1e-12 < motion.error_estimate < 1e-4
+
+
+@pytest.mark.parametrize(("disks", "first"), [(3, 6), (4, 4)])
+def test_rods_in_short_elements_begin_on_fewer_modes(disks: int, first: int, caplog: pytest.LogCaptureFixture) -> None:
+    rows = [{"rod": "rod", "count": disks, "radius": 0.01}]
+    scene = table({"damping": {"retardation_time": 0.01}}, gravity(1e-3), disks=rows, simulation=asked(duration=0.01))
+    with caplog.at_level("INFO", "cosserat_casadi.motion"):
+        assert simulate(scene_from_dict(scene)).converged
+    assert caplog.messages[0].startswith(f"up to {first} modes")
