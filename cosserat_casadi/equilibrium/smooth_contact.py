@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.equilibrium.rod_contacts import contacts_of_rods
 from cosserat_casadi.equilibrium.rubbing import friction_between
 from cosserat_casadi.equilibrium.solution import Contact, Solution
-from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
+from cosserat_casadi.loads.contact_layer import ContactLayer, pressure, push_on_disk
 from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -68,6 +68,9 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     if layer.rod is None:
         yield from _body_contact(solution, layer)
         return
+    if layer.at is not None:
+        yield from _disk_contact(solution, layer)
+        return
     length = _length(solution, layer.rod)
     gaps = _gaps(solution, layer, DENSE)
     width = layer.obstacle.width
@@ -94,6 +97,18 @@ def _body_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         force = float(pressure(layer, np.array([gap]))[0]) * gradient.full()[:, 0]
         width = layer.obstacle.width
         yield Contact(layer.obstacle.name, layer.body, 0.0, 0.0, force, (), "smooth", width, gap, of_body=True)
+
+
+def _disk_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
+    """The contact of a disk, at its section."""
+    at = float(layer.at)
+    pose = solution.pose([at], layer.rod)
+    gap, force = push_on_disk(layer)(pose.position[0], pose.rotation[0], [layer.radius, layer.thickness])
+    width = layer.obstacle.width
+    if float(gap) < width:
+        assert layer.rod is not None
+        along = force.full()[:, 0]
+        yield Contact(layer.obstacle.name, layer.rod, at, at, along, (), "smooth", width, float(gap))
 
 
 def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:

@@ -23,22 +23,28 @@ without hardening: F · Δr ≥ Δ(½ k u²), so that energy only leaves.
 
 Along the tangent of the rod, against it and across it the coefficient may be another. A single equilibrium, which
 remembers nothing, has no friction.
+
+A disk of radius R and thickness h, square to its rod with the tangent t, reaches as far as R √(1 − (n·t)²) + h/2 |n·t|
+along the normal n, its corners rounded; its gap is d(r) less that. Before a plane that is exact. To what is round it is
+less than the true one, by R² (n·t)²/2D at most, D the distance of its centre from that of the obstacle.
+It is pressed as a stretch of rod of its diameter would be, and the moment is that of the same energy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, final
+from typing import Any, Literal, final
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.load import Rubbing, Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.rod.section_kernel import wrench_of_energy
 
 STANDING = 1e-3
 """Cosine of a rod to the surface below which its tangent along the surface fades."""
@@ -52,13 +58,18 @@ HISTORY = 12
 NOTHING = 1e-9
 """Way along an obstacle, in widths, that counts as none."""
 
+ROUNDED = 1e-2
+"""Share of its radius that the rim of a disk, and sine of the angle that its face, is rounded by."""
+
 
 class ContactLayer(ObstacleLoadRecord):
-    """An obstacle with a width in front of one rod, or of a body that is a ball; no scene file names this load."""
+    """An obstacle with a width before a rod, a disk on it, or a body that is a ball; no scene file names this load."""
 
     kind: Literal["contact_layer"] = "contact_layer"
     stiffness: float
-    radius: float = 0.0
+    radius: Any = 0.0
+    thickness: Any = 0.0
+    at: Any = None
 
     @property
     def takes_energy(self) -> bool:
@@ -68,23 +79,29 @@ class ContactLayer(ObstacleLoadRecord):
 
 @final
 class ContactLayerLoad(ObstacleLoad[ContactLayer]):
-    """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m."""
+    """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m.
+
+    On a disk 2 R k stands for k.
+    """
 
     record = ContactLayer
     # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
     growth = 2
     nodal = HISTORY_FIELD
 
+    def abscissa(self, load: ContactLayer) -> Scalar | None:
+        """The section of a disk; None of all others."""
+        at: Scalar | None = load.at
+        return at
+
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
-        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body; None where friction takes part in the force."""
-        if _remembers(section):
-            return None
-        width = load.obstacle.width
-        energy: Matrix = load.stiffness / (12 * width**2) * _depth(load, section) ** 4
-        return energy
+        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk; None where friction is part of the force."""
+        return None if _remembers(section) else _energy(load, section)
 
     def wrench(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force, N/m, or N on a body, and the moment of friction about the centre, N."""
+        """Force, N/m, or N on a body or a disk, and the moment of friction, or on a disk of all, about the centre."""
+        if load.at is not None:
+            return self._on_disk(load, section)
         normal = _normal(load, section)
         pressing = _pressing(load, section)
         # At rest the velocity stores nothing, and nothing is added.
@@ -93,13 +110,12 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         drag = _drag(load, section, normal, ca.fmax(pressing, 0.0))
         if drag is None:
             return pressing * normal, ca.DM(3, 1)
-        touching = -section.data[0] * normal
         rubbing = _friction(load, section, normal, ca.fmax(pressing, 0.0), drag)
-        return pressing * normal + rubbing, ca.cross(touching, rubbing)
+        return pressing * normal + rubbing, ca.cross(_touching(load, section, normal), rubbing)
 
     def remembers(self, load: ContactLayer) -> int:
         """Size of the history: the place at which the layer would not be dragged, and the rotation of the section."""
-        return HISTORY if load.body is None and load.obstacle.rubs else 0
+        return HISTORY if load.body is None and load.at is None and load.obstacle.rubs else 0
 
     def rubbing(self, load: ContactLayer, section: Section) -> Rubbing:
         """The section after an increment, whether it slips, and the force of friction."""
@@ -115,8 +131,28 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         origin = section.position - known * drag.way / ca.fmax(drag.share, 1.0)
         return Rubbing(ca.vertcat(origin, ca.vec(section.rotation)), slip, friction)
 
+    def _on_disk(self, load: ContactLayer, section: Section) -> tuple[Matrix, Matrix]:
+        """Force and moment of the energy, with what a disk that moves feels at the point that touches."""
+        obstacle = load.obstacle
+        force, moment = wrench_of_energy(_energy(load, section), section.position, section.rotation)
+        if not (load.takes_energy and _moves(section)):
+            return force, moment
+        normal = _normal(load, section)
+        touching = _touching(load, section, normal)
+        pressing = _pressing(load, section)
+        approach = ca.dot(normal, section.velocity + ca.cross(section.angular_velocity, touching))
+        damped = -obstacle.damping * approach * pressing
+        taken = damped * normal
+        pushed = ca.fmax(pressing + damped, 0.0)
+        drag = _drag(load, section, normal, pushed)
+        if drag is not None:
+            taken = taken + _friction(load, section, normal, pushed, drag)
+        return force + taken, moment + ca.cross(touching, taken)
+
     def data(self, load: ContactLayer, site: Site) -> Numbers:
-        """Radius of the sections, m, and their history."""
+        """Radius of the sections, m, and their history; of a disk nothing."""
+        if load.at is not None:
+            return super().data(load, site)
         radii = stacked_rows([section_radii(site.rod, site.X)])
         if site.nodal is None:
             return radii
@@ -148,7 +184,7 @@ class _Drag:
 
 def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
     """How a section has moved; None where nothing rubs: at rest without memory, and on bodies."""
-    touching = -section.data[0] * normal
+    touching = _touching(load, section, normal)
     if load.takes_energy and load.obstacle.rubs and _moves(section):
         slip = load.obstacle.slip_speed
         velocity = section.velocity + ca.cross(section.angular_velocity, touching)
@@ -219,17 +255,66 @@ def _normal(load: ContactLayer, section: Section) -> Matrix:
     return normal
 
 
+def _touching(load: ContactLayer, section: Section, normal: Matrix) -> Matrix:
+    """From the centre of a section, or of a disk, to its point that touches, 3×1, m."""
+    if load.at is not None:
+        return _support(load, section, normal)[1]
+    touching: Matrix = -section.data[0] * normal
+    return touching
+
+
+def _energy(load: ContactLayer, section: Section) -> Matrix:
+    """k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk."""
+    energy: Matrix = _stiffness(load) / (12 * load.obstacle.width**2) * _depth(load, section) ** 4
+    return energy
+
+
 def _pressing(load: ContactLayer, section: Section) -> Matrix:
-    """Force along the normal at rest, N/m, or N on a body."""
-    pressing: Matrix = load.stiffness / (3 * load.obstacle.width**2) * _depth(load, section) ** 3
+    """Force along the normal at rest, N/m, or N on a body or a disk."""
+    pressing: Matrix = _stiffness(load) / (3 * load.obstacle.width**2) * _depth(load, section) ** 3
     return pressing
+
+
+def _stiffness(load: ContactLayer) -> Matrix | float:
+    """Of a rod, N/m², or of a body or a disk, N/m."""
+    return load.stiffness if load.at is None else 2 * load.radius * load.stiffness
+
+
+def _support(load: ContactLayer, section: Section, normal: Matrix) -> tuple[Matrix, Matrix]:
+    """How far a disk reaches against the normal, 1×1, m, and from its centre to where it does, 3×1, m."""
+    radius, half = load.radius, load.thickness / 2
+    axis = section.rotation[:, 2]
+    slant = ca.dot(normal, axis)
+    flattened = (1 - ROUNDED**2) * slant
+    across = ca.sqrt(1 - flattened * slant)
+    along = ca.sqrt(slant**2 + ROUNDED**2)
+    reach = radius * across + half * (along - ROUNDED)
+    touching = -radius / across * (normal - flattened * axis) - half * slant / along * axis
+    return reach, touching
+
+
+def push_on_disk(load: ContactLayer) -> ca.Function:
+    """(position, 3×1, rotation, 3×3, radius and thickness, 2×1, m) ↦ (gap, m, force at rest, 3×1, N)."""
+    section = Section(ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3), ca.SX(0, 1))
+    size = ca.SX.sym("size", 2)
+    disk = load.model_copy(update={"radius": size[0], "thickness": size[1]})
+    force, _ = wrench_of_energy(_energy(disk, section), section.position, section.rotation)
+    return ca.Function("push", [section.position, section.rotation, size], ca.cse([_gap(disk, section), force]))
+
+
+def _gap(load: ContactLayer, section: Section) -> Matrix:
+    """Gap of a section, a disk or a body, m."""
+    distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+    reach = section.data[0] if load.body is None and load.at is None else load.radius
+    if load.at is not None:
+        reach, _ = _support(load, section, _normal(load, section))
+    gap: Matrix = distance - reach
+    return gap
 
 
 def _depth(load: ContactLayer, section: Section) -> Matrix:
     """(w − g)₊, m: how deep a section is in the layer in front of the obstacle."""
-    radius = load.radius if load.body is not None else section.data[0]
-    gap = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position) - radius
-    depth: Matrix = ca.fmax(load.obstacle.width - gap, 0.0)
+    depth: Matrix = ca.fmax(load.obstacle.width - _gap(load, section), 0.0)
     return depth
 
 

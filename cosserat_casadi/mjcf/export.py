@@ -294,7 +294,8 @@ class _Robot:
         if not self.weighs_rod(rod.name):
             put.element.set("gravcomp", "1")
         x, y = link.half_widths
-        bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns(rod.name))
+        obstacles = list(enumerate(self.scene.obstacles))
+        bits = sum(1 << i for i, obstacle in obstacles if obstacle.concerns(rod.name))
         style = {"contype": str(bits), "conaffinity": "0", "rgba": "0 0.45 0.7 1"}
         length = float(np.linalg.norm(link.ends[1] - link.ends[0]))
         if x == y:
@@ -307,7 +308,9 @@ class _Robot:
         for row in self.scene.disks:
             if row.rod == rod.name and any(abs(at - link.at) < 1e-9 for at in row.places):
                 size = {"type": "cylinder", "size": _numbers([row.radius, max(row.thickness, 1e-3 * row.radius) / 2])}
-                ET.SubElement(put.element, "geom", {**size, "contype": "0", "conaffinity": "0", "rgba": ".5 .5 .5 .4"})
+                met = sum(1 << i for i, obstacle in obstacles if obstacle.concerns_disks(row.name))
+                style = {"contype": str(met), "conaffinity": "0", "rgba": ".5 .5 .5 .4"}
+                ET.SubElement(put.element, "geom", {**size, **style})
         return put
 
     def _element(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
@@ -16,7 +16,7 @@ from cosserat_casadi.obstacles.registry import SURFACES
 
 
 def contact_depths(system: System) -> list[Matrix]:
-    """Depth of each rod, at the section where it is deepest, and of each body, relative to the width, 1×1 each.
+    """Depth of rods, at the section where each is deepest, of disks and bodies, relative to the width, 1×1 each.
 
     Negative outside of an obstacle; nothing without smooth contact.
     """
@@ -25,6 +25,9 @@ def contact_depths(system: System) -> list[Matrix]:
 
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:
+    if layer.at is not None:
+        of_disk: Matrix = -_gap_of_disk(system, layer) / layer.obstacle.width
+        return of_disk
     if layer.body is not None:
         positions = system.frame(FrameName("body", layer.body)).position
         radii: Matrix | float = layer.radius
@@ -39,6 +42,17 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
     gaps = function.map(positions.shape[1])(positions) - radii
     depth: Matrix = -ca.mmin(gaps) / layer.obstacle.width
     return depth
+
+
+def _gap_of_disk(system: System, layer: ContactLayer) -> Matrix:
+    """Gap of a disk, m."""
+    assert layer.rod is not None, "a disk is on a rod"
+    shape = system.shapes[layer.rod]
+    node = shape.rod.grid.node_at(layer.at)
+    rotation = quaternion_to_matrix(system.base(layer.rod).quaternion) @ shape.rotation_at(node)
+    size = ca.vertcat(layer.radius, layer.thickness)
+    gap, _ = push_on_disk(layer)(_node_positions(system, layer.rod)[:, node], rotation, size)
+    return ca.MX(gap)
 
 
 def _node_positions(system: System, rod: str) -> Matrix:

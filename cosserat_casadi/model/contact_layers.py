@@ -34,7 +34,7 @@ SHARE_ON_BODY = 0.25
 
 
 def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
-    """The push of each obstacle with a width on each rod that may not enter it.
+    """The push of each obstacle with a width on each rod, row of disks and body that may not enter it.
 
     Args:
         scene: the scene.
@@ -47,6 +47,19 @@ def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iter
                 stiffness = _stiffness(obstacle, rod)
                 label = f"{obstacle.name} on {name}"
                 yield ContactLayer.model_construct(name=label, obstacle=obstacle, stiffness=stiffness, rod=name)
+        for row in scene.disks:
+            if obstacle.concerns_disks(row.name):
+                stiffness = _stiffness(obstacle, rods[row.rod])
+                for number, at in enumerate(row.places):
+                    yield ContactLayer.model_construct(
+                        name=f"{obstacle.name} on {row.name}[{number}]",
+                        obstacle=obstacle,
+                        stiffness=stiffness,
+                        rod=row.rod,
+                        radius=row.radius,
+                        thickness=row.thickness,
+                        at=at,
+                    )
         for body in scene.bodies:
             if obstacle.concerns_body(body.name):
                 stiffness = _body_stiffness(obstacle, body, rods)

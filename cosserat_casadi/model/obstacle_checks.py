@@ -110,8 +110,11 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
                     problem = f"the rod {rod.name!r} {how} {depth:.4g} m inside it, at {position.tolist()}"
                     remedy = "move one of the two, or name the rods that it concerns: rods = [...]"
                     yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
-    for body in discrete.scene.bodies:
-        for obstacle in discrete.scene.obstacles:
+    for obstacle in discrete.scene.obstacles:
+        for row in discrete.scene.disks:
+            if obstacle.concerns_disks(row.name):
+                yield from SURFACES[obstacle.kind].faults(obstacle, row.radius)
+        for body in discrete.scene.bodies:
             if obstacle.concerns_body(body.name):
                 assert body.radius is not None, "the rules of the scene ask for one"
                 yield from SURFACES[obstacle.kind].faults(obstacle, body.radius)

@@ -83,7 +83,7 @@ class ObstacleRecord(Entry):
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
     """
 
-    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "body": "bodies"}
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "disks": "disks", "body": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
     body: str | None = Field(
@@ -93,13 +93,18 @@ class ObstacleRecord(Entry):
     )
     rods: Names | None = Field(
         None,
-        description="names of the rods that may not enter it; all rods when neither rods nor bodies are named; with "
-        "body they must be named",
+        description="names of the rods that may not enter it; all rods when neither rods, bodies nor disks are named; "
+        "with body they must be named",
     )
     bodies: Names | None = Field(
         None,
         description="names of the bodies that may not enter it, as balls of their radius about their origin; none when "
         "left out",
+    )
+    disks: Names | None = Field(
+        None,
+        description="with width: names of the rows of disks that may not enter it, as far as each reaches along the "
+        "normal; none when left out",
     )
     width: Positive | None = Field(
         None,
@@ -159,12 +164,16 @@ class ObstacleRecord(Entry):
     def concerns(self, rod: str) -> bool:
         """Whether the rod of this name may not enter it."""
         if self.rods is None:
-            return self.bodies is None
+            return self.bodies is None and self.disks is None
         return rod in self.rods
 
     def concerns_body(self, body: str) -> bool:
         """Whether the body of this name may not enter it."""
         return self.bodies is not None and body in self.bodies
+
+    def concerns_disks(self, row: str | None) -> bool:
+        """Whether the disks of the row of this name may not enter it."""
+        return self.disks is not None and row in self.disks
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -175,7 +184,7 @@ class ObstacleRecord(Entry):
                 problem = "is of impacts, which a contact that is smooth does not have"
                 yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
-        for key in SMOOTH_KEYS[1:]:
+        for key in (*SMOOTH_KEYS[1:], "disks"):
             if key in given:
                 problem = "is of a contact that is smooth: without width contact is exact"
                 yield Fault((key,), problem, "give width, m, or leave it out")
@@ -183,7 +192,7 @@ class ObstacleRecord(Entry):
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """Rods that are not round, bodies without radius; where contact is exact rods that shear."""
-        named = given.get("rods", [] if "bodies" in given else None)
+        named = given.get("rods", [] if "bodies" in given or "disks" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
             problem = (
@@ -207,9 +216,10 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
         # The rods that hold the body end at it, or in it: none is meant that is not named.
         problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
         yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
-    if "bodies" in given:
-        problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
-        yield Fault(("bodies",), problem, "leave bodies out, or leave body out")
+    for key in ("bodies", "disks"):
+        if key in given:
+            problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
+            yield Fault((key,), problem, f"leave {key} out, or leave body out")
     if "damping" in given:
         problem = "contact with an obstacle on a body is not damped"
         yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")

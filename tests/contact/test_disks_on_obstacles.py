@@ -1,0 +1,180 @@
+"""Disks that touch obstacles: their reach, a cantilever vs shooting, sliding as a point mass, parameters, C."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+
+from cosserat_casadi import Scene, SceneError, build, discretise, export, load, scene_from_dict, simulate, solve
+from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene import Sphere
+from tests.contact.test_friction import DURATION, GRAVITY, SLIP, slid
+
+LENGTH = 0.3
+BENDING = 0.02
+WIDTH = 2e-3
+STIFFNESS = 5e4
+RADIUS = 8e-3
+THICKNESS = 2e-3
+NORMAL = np.array([-0.4, 0.0, 1.0]) / np.hypot(0.4, 1.0)
+POINT = np.array([0.3, 0.0, -0.03])
+PUSH = np.array([0.2, 0.0, -1.0])
+
+
+def finger(radius: float = RADIUS, parameters: tuple[str, ...] = (), **obstacle: Any) -> Scene:
+    """A planar cantilever with a disk in its middle and one at its tip, which a force presses on a leaning floor."""
+    floor = {"name": "floor", "kind": "plane", "point": POINT.tolist(), "normal": NORMAL.tolist(), "disks": ["d"]}
+    rod = {"name": "a", "length": LENGTH, "strain": "planar", "stiffness": {"bending_y": BENDING}}
+    given = {**floor, "width": WIDTH, "stiffness": STIFFNESS, **obstacle}
+    row = {"name": "d", "rod": "a", "count": 2, "radius": radius, "thickness": THICKNESS}
+    return scene_from_dict(
+        {
+            "schema": 1,
+            "accuracy": {"modes": 8, "nodes": 16},
+            "rods": [{**rod, "base": {"tangent": [1, 0, 0]}}],
+            "disks": [row],
+            "loads": [{"name": "push", "kind": "tip_wrench", "rod": "a", "force": PUSH.tolist()}],
+            "obstacles": [{key: value for key, value in given.items() if value is not None}],
+            "parameters": list(parameters),
+        }
+    )
+
+
+def shot(radius: float = RADIUS) -> tuple[FloatArray, float]:
+    """Tip and pressing force of it by shooting: the lowest point of a cylinder, pressed by 2 R k (w − g)³/(3 w²)."""
+    unit = 2 * radius * STIFFNESS * WIDTH / 3
+
+    def along(s: float, state: FloatArray, force: FloatArray) -> list[float]:
+        _, _, angle, moment = state
+        tangent = np.array([np.cos(angle), 0.0, -np.sin(angle)])
+        return [tangent[0], tangent[2], moment / BENDING, -np.cross(tangent, force)[1]]
+
+    def tip(unknown: FloatArray) -> FloatArray:
+        force = PUSH + unknown[1] * unit * NORMAL
+        way = solve_ivp(along, (0, LENGTH), [0, 0, 0, unknown[0]], "DOP853", rtol=1e-12, atol=1e-13, args=(force,))
+        return np.asarray(way.y[:, -1])
+
+    def residual(unknown: FloatArray) -> list[float]:
+        x, z, angle, moment = tip(unknown)
+        tangent = np.array([np.cos(angle), 0.0, -np.sin(angle)])
+        slant = NORMAL @ tangent
+        edge = (NORMAL - slant * tangent) / np.sqrt(1 - slant**2)
+        touching = -radius * edge - THICKNESS / 2 * np.sign(slant) * tangent
+        gap = (np.array([x, 0.0, z]) + touching - POINT) @ NORMAL
+        pressed = (max(WIDTH - gap, 0.0) / WIDTH) ** 3
+        return [moment - unknown[1] * unit * np.cross(touching, NORMAL)[1], pressed - unknown[1]]
+
+    found = fsolve(residual, [0.0128, 1.06 / unit], xtol=1e-11)
+    return tip(found)[:2], float(found[1] * unit)
+
+
+def test_a_tip_pressed_on_a_leaning_floor_vs_shooting() -> None:
+    """The reach of a rounded disk is off by 1e-4 of its radius at most, and 1e-2 of the thickness."""
+    solution = solve(build(finger()))
+    place, force = shot()
+    (contact,) = solution.contacts
+    assert solution.stable
+    assert_allclose(solution.tip().position[0, [0, 2]], place, rtol=0, atol=1e-4 * RADIUS + 1e-2 * THICKNESS)
+    assert_allclose(contact.force, force * NORMAL, rtol=0, atol=5e-3 * force)
+    assert (contact.owner, contact.start, contact.end) == ("a", 1.0, 1.0)
+    assert_allclose(solution.base_wrench().force, -PUSH - contact.force, rtol=0, atol=1e-12)
+
+
+def test_the_radius_of_disks_that_touch_as_a_parameter() -> None:
+    radius = 1.1 * RADIUS
+    bound = solve(build(finger(parameters=("d.radius",))), parameters={"d.radius": radius})
+    there = solve(build(finger(radius)))
+    assert_allclose(bound.x, there.x, rtol=0, atol=1e-9)
+    assert_allclose(bound.contacts[0].force, there.contacts[0].force, rtol=0, atol=1e-7)
+    assert_allclose(there.contacts[0].force, shot(radius)[1] * NORMAL, rtol=0, atol=5e-3)
+
+
+def test_disks_touch_in_c(tmp_path: Path) -> None:
+    model = build(finger(), discretise(finger(), 2, 5))
+    compiled = load(export(model, tmp_path / "finger", "finger"))
+    assert_allclose(compiled.solve().x, solve(model).x, rtol=0, atol=1e-10)
+
+
+def test_the_gap_of_a_disk_vs_all_points_of_its_rim() -> None:
+    """To a ball it is less than the true one, by R² (n·t)²/2D at most."""
+    away, ball, thickness = 0.05, 0.03, 2e-3
+    obstacle = Sphere(name="ball", kind="sphere", centre=(0, 0, 0), radius=ball, width=1e-3)
+    layer = ContactLayer.model_construct(name="", obstacle=obstacle, stiffness=1.0, at=1.0)
+    push = push_on_disk(layer)
+    around = np.linspace(0, 2 * np.pi, 2001)
+    rim = np.stack([RADIUS * np.cos(around), RADIUS * np.sin(around), 0 * around], axis=1)
+    for quaternion in np.random.default_rng(3).normal(size=(20, 4)):
+        rotation = rotations(quaternion[None] / np.linalg.norm(quaternion))[0]
+        centre = away * np.array([0.6, 0.0, 0.8])
+        slant = abs(rotation[:, 2] @ centre) / away
+        corners = [centre + (rim + np.array([0, 0, side])) @ rotation.T for side in (-thickness / 2, thickness / 2)]
+        nearest = np.linalg.norm(np.concatenate(corners), axis=1).min() - ball
+        gap = float(push(centre, rotation, [RADIUS, thickness])[0])
+        rounded = 1e-2 * (RADIUS + thickness)
+        less = (RADIUS * slant + thickness / 2) ** 2 / (2 * (away - RADIUS))
+        assert nearest - less - rounded < gap < nearest + rounded
+
+
+def test_a_rod_on_disks_slides_as_a_point_mass() -> None:
+    """Down an incline: its weight rests on the rims, whose friction tips it, and its energies balance."""
+    slope, friction, radius, density, length = 0.5, 0.3, 0.02, 0.3, 0.2
+    weight = density * length * GRAVITY * np.cos(slope)
+    gap = WIDTH - np.cbrt(weight / 2 * 3 * WIDTH**2 / (2 * radius * STIFFNESS))
+    rod = {
+        "name": "rod",
+        "length": length,
+        "strain": "planar",
+        "stiffness": {"bending_y": 50.0},
+        "linear_density": density,
+        "rotary_inertia": [1e-5, 1e-5, 1e-5],
+        "base": {"position": [0, 0, radius + gap], "tangent": [1, 0, 0], "free": True},
+    }
+    plane = {"name": "plane", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "disks": ["feet"]}
+    soft = {"width": WIDTH, "stiffness": STIFFNESS, "damping": 5.0, "friction": friction, "slip_speed": SLIP}
+    gravity = [GRAVITY * np.sin(slope), 0, -GRAVITY * np.cos(slope)]
+    scene = scene_from_dict(
+        {
+            "schema": 1,
+            "rods": [rod],
+            "disks": [{"name": "feet", "rod": "rod", "at": [0.2, 0.8], "radius": radius, "thickness": 0.0}],
+            "obstacles": [{**plane, **soft}],
+            "loads": [{"name": "weight", "kind": "gravity", "acceleration": gravity}],
+            "simulation": {"duration": DURATION, "start": "unloaded", "tolerance": 1e-4},
+        }
+    )
+    motion = simulate(build(scene, discretise(scene, 1, 4)))
+    assert motion.converged, motion.message
+    middle = motion.section("rod", [0.5]).position[:, 0, 0]
+    assert_allclose(middle[-1] - middle[0], slid(slope, friction), rtol=5e-3, atol=0)
+    # Friction acts a radius below the rod: what it tips by the front foot bears beyond its half, and the rear less.
+    tipped = friction * weight * radius / (0.6 * length)
+    borne = np.array([weight / 2 - tipped, weight / 2 + tipped])
+    depths = np.cbrt(3 * borne * WIDTH**2 / (2 * radius * STIFFNESS))
+    heights = motion.section("rod", [0.2, 0.8]).position[-1, :, 2]
+    assert_allclose(heights, radius + WIDTH - depths, rtol=0, atol=1e-5)
+    taken = friction * weight * (middle[-1] - middle[0])
+    assert_allclose(motion.energy.dissipated[-1], taken, rtol=2e-2, atol=0)
+    assert np.abs(motion.energy.imbalance).max() < 1e-3
+    assert np.all(np.diff(motion.energy.dissipated) >= 0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "problem"),
+    [
+        ({"width": None}, "obstacles[0].disks", "is of a contact that is smooth: without width contact is exact"),
+        ({"disks": ["e"]}, "obstacles[0].disks[0]", "no row of disks is named 'e'"),
+    ],
+)
+def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
+    given = {"stiffness": None, **changes} if "width" in changes else changes
+    with pytest.raises(SceneError) as refused:
+        finger(**given)
+    assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]
