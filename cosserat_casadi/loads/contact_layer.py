@@ -25,8 +25,8 @@ Along the tangent of the rod, against it and across it the coefficient may be an
 remembers nothing, has no friction.
 
 A disk of radius R and thickness h, square to its rod with the tangent t, reaches as far as R √(1 − (n·t)²) + h/2 |n·t|
-along the normal n, its corners rounded; its gap is d(r) less that. Before a plane that is exact. To what is round it is
-less than the true one, by R² (n·t)²/2D at most, D the distance of its centre from that of the obstacle.
+along the normal n, its corners rounded; its gap is d(r) less that. Before a plane that is exact. Before a ball it is
+less than the true one, by R² (n·t)²/2D at most, D the distance between the centres.
 It is pressed as a stretch of rod of its diameter would be, and the moment is that of the same energy.
 """
 
