@@ -1,4 +1,4 @@
-"""Random scenes of one rod that the dial is judged on."""
+"""Random scenes of one rod that the dial is judged on: rods, rods of matter, and robots."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi import Scene, scene_from_dict
 from tests.reference.material_scenes import make_of_matter
 from tests.reference.random_scenes import random_scene
+from tests.reference.robot_scenes import robot_scene
 from tests.reference.rods import rod_of
 
 ROD = "rod"
@@ -35,6 +36,9 @@ def tables_of_matter(seed: int) -> dict[str, Any]:
     return scene
 
 
-def scene_at(seed: int, tolerance: float, *, matter: bool = False) -> Scene:
-    scene = tables_of_matter(seed) if matter else tables(seed)
-    return scene_from_dict({**scene, "accuracy": {"tolerance": tolerance}})
+DRAWN = {"rods": tables, "matter": tables_of_matter, "robots": robot_scene}
+"""What is drawn; robots have disks, straight tendons, joints, stops and drives."""
+
+
+def scene_at(seed: int, tolerance: float, what: str = "rods") -> Scene:
+    return scene_from_dict({**DRAWN[what](seed), "accuracy": {"tolerance": tolerance}})

@@ -43,6 +43,10 @@ def test_unstable_parts_are_dashed_and_events_marked(straight: EquilibriumPath) 
     assert_allclose(mark.get_ydata(), [1 / 3], rtol=1e-6, atol=0)
 
 
+def test_the_axis_of_the_factor_tells_its_unit(straight: EquilibriumPath) -> None:
+    assert plot_path(straight).axes[0].get_ylabel() == "factor × push.force [0, 0, -1.851] N"
+
+
 def test_displacement_is_relative_to_the_length(buckled: EquilibriumPath) -> None:
     figure = plot_path(buckled)
     ends = {line.get_color(): line.get_xdata()[-1] for line in lines(figure) if line.get_color() != "0.7"}

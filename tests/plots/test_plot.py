@@ -95,8 +95,16 @@ def test_components_that_are_zero_are_not_drawn(planar: Solution) -> None:
 def test_several_rods_are_named() -> None:
     other = rod(name="other", base={"position": [0.3, 0, 0]})
     solution = solve(build(scene(push(), rods=[rod(), other])))
-    labels = plot_solution(solution).axes[0].get_legend_handles_labels()[1]
+    figure = plot_solution(solution)
+    labels = figure.axes[0].get_legend_handles_labels()[1]
     assert {"rod", "other"} <= set(labels)
+    # Colours tell the rods in all panels: strokes of components are named once, in no rod's colour.
+    for panel in figure.axes[1:]:
+        legend = panel.get_legend()
+        if legend is not None:
+            named = [text.get_text() for text in legend.get_texts()]
+            assert len(named) == len(set(named))
+            assert {handle.get_color() for handle in legend.get_lines()} == {"0.3"}
 
 
 def boxes(figure: Any) -> tuple[list[Any], list[Any]]:

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.plots.tubes_plot import _between
+from cosserat_casadi import solve
+from cosserat_casadi.plots.tubes_plot import _between, plot_tubes
 from cosserat_casadi.tubes.tube_solution import TubeShape
+from tests.tubes.pendulum import Pendulum
 
 CURVATURE = 3.0
 LENGTH = 0.5
@@ -38,3 +40,10 @@ def test_a_station_off_by_rounding_belongs_to_both_sides() -> None:
     distance = np.array([0.0, 0.1, 0.30000000000000004, 0.5])
     assert _between(distance, 0.0, 0.3).tolist() == [True, True, True, False]
     assert _between(distance, 0.3, 0.5).tolist() == [False, False, True, True]
+
+
+def test_each_tube_has_one_colour_in_space_and_beside() -> None:
+    figure = plot_tubes(solve(Pendulum(1.0).scene(1.0, tolerance=1e-4)))
+    in_space, beside = ({line.get_label(): line.get_color() for line in axes.get_lines()} for axes in figure.axes)
+    assert in_space["outer"] != in_space["inner"]
+    assert {name: in_space[name] for name in ("outer", "inner")} == {name: beside[name] for name in ("outer", "inner")}

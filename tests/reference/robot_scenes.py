@@ -1,4 +1,4 @@
-"""Seeded robots of one rod: a base on a hinge or a slide with spring, motor and stops, disks, a straight tendon.
+"""Seeded robots of one rod: a base on a hinge or a slide with spring, motor and stops or a drive, disks, a tendon.
 
 Rods of materials that are not linear, chambers and muscles are among them.
 
@@ -42,6 +42,8 @@ def robot_scene(seed: int) -> Table:
         tables["actuators"] = [{**tendon, "tension": tension}]
     if rng.random() < 0.8:
         tables["joints"] = [_joint(rng, length, bending)]
+        if np.random.default_rng([seed, 23]).random() < 0.3:
+            tables["joints"] = [_driven(tables["joints"][0])]
     make_of_matter(np.random.default_rng([seed, 13]), tables, bending)
     return tables
 
@@ -68,6 +70,12 @@ def _joint(rng: np.random.Generator, length: float, bending: float) -> Table:
         joint["lower_stop"] = float(-unit * rng.uniform(0.0, 0.5))
         joint["upper_stop"] = float(unit * rng.uniform(0.0, 0.5))
     return joint
+
+
+def _driven(joint: Table) -> Table:
+    """The joint with a drive that prescribes where its spring would rest."""
+    held = {key: joint[key] for key in ("name", "rod", "at", "kind", "axis")}
+    return {**held, "angle" if joint["kind"] == "revolute" else "displacement": joint["rest"]}
 
 
 def as_clamped(tables: Table, solution: Solution) -> tuple[RodData, Array, Array]:
@@ -117,14 +125,18 @@ def joint_faults(tables: Table, solution: Solution, tolerance: float) -> list[st
     for joint in tables.get("joints", []):
         turns = joint["kind"] == "revolute"
         state = solution.joint("joint")
-        value = state["angle" if turns else "displacement"]
+        way = "angle" if turns else "displacement"
+        value, unit = state[way], 1.0 if turns else tables["rods"][0]["length"]
+        if way in joint:
+            if not abs(value - joint[way]) <= 1e-9 * unit:
+                faults.append(f"the drive is at {value:.6g} in place of {joint[way]:.6g}")
+            continue
         bears = np.array(joint["axis"]) @ (wrench.moment if turns else wrench.force)
         spring = joint["stiffness"] * (value - joint["rest"])
         motor = joint["moment" if turns else "force"]
         push = bears + spring - motor
         allowed = tolerance * (abs(spring) + abs(motor) + np.linalg.norm(wrench.moment if turns else wrench.force))
         lower, upper = (joint.get(key, end) for key, end in (("lower_stop", -np.inf), ("upper_stop", np.inf)))
-        unit = 1.0 if turns else tables["rods"][0]["length"]
         if not lower - 1e-8 * unit <= value <= upper + 1e-8 * unit:
             faults.append(f"a stop is passed: {value:.6g} of {lower:.6g} to {upper:.6g}")
         if (push > allowed and value > lower + 1e-6 * unit) or (push < -allowed and value < upper - 1e-6 * unit):
