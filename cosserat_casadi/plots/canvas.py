@@ -128,7 +128,8 @@ class Canvas:
     def arrow(self, start: FloatArray, vector: FloatArray, *, colour: str, width: float, label: str | None) -> None:
         """Draw an arrow from a point, shapes (3,), m."""
         if self.plane is None:
-            style = {"color": colour, "linewidth": width, "label": label}
+            # The box is that of the rods: the head of an arrow may lie outside.
+            style = {"color": colour, "linewidth": width, "label": label, "clip_on": False}
             self.axes.quiver(*start, *vector, arrow_length_ratio=0.25, **style)
             return
         tail = self.projected(start)

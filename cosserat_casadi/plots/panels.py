@@ -102,7 +102,8 @@ def _finish_panel(shown: list[Any]) -> None:
         panel.set_yticks([])
         return
     # Above the panel: inside it would cover a curve sooner or later.
-    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
+    # The power of ten of an axis stands in its corner.
+    place = {"loc": "lower left", "bbox_to_anchor": (0.1, 1.0), "borderaxespad": 0.1}
     shown[-1].legend(handles=handles, fontsize=9, ncols=3, frameon=False, **place)
     for axes in shown:
         _hide_rounding(axes)

@@ -127,6 +127,16 @@ def test_legends_cover_nothing(kind: str, request: pytest.FixtureRequest) -> Non
             assert min(width, height) < 1.0
 
 
+def test_powers_of_ten_stand_beside_legends() -> None:
+    thin = rod("planar", stiffness={"bending_y": 1e-6})
+    figure = plot_solution(solve(build(scene(push(force=[1e-6, 0, 0]), rods=[thin]))))
+    figure.draw_without_rendering()
+    moment = figure.axes[2]
+    power = moment.yaxis.get_offset_text()
+    assert power.get_text().startswith("1e−")
+    assert not power.get_window_extent().overlaps(moment.get_legend().get_window_extent())
+
+
 def test_axes_of_space_have_one_scale(spatial: Solution) -> None:
     scenery = plot_solution(spatial).axes[0]
     limits = np.array([scenery.get_xlim(), scenery.get_ylim(), scenery.get_zlim()])
