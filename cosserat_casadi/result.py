@@ -18,6 +18,18 @@ class Result:
         data: dict[str, Any] = _presentation().data_of(self)
         return data
 
+    def to_dataframe(self) -> Any:
+        """The table of a motion, a path, a sweep or an estimate, as its CSV file holds it.
+
+        Returns:
+            pandas.DataFrame, a row each of the CSV file.
+
+        Raises:
+            SceneError: this kind of result has no table.
+            PandasUnavailableError: pandas is not installed.
+        """
+        return _presentation().frame_of(self)
+
     def write(self, path: Any) -> None:
         """Write the result into a file, whole or not at all; the suffix says in which format.
 

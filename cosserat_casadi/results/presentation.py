@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from html import escape
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
@@ -52,6 +53,15 @@ class Presentation:
         """Suffixes of all files that the result can be written to."""
         table = (".csv",) if self.table else ()
         return tuple(dict.fromkeys((".json", *table, *self.writers, *PICTURES)))
+
+
+class PandasUnavailableError(CosseratError):
+    """A table as a DataFrame needs pandas."""
+
+    page = "notebook"
+
+    def __init__(self) -> None:
+        super().__init__("to_dataframe needs pandas: install it with  pip install 'cosserat-casadi[frames]'")
 
 
 _MOTION = "results.motion_file:write_motion"
@@ -150,6 +160,26 @@ def data_of(result: Any) -> dict[str, Any]:
 def csv_of(result: Any) -> str:
     """The text of the CSV file of a result that has a table."""
     return csv_text(*_function(presentation_of(result).table)(result))
+
+
+def frame_of(result: Any) -> Any:
+    """The table of a result as a pandas.DataFrame, with the digits of its CSV file.
+
+    Raises:
+        SceneError: this kind of result has no table.
+        PandasUnavailableError: pandas is not installed.
+    """
+    if ".csv" not in presentation_of(result).suffixes:
+        problem = f"{type(result).__name__} has no table"
+        raise SceneError(Problem("to_dataframe", problem, "take to_dict(), or what its attributes hold"))
+    try:
+        import pandas
+    except ImportError as error:
+        raise PandasUnavailableError from error
+    with TemporaryDirectory() as folder:
+        table = Path(folder) / "table.csv"
+        write(result, table)
+        return pandas.read_csv(table)
 
 
 def figure_of(result: Any, **options: Any) -> Any:

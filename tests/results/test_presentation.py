@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import builtins
+import csv
 import inspect
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
@@ -36,7 +38,7 @@ from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.result import Result
-from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, presentation_of
+from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, PandasUnavailableError, presentation_of
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.sweeps.outcome_file import read_sweep
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
@@ -246,6 +248,27 @@ def test_a_notebook_shows_table_and_figure(name: str) -> None:
     assert page.startswith("<table><caption>")
     assert page.count("<tr>") >= 2
     assert '<img alt="figure" src="data:image/png;base64,' in page
+
+
+@pytest.mark.parametrize("name", [name for name in MAKERS if ".csv" in PRESENTATIONS[name].suffixes])
+def test_a_table_is_a_data_frame_with_its_digits(name: str, tmp_path: Path) -> None:
+    result = MAKERS[name]()
+    frame = result.to_dataframe()
+    result.write(tmp_path / "table.csv")
+    head, first, *rest = csv.reader((tmp_path / "table.csv").read_text(encoding="utf-8").splitlines())
+    assert list(frame.columns) == head
+    assert len(frame) == 1 + len(rest)
+    numbers = {key: float(cell) for key, cell in zip(head, first, strict=True) if cell.lstrip("-")[:1].isdigit()}
+    assert numbers
+    assert {key: float(frame[key].iloc[0]) for key in numbers} == numbers
+
+
+def test_what_is_no_table_is_no_data_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(SceneError, match="Solution has no table"):
+        solution().to_dataframe()
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(PandasUnavailableError, match=r"pip install 'cosserat-casadi\[frames\]'"):
+        MAKERS["EquilibriumPath"]().to_dataframe()
 
 
 def test_words_are_no_markup() -> None:
