@@ -382,7 +382,7 @@ def main(
     ] = False,
     robots: Annotated[
         bool,
-        typer.Option("--robots", help="Robots with disks, straight tendons, joints and drives: true errors alone."),
+        typer.Option("--robots", help="Robots of disks, straight tendons, joints and drives: true errors alone."),
     ] = False,
     write: Annotated[bool, typer.Option("--write", help="Put figures and table into docs; of rods alone.")] = False,
 ) -> None:
