@@ -129,3 +129,33 @@ def test_balls_and_bars_are_geoms_of_their_own_size() -> None:
     geoms = {geom.get("name"): geom for geom in root.iter("geom")}
     assert [geoms["ball"].get(key) for key in ("type", "size", "pos")] == ["sphere", "0.25", "1 2 3"]
     assert [geoms["bar"].get(key) for key in ("type", "size", "fromto")] == ["capsule", "0.5", "1 0 0 1 0 2"]
+
+
+def test_disks_touch_the_obstacles_that_name_them() -> None:
+    """Bit by bit: the second obstacle keeps off the disks alone, the first one the rod alone."""
+    text = (
+        FINGER
+        + """
+[[disks]]
+name = "spacers"
+rod = "finger"
+count = 2
+radius = 0.01
+[[obstacles]]
+name = "floor"
+kind = "plane"
+point = [0, 0, -1]
+normal = [0, 0, 1]
+width = 1e-3
+[[obstacles]]
+name = "wall"
+kind = "plane"
+point = [1, 0, 0]
+normal = [-1, 0, 0]
+width = 1e-3
+disks = ["spacers"]
+"""
+    )
+    geoms = list(ET.fromstring(mjcf_of(parse_scene(text), 4).text).iter("geom"))
+    assert {geom.get("contype") for geom in geoms if geom.get("type") == "cylinder"} == {"2"}
+    assert {geom.get("contype") for geom in geoms if geom.get("type") in ("capsule", "box")} == {"1"}
