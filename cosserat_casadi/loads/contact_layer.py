@@ -264,7 +264,7 @@ def _touching(load: ContactLayer, section: Section, normal: Matrix) -> Matrix:
 
 
 def _energy(load: ContactLayer, section: Section) -> Matrix:
-    """k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk."""
+    """Energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk."""
     energy: Matrix = _stiffness(load) / (12 * load.obstacle.width**2) * _depth(load, section) ** 4
     return energy
 
