@@ -21,9 +21,10 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.simulate import STAGES, Tell
+from cosserat_casadi.motion.simulate import Tell
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
+from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 

@@ -27,8 +27,8 @@ from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.one_sided import OneSided
-from cosserat_casadi.motion.simulate import EXACT, STAGES
-from cosserat_casadi.numerics.collocation import Collocation, radau
+from cosserat_casadi.motion.simulate import EXACT
+from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.step import StepPolynomial, TimeStep
 from cosserat_casadi.tubes.tube_functions import AnyModel

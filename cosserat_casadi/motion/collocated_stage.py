@@ -23,11 +23,16 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.motion_checks import immovable
-from cosserat_casadi.numerics.collocation import Collocation, radau
+from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
 
-STAGES = 2
-"""Instants of a stage where nothing is said: Radau IIA of order 3."""
+MECHANICAL = (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE)
+"""Unknowns whose rates are velocities of rods, bodies and joints."""
+
+DEPENDENT = 1e-9
+"""Share of the largest singular value of the constraints below which one repeats others."""
 
 
 @dataclass(frozen=True)
@@ -137,6 +142,30 @@ class MotionStage:
     def v(self, state: Matrix) -> Matrix:
         """Their rates, 1/s, shape (model.size,)."""
         return self.places @ state[self.state_size // 2 :] / self.duration
+
+    def independent_rates(self, state: Matrix, x: FloatArray, inputs: FloatArray) -> Matrix:
+        """Rates of what constraints leave free, 1/s: that they are zero says that the rods stand still.
+
+        That all rates are zero would say of constraints once more what the equations of a stage say already, and
+        optimisers lose their way in what depends on itself. Flows of stress that relaxes are not among them.
+
+        Args:
+            state: shape (state_size,).
+            x: unknowns near those of the state, at which constraints are linearised, shape (model.size,).
+            inputs: stacked inputs there.
+        """
+        discrete = self.model.discrete
+        moving = np.concatenate([np.arange(len(x))[span] for _, span in discrete.unknowns.of_kind(*MECHANICAL)])
+        jacobian, _ = self.model.jacobian(x, inputs)
+        # No mechanics sees the norm of a quaternion.
+        norms = np.zeros((len(discrete.frames), len(x)))
+        for row, (name, frame) in zip(norms, discrete.frames.items(), strict=True):
+            quaternion = discrete.deviation(name)
+            row[quaternion][3:] = frame.start.quaternion + x[quaternion][3:]
+        held_rows = np.vstack([jacobian.full()[Closing(self.model).rows], norms])
+        _, sizes, directions = np.linalg.svd(held_rows[:, moving])
+        held = int(np.sum(sizes > DEPENDENT * sizes.max(initial=0.0)))
+        return ca.DM(directions[held:]) @ self.v(state)[moving.tolist()]
 
     @cached_property
     def transition(self) -> ca.DM:
@@ -259,7 +288,7 @@ def motion_stage(
         model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
             have the values of the scene, or those of ``model.at(…)``, unless they are asked for.
         duration: of the stage, s.
-        method: by default Radau IIA with two stages, ``radau(2)``.
+        method: by default that of the simulator, Radau IIA with three stages, ``radau(3)``.
         parameters: whether the parameters of the scene, if it names some, are an argument of the equations.
 
     Raises:

@@ -41,7 +41,7 @@ from cosserat_casadi.motion.trajectory import (
     MotionState,
     StepStatistics,
 )
-from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
+from cosserat_casadi.numerics.collocation import STAGES, Collocation, gauss, radau
 from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
@@ -50,9 +50,6 @@ LOG = logging.getLogger(__name__)
 
 Tell = Callable[[MotionProgress], None]
 """A function that is called with the progress after every step."""
-
-STAGES = 3
-"""Stages of the methods: order 5 of Radau IIA, 6 of Gauss."""
 
 TIGHTER = 10.0
 """Factor between the tolerances of a step of two motions that are compared."""

@@ -19,6 +19,9 @@ from cosserat_casadi.maths.typing import FloatArray
 MOST_STAGES = 3
 """Most stages that the tables are made, and tested, for."""
 
+STAGES = 3
+"""Stages of simulated motions, and of those of an optimal-control problem: order 5 of Radau IIA, 6 of Gauss."""
+
 
 @dataclass(frozen=True)
 class Collocation:

@@ -23,7 +23,7 @@ from swing_free.task import COUNT, STAGES, STEP
 
 from cosserat_casadi import Model
 from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
-from cosserat_casadi.control import Condensed, Condensing, Horizon, motion_stage
+from cosserat_casadi.control import Condensed, Condensing, Horizon, motion_stage, radau
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Moving(Controller):
     def __init__(self, model: Model, x: np.ndarray) -> None:
         super().__init__()
         self.x = x
-        self.stage = motion_stage(model, STEP)
+        self.stage = motion_stage(model, STEP, radau(2))
         compiled = compiled_motion_stage(self.stage, "swing_free_motion")
         self.horizon = Condensing(self.stage, compiled.equations, STAGES, range(COUNT))
         self.period = Condensing(self.stage, compiled.equations, 1, range(COUNT))

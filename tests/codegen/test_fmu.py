@@ -4,6 +4,7 @@ import json
 import zipfile
 from pathlib import Path
 
+import casadi as ca
 import fmpy
 import numpy as np
 import pytest
@@ -11,14 +12,17 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import parse_scene
+from cosserat_casadi import parse_scene, simulate, solve
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
+from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
+from cosserat_casadi.scene.motion_records import InputMotion
+from cosserat_casadi.scene.simulation import Simulation
 from tests.commands import cosserat
 
 SCENE = """
@@ -51,6 +55,7 @@ step = 2e-3
 """
 PERIOD = 5e-3
 STEPS = 4
+DURATION = 0.04
 
 
 @pytest.fixture(scope="module")
@@ -385,3 +390,59 @@ def test_free_rod_falls(tmp_path):
     result = fmpy.simulate_fmu(str(fmu), stop_time=0.02, output_interval=5e-3, output=outputs)
     assert_allclose(result["stick.tip.position.z"], 0.1 - 9.81 * result["time"] ** 2 / 2, rtol=0.0, atol=1e-9)
     assert_allclose(result["stick.tip.velocity.z"], -9.81 * result["time"], rtol=0.0, atol=1e-8)
+
+
+def by_stages(model, before, after, count, duration):
+    """Outputs after so many stages of an optimal-control problem, over which inputs go straight, solved one by one."""
+    stage = motion_stage(model, duration / count)
+    state, unknowns, inputs, rate = stage.symbols
+    residual = stage.equations(state, unknowns, inputs, inputs_rate=rate)
+    problem = {"x": unknowns, "p": ca.vertcat(state, inputs, rate), "g": residual}
+    newton = ca.rootfinder("newton", "newton", problem, {"abstol": 1e-12})
+    rest = solve(model)
+    at, found = stage.state(rest.x), stage.still(rest.x)
+    per_second = (after - before) / duration
+    for k in range(count):
+        found = newton(x0=found, p=ca.vertcat(at, before + k * stage.duration * per_second, per_second))["x"]
+        at = stage.next_state(at, found)
+    return motion_outputs(model).function(stage.x(at), stage.v(at), after, per_second).full().ravel()
+
+
+def test_simulation_vs_fmu_and_library_and_stages(model, library, described, instance):
+    """One motion in four ways: inputs go in a straight line, within one communication step of the FMU."""
+    before = model.pack()
+    after = model.pack({"push.force": [0.03, 0.01, 0.0], "flexor.tension": 0.3})
+    motions = [
+        InputMotion(input=name, times=(0.0, DURATION), values=(start, end))
+        for name, start, end in (("push.force", [0.01, 0.0, 0.0], [0.03, 0.01, 0.0]), ("flexor.tension", 0.1, 0.3))
+    ]
+    scene = model.scene.model_copy(update={"motions": tuple(motions)})
+    simulation = Simulation(duration=DURATION, frames=2, step=DURATION / 20)
+    motion = simulate(build(scene, model.discretisation, moving=True), simulation=simulation)
+    assert motion.converged, motion.message
+    per_second = (after - before) / DURATION
+    outputs = motion_outputs(model).function
+    wanted = outputs(motion.x[-1], motion.v[-1], after, per_second).full().ravel()
+    at_rest = outputs(motion.x[0], 0.0 * motion.v[0], before, 0.0 * before).full().ravel()
+
+    assert_allclose(by_stages(model, before, after, 20, DURATION), wanted, rtol=1e-9, atol=1e-9)
+
+    state = library.rest(before, library.solve(before).x)
+    for k in range(40):
+        step = DURATION / 40
+        taken = library.step(state, step, before + k * step * per_second, per_second, 0.0 * before)
+        assert taken.done
+        state = taken.state
+    in_c = outputs(state.x, state.v, after, per_second).full().ravel()
+
+    initialised(instance)
+    instance.setFloat64(references(described, "input"), after.tolist())
+    instance.doStep(0.0, DURATION)
+    by_fmu = instance.getFloat64(references(described, "output"))
+    position = [one.name for one in described.modelVariables if one.causality == "output"].index(
+        "finger.tip.position.y"
+    )
+    assert abs(wanted - at_rest)[position] > 5e-4
+    # Two stages, of order three: in steps of 1 ms, and of the 2 ms that the scene gives the FMU.
+    assert_allclose(in_c[position], wanted[position], rtol=0, atol=2e-9)
+    assert_allclose(by_fmu[position], wanted[position], rtol=0, atol=1.5e-8)

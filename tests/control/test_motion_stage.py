@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, scene_from_dict
+from cosserat_casadi import SceneError, build, scene_from_dict, solve
 from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
 from cosserat_casadi.control import Collocation, gauss, motion_stage, radau
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import StepPolynomial
 from tests.codegen.test_load import cached, needs_compiler
-from tests.control.swing import LARGEST, RATE, STAGES, STEP, TENDONS, optimum, replayed, task
+from tests.control.swing import IPOPT, LARGEST, RATE, STAGES, STEP, TENDONS, optimum, replayed, task
 from tests.families import mostly_slow
-from tests.moving_scenes import FAMILIES, drawn_state, model_of
+from tests.moving_scenes import FAMILIES, PULL, drawn_state, joint, model_of, rod, scene
 
 METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2)]
 
@@ -167,6 +167,60 @@ def test_what_cannot_move_is_refused() -> None:
     del tables["rods"][0]["damping"]
     with pytest.raises(SceneError, match="'a' has no mass"):
         motion_stage(build(scene_from_dict(tables), moving=True), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("family", "count"),
+    # Strains and the six ways of a body, without what joints and cables hold.
+    [("planar", 2), ("relaxing joints", 18 + 6 - 11), ("given length", 12 - 1), ("free with body", 6 + 12 - 3)],
+)
+def test_rates_that_constraints_leave_free(family: str, count: int) -> None:
+    model = model_of(family)
+    at = drawn_state(model)
+    stage = motion_stage(model, STEP)
+    state = stage.state(at.x, at.v)
+    assert stage.independent_rates(state, at.x, at.inputs).shape == (count, 1)
+    if model.discrete.frames:
+        # What only changes norms of quaternions is no motion.
+        swollen = np.zeros(model.size)
+        for name, frame in model.discrete.frames.items():
+            entries = model.discrete.deviation(name)
+            swollen[entries][3:] = frame.start.quaternion + at.x[entries][3:]
+        assert_allclose(stage.independent_rates(stage.state(at.x, swollen), at.x, at.inputs), 0.0, rtol=0, atol=1e-12)
+
+
+def test_a_body_on_a_rod_is_brought_to_rest() -> None:
+    push = {**PULL, "position": [0, 0, 0], "force": [0, 0, 0], "moment": [0, 0, 0]}
+    plate = {"name": "plate", "mass": 0.3, "inertia": np.diag([0.03, 0.03, 0.03]).tolist()}
+    joints = [joint("a", position=[0, 0, 0])]
+    tables = scene(rod(strain="planar"), loads=[push], bodies=[plate], joints=joints, inputs=["pull.force"])
+    model = build(scene_from_dict(tables), moving=True)
+    rest = solve(model, raise_on_failure=True)
+    stage = motion_stage(model, 0.05, radau(2))
+    opti = ca.Opti()
+    states = [ca.MX(ca.DM(stage.state(rest.x)))]
+    force = ca.MX(ca.DM(rest.inputs))
+    cost = ca.MX(0)
+    for _ in range(4):
+        unknowns = opti.variable(stage.unknowns_size)
+        rate = opti.variable(3)
+        opti.set_initial(unknowns, stage.still(rest.x))
+        opti.subject_to(stage.equations(states[-1], unknowns, force, inputs_rate=rate) == 0)
+        following = opti.variable(stage.state_size)
+        opti.set_initial(following, stage.state(rest.x))
+        opti.subject_to(following == stage.next_state(states[-1], unknowns))
+        states.append(following)
+        force += stage.duration * rate
+        cost += ca.sumsqr(rate)
+    goal = float(np.ravel(rest.body("plate").position)[0]) + 0.05
+    opti.subject_to(model.body["plate"](stage.x(states[-1]), force)[0][0] == goal)
+    opti.subject_to(stage.independent_rates(states[-1], rest.x, rest.inputs) == 0)
+    opti.minimize(cost)
+    opti.solver("ipopt", {**IPOPT, "ipopt.tol": 1e-8, "ipopt.max_iter": 20})
+    found = opti.solve()
+    speeds = [np.abs(found.value(stage.v(state))).max() for state in states]
+    # Constraints are kept in positions: rates of a step leave them by its error.
+    assert speeds[-1] < 2e-3 * max(speeds)
 
 
 def test_parameters_have_the_values_of_the_scene() -> None:
