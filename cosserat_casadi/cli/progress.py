@@ -17,6 +17,7 @@ from rich.progress import (
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 from rich.text import Text
 
@@ -87,12 +88,12 @@ def solve_display(command: str) -> Iterator[SolveDisplay]:
 
 @contextmanager
 def motion_display() -> Iterator[Callable[[MotionProgress], None]]:
-    """A bar for a simulation, with the time that is reached and the present step.
+    """A bar for a simulation, with the time that is reached, the present step and the time left.
 
     An interrupt that finds no motion yet ends the command; of a motion on its way the simulation hears at its next
     report.
     """
-    with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
+    with progress_bar(TimeRemainingColumn()) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task("Building the model", total=1.0)
 
         def show_motion(progress: MotionProgress) -> None:

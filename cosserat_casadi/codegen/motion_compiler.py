@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -20,6 +21,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
+from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Tell
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
@@ -173,6 +175,8 @@ def simulate(
     simulation: Simulation | None = None,
     progress: Tell | None = None,
     compiled: bool | None = None,
+    output: str | os.PathLike[str] | None = None,
+    part: float | None = None,
 ) -> Motion:
     """Motion of a scene, or of a model on its modes and nodes.
 
@@ -191,10 +195,21 @@ def simulate(
         compiled: whether the equations run as machine code. By default they do where the cache has them, or where
             compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
             with ``False`` never.
+        output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
+        part: length of a part, s: each is written when it is done, and the last one is returned. By default the
+            motion is one, and is not written.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
         ExportError: ``compiled`` is true, and there is no compiler, or it fails.
     """
     source = None if compiled is False else MotionCompiler(always=compiled is True)
-    return motion_refinement.simulate(subject, start=start, simulation=simulation, progress=progress, source=source)
+
+    def simulated(start: StartOfMotion, simulation: Simulation | None, progress: Tell | None) -> Motion:
+        return motion_refinement.simulate(subject, start=start, simulation=simulation, progress=progress, source=source)
+
+    scene = subject.scene if isinstance(subject, Model) else subject
+    whole = simulation or scene.simulation
+    if part is None or whole is None:
+        return simulated(start, simulation, progress)
+    return simulate_in_parts(simulated, whole, Path(output or ""), part, start, progress)

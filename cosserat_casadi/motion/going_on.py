@@ -26,12 +26,14 @@ from cosserat_casadi.motion.simulate import (
     bound_of,
     ended_early,
     judged,
+    motion_of,
     moving_inputs,
     tolerance_of,
 )
 from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.tip_paths import path_distance
-from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -107,6 +109,9 @@ def go_on(
         if strand.discretisation != first.discretisation:
             other = build(scene, strand.discretisation, moving=True)
         beside, told = gone_on(strand, other, "going on, for the error")
+        if told.outcome is StepOutcome.INTERRUPTED:
+            message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
+            return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
         error += strand.factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
         companions.append(Companion(told, strand.factor))
     # An error that is not known makes that of the whole unknown.

@@ -25,6 +25,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import MESHES, check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion
+from cosserat_casadi.motion.parts import check_parts
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.results.motion_file import check_motion_path
 from cosserat_casadi.results.start_file import read_start
@@ -68,6 +69,10 @@ def simulate(
             show_default=False,
         ),
     ] = None,
+    part: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Write parts of this length to OUTPUT-0001 and so on: for long motions."),
+    ] = None,
     settings: Settings = None,
 ) -> None:
     """Simulate the motion of a scene over time.
@@ -80,13 +85,18 @@ def simulate(
     overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
     problems: list[Problem] = []
     _check_files(output, plot, animation, speed, problems)
+    if part is not None:
+        with collect_problems(problems):
+            check_parts(output, part)
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings, start)
     checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
 
-    motion = _simulate_with_progress(checked_scene, start_solution, compiled)
-    if output is not None:
+    motion = _simulate_with_progress(checked_scene, start_solution, compiled, output, part)
+    if output is not None and part is None:
         motion.write(output)
+    if output is not None and part is not None:
+        output = output.with_stem(f"{output.stem}-*")
     if motion.outcome is MotionOutcome.INTERRUPTED:
         # Who has stopped a simulation does not want to wait for pictures of it.
         print_motion(Console(), motion, given_files(output))
@@ -154,14 +164,17 @@ def _check_scene(
     return scene, solution
 
 
-def _simulate_with_progress(scene: Scene, start: StartOfMotion, compiled: bool | None) -> Motion:
+def _simulate_with_progress(
+    scene: Scene, start: StartOfMotion, compiled: bool | None, output: Path | None, part: float | None
+) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
     from cosserat_casadi.codegen.motion_compiler import simulate
 
     with motion_display() as show_motion:
-        motion: Motion = simulate(scene, start=start, progress=show_motion, compiled=compiled)
-        return motion
+        return simulate(
+            scene, start=start, progress=show_motion, compiled=compiled, output=output if part else None, part=part
+        )
 
 
 def _animate(motion: Motion, file: Path, speed: float) -> None:

@@ -1,0 +1,96 @@
+"""A long motion in parts, each of which is written to a file of its own and then forgotten.
+
+Memory holds one part: its steps, and those of the motions that tell its error. A part goes on where the last one ended,
+on the modes that were chosen in the first one; the error is that of the whole so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.motion.checkpoint import Checkpoint
+from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of
+from cosserat_casadi.motion.simulate import Tell
+from cosserat_casadi.motion.trajectory import Motion, MotionProgress
+from cosserat_casadi.scene.simulation import Simulation
+
+GOING_ON = (".json", ".npz")
+"""Suffixes of files that a motion goes on from."""
+
+Simulated = Callable[[StartOfMotion, Simulation, Tell | None], Motion]
+"""(start, simulation, progress) ↦ the motion from the start to the duration of the simulation."""
+
+
+def simulate_in_parts(
+    simulated: Simulated,
+    simulation: Simulation,
+    output: str | Path,
+    length: float,
+    start: StartOfMotion = None,
+    progress: Tell | None = None,
+) -> Motion:
+    """Simulate part by part, and write each to a file; a part that ends early is the last.
+
+    Args:
+        simulated: simulates one part.
+        simulation: of the whole motion; each row of its result is in the part that reaches it.
+        output: file, whose name gets the number of the part: ``out.npz`` becomes ``out-0001.npz``.
+        length: of a part, s.
+        start: as of a motion.
+        progress: told of every step, with the duration of the whole motion.
+
+    Returns:
+        the last part.
+
+    Raises:
+        SceneError: the length is no time, or the file is none that a motion goes on from.
+    """
+    path = Path(output)
+    check_parts(path, length)
+    rows = simulation.frame_times
+    checkpoint = checkpoint_of(start)
+    begun = 0.0 if checkpoint is None else checkpoint.time
+    count = max(1, int(np.ceil((simulation.duration - begun) / length - 1e-9)))
+    tell = None if progress is None else _whole(progress, simulation.duration)
+    following: StartOfMotion = start if checkpoint is None else checkpoint
+    for number in range(1, count + 1):
+        end = simulation.duration if number == count else begun + number * length
+        reached = following.time if isinstance(following, Checkpoint) else -1.0
+        of_part = rows[(reached < rows) & (rows <= end)]
+        changes = {"duration": end, "frames": None, "times": tuple(of_part.tolist())}
+        motion = simulated(following, simulation.model_copy(update=changes), tell)
+        motion.write(path.with_stem(f"{path.stem}-{number:04d}"))
+        if not motion.converged:
+            break
+        following = motion.end
+    return motion
+
+
+def check_parts(output: Path | None, length: float) -> None:
+    """Refuse parts that have no length, or no file to go on from.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = []
+    if not 0.0 < length < np.inf:
+        problems.append(Problem("--part", f"{length:g} s is no length of a part", "give one in s"))
+    if output is None or output.suffix.lower() not in GOING_ON:
+        remedy = "name a .npz or .json: each part goes to a file of its own"
+        problems.append(Problem("--output", "parts are written to files that the motion goes on from", remedy))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _whole(progress: Tell, duration: float) -> Tell:
+    """Tells the progress of a part as that of the whole motion."""
+
+    def tell(part: MotionProgress) -> None:
+        progress(replace(part, duration=duration))
+
+    return tell
