@@ -87,6 +87,7 @@ CONCEPTS = (
         (
             "simulate",
             "Motion",
+            "MotionEvent",
             "MotionOutcome",
             "modes_of",
             "Modes",

@@ -8,6 +8,7 @@ modes, takes them from the cache, whatever moves them and to whatever tolerance.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
+from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Tell
@@ -177,6 +179,7 @@ def simulate(
     compiled: bool | None = None,
     output: str | os.PathLike[str] | None = None,
     part: float | None = None,
+    events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """Motion of a scene, or of a model on its modes and nodes.
 
@@ -198,6 +201,7 @@ def simulate(
         output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
         part: length of a part, s: each is written when it is done, and the last one is returned. By default the
             motion is one, and is not written.
+        events: functions of poses and inputs whose zeros are told in ``motion.events``, or stop the motion.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
@@ -206,7 +210,9 @@ def simulate(
     source = None if compiled is False else MotionCompiler(always=compiled is True)
 
     def simulated(start: StartOfMotion, simulation: Simulation | None, progress: Tell | None) -> Motion:
-        return motion_refinement.simulate(subject, start=start, simulation=simulation, progress=progress, source=source)
+        return motion_refinement.simulate(
+            subject, start=start, simulation=simulation, progress=progress, source=source, events=events
+        )
 
     scene = subject.scene if isinstance(subject, Model) else subject
     whole = simulation or scene.simulation

@@ -6,6 +6,7 @@ stay as they were.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_b
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.simulate import (
     Companion,
@@ -69,6 +71,7 @@ def go_on(
     simulation: Simulation | None,
     tell: Tell | None,
     source: KernelSource | None,
+    events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """The motion of a scene from a checkpoint to its duration.
 
@@ -78,6 +81,7 @@ def go_on(
         simulation: duration, frames, tolerance; None for those of the scene.
         tell: is told of every step.
         source: chooses the kernels.
+        events: of the user.
 
     Raises:
         SceneError: the scene does not have the state of the checkpoint, or its duration does not reach beyond it.
@@ -95,7 +99,7 @@ def go_on(
 
     def gone_on(strand: Strand, model: Model, stage: str) -> tuple[Simulator, History]:
         begun = checkpoint if strand is first else None
-        simulator = Simulator(model, asked, resumed_start(model, strand.resume), stage, tell, source, begun)
+        simulator = Simulator(model, asked, resumed_start(model, strand.resume), stage, tell, source, begun, events)
         return simulator, simulator.resumed(strand)
 
     simulator, history = gone_on(first, model, "going on")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 
@@ -28,6 +28,7 @@ from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
+from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
@@ -82,6 +83,10 @@ def equations_of(
     return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
+Stops = Callable[[Piece, Instant, CentredCoordinates | None], Guards | None]
+"""(piece, begin, coordinates) ↦ values, positive from the begin on, at whose zeros a motion stops; None for none."""
+
+
 @dataclass(frozen=True)
 class Leg:
     """The steps over one piece, or over a part of it in which cables, stops and contacts do not change.
@@ -118,6 +123,7 @@ class History:
         method: of its steps.
         settings: how it steps.
         coordinates: coordinates of the steps; None for the unknowns of the model.
+        stopped: number of the value that stopped the motion; None for one that was not stopped.
     """
 
     model: Model
@@ -125,6 +131,7 @@ class History:
     method: Collocation
     settings: StepSettings
     coordinates: CentredCoordinates | None = None
+    stopped: int | None = None
 
     @property
     def begin(self) -> float:
@@ -139,10 +146,11 @@ class History:
         phases = leg.restart.phases
         assert isinstance(phases, ContactPhase | tuple), "cables or contacts"
         places = tuple(phases.follower.places) if isinstance(phases, ContactPhase) else ()
+        guard = ended.guard if self.stopped is None else None
         # Behind a guard there are other equations.
-        memory = ended.memory if ended.guard is None else None
+        memory = ended.memory if guard is None else None
         first = ended.next_size if memory is None else memory.wanted
-        return Resume(ended.end, phases, places, ended.guard, first, memory)
+        return Resume(ended.end, phases, places, guard, first, memory)
 
     @property
     def outcome(self) -> StepOutcome:
@@ -315,6 +323,7 @@ def integrated(
     kernels: StepKernels | None = None,
     resume: Resume | None = None,
     flight: FreeFlight | None = None,
+    stops: Stops | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -331,6 +340,7 @@ def integrated(
         kernels: as for :func:`equations_of`.
         resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
         flight: that of the model; None for a new one.
+        stops: makes the values at whose zeros the motion stops; None where it goes to its end.
 
     Raises:
         SceneError: the start contradicts the constraints.
@@ -338,7 +348,7 @@ def integrated(
     inputs = pieces[0].at(pieces[0].start).value
     chosen = kernels or interpreted(model)
     flight = flight or free_flight(model, p)
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight)
+    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight, stops)
     if not model.scene.touches_exactly:
         pairs = OneSided(model)
         first = pairs.first_phases(x, inputs)
@@ -365,6 +375,7 @@ def _switched(
     kernels: StepKernels,
     resume: Resume | None,
     flight: FreeFlight,
+    stops: Stops | None,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
@@ -411,10 +422,15 @@ def _switched(
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin)))
                 return History(model, tuple(legs), method, asked, coordinates)
+            ends = None if stops is None else stops(piece, begin, coordinates)
+            guards, changes = _joined(guards, ends, begin)
             own = _with_forces(settings, equations.size)
             integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled, memory)
             memory = None
             legs.append(Leg(piece, restart, integration))
+            if integration.guard is not None and integration.guard >= changes:
+                legs[-1] = replace(legs[-1], integration=replace(integration, outcome=StepOutcome.COMPLETED))
+                return History(model, tuple(legs), method, asked, coordinates, integration.guard - changes)
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
                 return History(model, tuple(legs), method, asked, coordinates)
             if _chatters(legs, pieces[-1].end):
@@ -433,6 +449,13 @@ def _switched(
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return History(model, tuple(legs), method, asked, coordinates)
+
+
+def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tuple[Guards | None, int]:
+    """Guards of what changes the equations, then those of what ends the motion, and how many the former are."""
+    if changes is None or ends is None:
+        return changes or ends, 0 if changes is None else len(changes(begin))
+    return lambda instant: np.concatenate([changes(instant), ends(instant)]), len(changes(begin))
 
 
 def _with_forces(settings: StepSettings, size: int) -> StepSettings:

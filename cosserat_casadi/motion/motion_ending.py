@@ -88,7 +88,8 @@ def snapping(history: History) -> list[str]:
 def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED, *BEYOND_LIMITS):
-        return str(outcome.value)
+        stopped = f" An event stopped it at t = {history.end.time:.6g} s." if history.stopped is not None else ""
+        return f"{outcome.value}{stopped}"
     if outcome is MotionOutcome.CONTACT_UNSETTLED:
         return f"{outcome.value} {unsettled(history)}"
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"

@@ -25,6 +25,7 @@ from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.simulate import (
     COARSER,
     LEFT_BY_FINER,
@@ -122,6 +123,7 @@ class _Search:
         start: an equilibrium to start from; None for what the simulation says.
         tell: is told of every step.
         source: chooses the kernels of every motion.
+        events: of the user.
         tolerance: of the paths, over the length.
         levels: the motions so far.
         step_tolerance: of a step, over the length; nan for steps of given size.
@@ -133,6 +135,7 @@ class _Search:
     start: Solution | None
     tell: Tell | None
     source: KernelSource | None
+    events: Sequence[MotionEvent]
     tolerance: float
     levels: list[ResolvedMotion] = field(default_factory=list)
     step_tolerance: float = float("nan")
@@ -197,6 +200,7 @@ def simulate(
     simulation: Simulation | None = None,
     progress: Tell | None = None,
     source: KernelSource | None = None,
+    events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """Motion of a scene, or of a model on its modes and nodes, as the public ``simulate`` describes it.
 
@@ -207,16 +211,19 @@ def simulate(
         simulation: duration, frames, tolerance; None for those of the scene.
         progress: told of every step.
         source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
+        events: of the user.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
     checkpoint = checkpoint_of(start)
     if checkpoint is not None:
-        return go_on(subject, checkpoint, simulation, progress, source)
+        return go_on(subject, checkpoint, simulation, progress, source, events)
     assert start is None or isinstance(start, Solution), "a motion has a checkpoint"
     if isinstance(subject, Model):
-        return simulate_model(subject, start=start, simulation=simulation, progress=progress, source=source)
+        return simulate_model(
+            subject, start=start, simulation=simulation, progress=progress, source=source, events=events
+        )
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
@@ -224,7 +231,7 @@ def simulate(
     simulation = scene.simulation
     check_simulation(coarsest, simulation)
     assert simulation is not None, "checked"
-    search = _Search(moving_scene, simulation, start, progress, source, tolerance_of(coarsest, simulation))
+    search = _Search(moving_scene, simulation, start, progress, source, events, tolerance_of(coarsest, simulation))
     try:
         if scene.accuracy.fixed:
             return _with_fixed(search)
@@ -412,7 +419,7 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
     began = started(model, search.simulation, search.start)
-    return Simulator(model, search.simulation, began, stage, search.tell, search.source)
+    return Simulator(model, search.simulation, began, stage, search.tell, search.source, events=search.events)
 
 
 def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:

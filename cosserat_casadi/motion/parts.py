@@ -1,4 +1,4 @@
-"""A long motion in parts, each of which is written to a file of its own and then forgotten.
+"""A long motion in parts, each of which is written to a file and then forgotten.
 
 Memory holds one part: its steps, and those of the motions that tell its error. A part goes on where the last one ended,
 on the modes that were chosen in the first one; the error is that of the whole so far.
@@ -65,7 +65,7 @@ def simulate_in_parts(
         changes = {"duration": end, "frames": None, "times": tuple(of_part.tolist())}
         motion = simulated(following, simulation.model_copy(update=changes), tell)
         motion.write(path.with_stem(f"{path.stem}-{number:04d}"))
-        if not motion.converged:
+        if not motion.converged or motion.end is None or motion.end.time < end:
             break
         following = motion.end
     return motion

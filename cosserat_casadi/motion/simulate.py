@@ -27,6 +27,7 @@ from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
+from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.pose_series import tip_poses
@@ -148,6 +149,7 @@ class Simulator:
         tell: is told of every step.
         source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
         begun: where the motion goes on from; None for one that begins.
+        events: of the user.
     """
 
     model: Model
@@ -157,6 +159,12 @@ class Simulator:
     tell: Tell | None = None
     source: KernelSource | None = None
     begun: Checkpoint | None = None
+    events: Sequence[MotionEvent] = ()
+
+    @cached_property
+    def watch(self) -> EventWatch:
+        """The events on this model."""
+        return EventWatch(self.model, self.events)
 
     @cached_property
     def moving(self) -> MovingInputs:
@@ -304,6 +312,7 @@ class Simulator:
             kernels=kernels,
             resume=self.start.resume,
             flight=self._flight,
+            stops=self.watch.guards,
         )
         if self.source is not None:
             self.source.learn(history.statistics)
@@ -328,6 +337,7 @@ def simulate(
     simulation: Simulation | None = None,
     progress: Tell | None = None,
     source: KernelSource | None = None,
+    events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
 
@@ -337,6 +347,7 @@ def simulate(
         simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
         source: as in :class:`Simulator`.
+        events: likewise.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
@@ -348,7 +359,7 @@ def simulate(
     began = started(model, asked, start)
     if not began.found:
         return not_started(model, began)
-    simulator = Simulator(model, asked, began, tell=progress, source=source)
+    simulator = Simulator(model, asked, began, tell=progress, source=source, events=events)
     tolerance = tolerance_of(model, asked)
     timed = simulator.to_tolerance(tolerance, first=tolerance)
     if not timed.history.completed:
@@ -474,6 +485,8 @@ def motion_of(
     for event in history.events:
         LOG.info("%s of %s on %s at %.6g s", event.kind, event.owner, event.obstacle, event.time)
     times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
+    if history.stopped is not None:
+        times = np.union1d(times, history.end.time)
     states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
     begin = history.of_model(history.legs[0].start.instant)
@@ -499,7 +512,7 @@ def motion_of(
         interpolant=history.at,
         warnings=tuple(warnings(model, simulator.start, simulator.moving, duration, begin.a)),
         contacts=tuple(history.touching(float(time)) for time in times),
-        events=history.events,
+        events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
         end=end,
     )
 

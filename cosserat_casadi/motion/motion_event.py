@@ -1,0 +1,136 @@
+"""Events of users: a function of poses and inputs that crosses zero is noted, or ends the motion there.
+
+A motion that is to stop has the function among the guards of its steps, as contacts, cables and stops have theirs: its
+last step ends where the function vanishes. Events that are only noted leave the steps alone, and are looked for in
+their polynomials when they are done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.centred_coordinates import CentredCoordinates
+from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.numerics.guards import THROUGH, WATCHED, Guards
+from cosserat_casadi.numerics.motion_equations import Instant
+
+RISES = "rises"
+FALLS = "falls"
+"""Kinds of events in a result."""
+
+AHEAD = 1e-6
+"""Time after the begin of a stretch at which a function that is zero there tells its side, s."""
+
+
+@dataclass(frozen=True)
+class MotionEvent:
+    """A function of a moving scene whose zeros are told.
+
+    Attributes:
+        name: of the event in the result.
+        value: (model, x, inputs) ↦ a number, as a CasADi expression of unknowns and stacked inputs, such as
+            ``model.tip["arm"](x, inputs)[0][2]``, the height of a tip.
+        stop: whether the motion ends where it crosses zero, in whichever direction.
+    """
+
+    name: str
+    value: Callable[[Model, ca.MX, ca.MX], Matrix]
+    stop: bool = False
+
+
+@dataclass(frozen=True)
+class EventWatch:
+    """The events of a motion on one model.
+
+    Attributes:
+        model: the model.
+        events: the events.
+    """
+
+    model: Model
+    events: Sequence[MotionEvent]
+
+    def guards(self, piece: Piece, begin: Instant, coordinates: CentredCoordinates | None) -> Guards | None:
+        """Values of the events that stop a motion, positive where a stretch of it begins; None where none does.
+
+        Args:
+            piece: of the inputs.
+            begin: of the stretch, in the coordinates of the steps.
+            coordinates: those of the steps; None for the unknowns of the model.
+        """
+        numbers = self._stopping
+        if self.events:
+            # Values that are no numbers are refused before a step is taken.
+            _ = self.values
+        if not numbers:
+            return None
+
+        def values(instant: Instant) -> FloatArray:
+            at = instant if coordinates is None else coordinates.to_model(instant)
+            return self.values(at.x[: self.model.size], piece.at(instant.time).value)[numbers]
+
+        first = values(begin)
+        ahead = Instant(begin.time + AHEAD, begin.x + AHEAD * begin.v, begin.v, begin.a)
+        sides = np.where(np.where(np.abs(first) > THROUGH, first, values(ahead)) < 0.0, -1.0, 1.0)
+        return lambda instant: sides * values(instant)
+
+    def crossings(self, history: History) -> tuple[ContactEvent, ...]:
+        """All zeros of all events in a motion, and what stopped it, in their order."""
+        if not self.events or not history.steps:
+            return ()
+        steps = [step for _, step in history.steps]
+        times = np.concatenate([step.start.time + step.size * WATCHED[:-1] for step in steps])
+        times = np.append(times, steps[-1].end.time)
+        x, inputs = history.rough_positions(times)
+        rows = np.array([self.values(*place) for place in zip(x, inputs, strict=True)])
+        found = []
+        stopped = None if history.stopped is None else self._stopping[history.stopped]
+        if stopped is not None:
+            # The last step ends on the zero, to rounding: it is told once.
+            rows[-1, stopped] = rows[-2, stopped]
+            found.append(_crossing(self.events[stopped], float(times[-1]), rows[-2, stopped]))
+        for k, event in enumerate(self.events):
+            for i in np.flatnonzero((rows[:-1, k] > 0.0) != (rows[1:, k] > 0.0)):
+                ends = [(float(times[j]), float(rows[j, k])) for j in (i, i + 1)]
+                found.append(_crossing(event, bracketed_zero(self._value(history, k), *ends), rows[i, k]))
+        return tuple(sorted(found, key=lambda one: one.time))
+
+    def _value(self, history: History, number: int) -> Callable[[float], float]:
+        def value(time: float) -> float:
+            x, inputs = history.rough_positions(np.array([time]))
+            return float(self.values(x[0], inputs[0])[number])
+
+        return value
+
+    @property
+    def _stopping(self) -> list[int]:
+        """Numbers of the events that stop the motion."""
+        return [k for k, event in enumerate(self.events) if event.stop]
+
+    @cached_property
+    def values(self) -> RepeatedCall:
+        """(x, inputs) ↦ values of all events."""
+        x = ca.MX.sym("x", self.model.size)
+        inputs = ca.MX.sym("inputs", self.model.inputs.size)
+        rows = [ca.MX(event.value(self.model, x, inputs)) for event in self.events]
+        for event, row in zip(self.events, rows, strict=True):
+            if row.shape != (1, 1):
+                problem = f"the value of {event.name!r} has shape {row.shape}"
+                raise SceneError(Problem("events", problem, "give one number: a component, or a sum"))
+        return RepeatedCall(ca.Function("events", [x, inputs], [ca.densify(ca.vertcat(*rows))]))
+
+
+def _crossing(event: MotionEvent, time: float, before: float) -> ContactEvent:
+    return ContactEvent(FALLS if before > 0.0 else RISES, time, event.name, "", 0.0)
