@@ -10,6 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import suppress
 from pathlib import Path
 
 from cosserat_casadi.codegen.cache import (
@@ -58,14 +59,12 @@ def shared_object(
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
-    digest = content_hash(compiler_words(compiler), FLAGS, [_read(path) for path in (*sources, *headers)])
-    stem = f"{name}-{digest}"
+    contents = [_read(path) for path in (*sources, *headers)]
+    stem = _stem(name, compiler, contents)
     folder = cache_folder()
     try:
-        kept = kept_file(folder, stem)
+        kept = _compiled_before(name, folder, stem)
         if kept is not None:
-            mark_used(kept)
-            LOG.info("%s was compiled before: %s", name, kept)
             return kept
         LOG.info("%s: compiling %d files in %s", name, len(sources), folder)
         folder.mkdir(parents=True, exist_ok=True)
@@ -93,13 +92,33 @@ def compiled_texts(
         included: files that others include: they are not compiled by themselves.
         progress: as there.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder) / file for file in texts]
-        for path in paths:
-            path.write_text(texts[path.name], encoding="utf-8")
-        sources = [path for path in paths if path.suffix == ".c" and path.name not in included]
-        headers = [path for path in paths if path not in sources]
-        return shared_object(name, sources, headers, compiler, progress)
+    sources = [file for file in texts if file.endswith(".c") and file not in included]
+    headers = [file for file in texts if file not in sources]
+    contents = [texts[file].encode() for file in (*sources, *headers)]
+    with suppress(OSError):
+        kept = _compiled_before(name, cache_folder(), _stem(name, compiler, contents))
+        if kept is not None:
+            return kept
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        for file, text in texts.items():
+            (folder / file).write_bytes(text.encode())
+        written = [folder / file for file in sources]
+        return shared_object(name, written, [folder / file for file in headers], compiler, progress)
+
+
+def _stem(name: str, compiler: str, contents: Sequence[bytes]) -> str:
+    """What the name of a library begins with, by all that it is compiled from."""
+    return f"{name}-{content_hash(compiler_words(compiler), FLAGS, contents)}"
+
+
+def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
+    """The library of the cache that was compiled before; None where there is none."""
+    kept = kept_file(folder, stem)
+    if kept is not None:
+        mark_used(kept)
+        LOG.info("%s was compiled before: %s", name, kept)
+    return kept
 
 
 def find_compiler(wanted: str | None = None) -> str:

@@ -6,6 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -266,6 +267,11 @@ class History:
         if self.coordinates is None:
             return positions[:, : self.model.size]
         return self.coordinates.positions_of_model(positions)
+
+    @cached_property
+    def paths_until(self) -> dict[float, Any]:
+        """Paths of tips and bodies by the duration up to which they are compared: several comparisons ask for them."""
+        return {}
 
     @cached_property
     def contacts(self) -> ContactRecord | None:

@@ -204,7 +204,11 @@ class Simulator:
 
     def paths(self, history: History) -> Paths:
         """Paths of tips and bodies, by which two motions are compared."""
-        return paths(history, watched_times(history, self.simulation.duration))
+        duration = self.simulation.duration
+        if duration not in history.paths_until:
+            history.paths_until[duration] = paths(history, watched_times(history, duration))
+        known: Paths = history.paths_until[duration]
+        return known
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:
         """The motion on this model to an error of its steps.

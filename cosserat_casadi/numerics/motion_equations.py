@@ -93,8 +93,10 @@ class MotionEquations:
         with np.errstate(all="ignore"):
             if self.residuals is not None:
                 return self.residuals(times, x, v, a)
-            stages = range(len(times))
-            return np.stack([self.residual(float(times[i]), x[i], v[i], a[i]) for i in stages])
+            rows = np.empty(x.shape)
+            for i, time in enumerate(times.tolist()):
+                rows[i] = self.residual(time, x[i], v[i], a[i])
+            return rows
 
     def linearised(self, instant: Instant) -> Linearisation:
         """The derivatives of F at an instant."""

@@ -10,6 +10,7 @@ section IV.8.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -74,7 +75,7 @@ class NewtonBounds:
 
     def length(self, change: FloatArray) -> float:
         """Largest weighted entry of changes of position, shape (…, n); not finite where one of them is not."""
-        return float(np.max(np.abs(change) * self.weights, initial=0.0))
+        return float((np.abs(change) * self.weights).max(initial=0.0))
 
 
 def solve_stages(
@@ -101,11 +102,11 @@ def solve_stages(
     for iteration in range(1, bounds.iterations + 1):
         stages = StepPolynomial(method, equations.differential, start, matrices.step, unknowns).stages
         residuals = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
-        largest = float(np.max(np.abs(residuals), initial=0.0))
+        largest = float(np.abs(residuals).max(initial=0.0))
         corrections = updates.applied_to(matrices.corrections(residuals))
         # A h²a is h times the change of v; that of x, A² h²a, is never larger, as no row of |A| has a sum above one.
         length = bounds.length(method.matrix @ corrections)
-        if not np.isfinite(length + largest):
+        if not math.isfinite(length + largest):
             return StageSolution(unknowns, StageOutcome.NOT_FINITE, iteration, contraction, largest)
         unknowns = unknowns + to_unknowns * corrections
         if iteration > 1:
