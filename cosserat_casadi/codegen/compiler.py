@@ -108,7 +108,7 @@ def compiled_texts(
 
 
 def _stem(name: str, compiler: str, contents: Sequence[bytes]) -> str:
-    """What the name of a library begins with, by all that it is compiled from."""
+    """Beginning of the name of a library, by its compiler and the contents of its sources."""
     return f"{name}-{content_hash(compiler_words(compiler), FLAGS, contents)}"
 
 

@@ -267,6 +267,15 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
     return [record.name for record in named[owner]] if owner in named else [""]
 
 
+SHARED = "_shared"
+"""Entry of the model, in the dictionary of another one, that writes the functions of both."""
+
+
+def share_functions(model: Any, kept: Any) -> None:
+    """Have a model take its functions from another one, of the same equations, which writes and keeps them."""
+    model.__dict__[SHARED] = kept
+
+
 @dataclass
 class NamedFunction:
     """A member of a model that is built when it is first asked for, and kept.
@@ -287,7 +296,9 @@ class NamedFunction:
         if model is None:
             return self
         built: ca.Function | dict[str, ca.Function] | None
-        if self.spec.owner is Owner.SCENE:
+        if SHARED in model.__dict__:
+            built = getattr(model.__dict__[SHARED], self.spec.name)
+        elif self.spec.owner is Owner.SCENE:
             built = self.spec.build(model)
         else:
             built = {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}

@@ -13,7 +13,7 @@ import casadi as ca
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
+from cosserat_casadi.model.function_table import SHARED, Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_memory import rubbing_at_nodes
 from cosserat_casadi.model.motion_energy import MotionEnergy
 from cosserat_casadi.model.scene_motion_equations import SceneMotionEquations
@@ -48,6 +48,9 @@ class MotionFunctions:
 
         Derivatives are not to be taken of it. A function that leaves computations out by a value stays as it is.
         """
+        kept: MotionFunctions | None = self.__dict__.get(SHARED)
+        if kept is not None:
+            return kept.inverse_dynamics_in_scalars
         function: ca.Function = self.inverse_dynamics
         return function if chooses(function) else function.expand()
 

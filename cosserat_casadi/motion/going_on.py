@@ -13,7 +13,7 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
@@ -21,6 +21,7 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.motion_start import resumed_start
+from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     Companion,
     Simulator,
@@ -111,7 +112,7 @@ def go_on(
     for strand in checkpoint.strands[1:]:
         other = model
         if strand.discretisation != first.discretisation:
-            other = build(scene, strand.discretisation, moving=True)
+            other = moving_model(scene, strand.discretisation)
         beside, told = gone_on(strand, other, "going on, for the error")
         if told.outcome is StepOutcome.INTERRUPTED:
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
@@ -143,7 +144,7 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
     if {rod.name for rod in scene.rods} != set(strand.discretisation):
         raise refused
     try:
-        model = build(scene, strand.discretisation, moving=True) if given is None else given
+        model = moving_model(scene, strand.discretisation) if given is None else given
     except ValueError as error:
         raise refused from error
     at = strand.resume.at

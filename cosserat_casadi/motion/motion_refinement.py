@@ -18,7 +18,7 @@ from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, seeing_
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
@@ -26,6 +26,7 @@ from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
+from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     COARSER,
     LEFT_BY_FINER,
@@ -227,7 +228,7 @@ def simulate(
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
-    coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)
+    coarsest = moving_model(moving_scene, discretise(moving_scene, 1, 2))
     simulation = scene.simulation
     check_simulation(coarsest, simulation)
     assert simulation is not None, "checked"
@@ -246,7 +247,7 @@ def simulate(
 def _with_fixed(search: _Search) -> Motion:
     """The motion on the modes and nodes of the user, with an error from a few modes more."""
     scene = search.scene
-    model = build(scene, discretise(scene), moving=True)
+    model = moving_model(scene, discretise(scene))
     simulator = _simulator(search, model, "on the scene's own modes")
     if not simulator.start.found:
         return not_started(model, simulator.start)
@@ -257,7 +258,7 @@ def _with_fixed(search: _Search) -> Motion:
     search.levels.append(level)
 
     finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
-    witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
+    witness = _simulator(search, moving_model(scene, finer), "with a few modes more, for the error")
     space_error = float("inf")
     if witness.start.found:
         # Its steps are controlled in any case: those of the user may be too long for more modes.
@@ -285,7 +286,7 @@ def _with_tolerance(search: _Search) -> Motion:
     while rung is not None:
         modes = ladder[rung]
         chosen, unseen = _next_modes(search, modes) if search.levels else (_uniform(search.scene, modes), 0.0)
-        model = build(search.scene, chosen, moving=True)
+        model = moving_model(search.scene, chosen)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
             # Sections of a few modes may not carry a rod that lies on them: more modes have more sections.

@@ -16,6 +16,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.moving_model import sharing
 from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
@@ -107,7 +108,8 @@ def given_start(model: Model, solution: Solution) -> Start:
 
 def _held(model: Model) -> Model:
     """The model of statics on the same discretisation: free bases are clamped, and are not unknowns."""
-    return model.changed(scenes.Scene.held)
+    held = model.changed(scenes.Scene.held)
+    return held if held.discrete.scaling is not None else sharing(held, moving=False)
 
 
 def _frees_bases(held: Model, model: Model) -> bool:

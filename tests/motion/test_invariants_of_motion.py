@@ -300,6 +300,25 @@ def test_rod_on_a_base_in_uniform_motion_moves_as_on_one_at_rest() -> None:
     assert_allclose(carried.tip().quaternion, still.tip().quaternion, rtol=0, atol=1e-9)
 
 
+def test_a_base_that_is_shaken_is_weight_that_turns() -> None:
+    """For who rides on the base: p = a (1 − cos ωt), and g − p̈ in place of g."""
+    scene = moving_scenes.scene(undamped(), loads=[moving_scenes.WEIGHT])
+    amplitude = np.array([0.02, -0.01, 0.0])
+    wave: dict[str, Any] = {"frequency": 2.0, "wave": "one_minus_cosine"}
+    shaken = {"input": "a.base.position", "amplitude": amplitude.tolist(), **wave}
+    turning = {
+        "input": "weight.acceleration",
+        "amplitude": (-((4.0 * np.pi) ** 2) * amplitude).tolist(),
+        "frequency": 2.0,
+        "phase": np.pi / 2.0,
+    }
+    ridden = simulated({**scene, "motions": [shaken]}, start="unloaded")
+    turned = simulated({**scene, "motions": [turning]}, start="unloaded")
+    base = amplitude * (1.0 - np.cos(4.0 * np.pi * ridden.times))[:, None]
+    assert np.abs(turned.tip().position[:, :2]).max() > 0.02
+    assert_allclose(ridden.tip().position - base, turned.tip().position, rtol=0, atol=8e-5)
+
+
 def test_turned_scene_moves_as_the_scene_does() -> None:
     """Base, weight and force turned by the same rotation: so is the path."""
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

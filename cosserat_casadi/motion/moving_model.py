@@ -1,0 +1,46 @@
+"""Models of motions: models of the same rods share their functions, however their inputs move and for how long.
+
+To write the functions of a small model takes longer than to step it through a second. The models that were asked for
+last are kept, so that a later motion of the same rods, or the next part of a long one, writes none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.function_table import share_functions
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene import Scene
+
+MOST_KEPT = 24
+"""Models whose functions are kept: those of a few searches for modes, in motion and at rest."""
+
+
+def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> Model:
+    """The model of a scene for a motion.
+
+    Args:
+        scene: with the inputs of its motions free.
+        discretisation: of every rod.
+    """
+    return sharing(build(scene, discretisation, moving=True), moving=True)
+
+
+def sharing(model: Model, *, moving: bool) -> Model:
+    """A model that shares its functions with models of the same rods.
+
+    Args:
+        model: without parameters, of numbers that are those of its scene.
+        moving: whether it was built for a motion.
+    """
+    still = model.scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
+    share_functions(model, _kept(still, tuple(model.discretisation.items()), moving))
+    return model
+
+
+@lru_cache(maxsize=MOST_KEPT)
+def _kept(scene: Scene, discretisation: tuple[tuple[str, Discretisation], ...], moving: bool) -> Model:
+    """A model by all that its functions depend on."""
+    return build(scene, dict(discretisation), moving=moving)
