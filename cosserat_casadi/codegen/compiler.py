@@ -113,7 +113,7 @@ def _stem(name: str, compiler: str, contents: Sequence[bytes]) -> str:
 
 
 def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
-    """The library of the cache that was compiled before; None where there is none."""
+    """The library that an earlier compilation left in the cache, if any."""
     kept = kept_file(folder, stem)
     if kept is not None:
         mark_used(kept)
