@@ -36,6 +36,14 @@ class MotionStatus(Enum):
     BAD_STEP = "The length of the step is no positive number of seconds."
     INCONSISTENT = "Supports, joints or cables are not closed: start from an equilibrium."
     NO_ACCELERATION = "A base, a length or a joint is moved, and its acceleration was not given: give it, zeros too."
+    PATH_VANISHED = (
+        "At the end of the step the rod is bent so far that the path of a tendon has no length left in it: lessen the "
+        "loads, or move the path nearer to the axis."
+    )
+    BEYOND_MATERIAL = (
+        "At the end of the step a strain, or the pressure in a chamber, is beyond where its law holds: lessen the "
+        "loads, or give the law for larger ones."
+    )
 
     @property
     def label(self) -> str:

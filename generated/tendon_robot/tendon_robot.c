@@ -72,18 +72,24 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The end of a solve in view of the strains: paths of tendons have length left, materials and chambers are within their laws. */
-static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
+/* The first limit that strains are beyond, those of paths of tendons before those of materials and chambers; else -1. */
+static int first_beyond(const real *x, const real *inputs, workspace *work) {
   real margins[4];
   ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
   RESULTS(margins);
-  if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
   CALL(tendon_robot_k_strain_margins);
-  /* Those of paths come first. */
   for (int i = 0; i < 4; i++) {
-    if (margins[i] <= (real)0.001) return i < 4 ? SOLVER_PATH_VANISHED : SOLVER_BEYOND_MATERIAL;
+    if (margins[i] <= (real)0.001) return i;
   }
-  return end;
+  return -1;
+}
+
+/* The end of a solve in view of the strains: paths of tendons have length left, materials and chambers are within their laws. */
+static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
+  if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
+  const int beyond = first_beyond(x, inputs, work);
+  if (beyond < 0) return end;
+  return beyond < 4 ? SOLVER_PATH_VANISHED : SOLVER_BEYOND_MATERIAL;
 }
 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */

@@ -399,6 +399,9 @@ static solver_motion_status take_step(const step_start *whole, solver_state *sta
     info->parts = count;
     status = take_parts(count, whole, state, chosen, memory, work, info);
   }
+#ifdef STRAINS_HAVE_LIMITS
+  if (status == SOLVER_MOTION_DONE) status = step_within_limits(&work->at, work);
+#endif
   if (status != SOLVER_MOTION_DONE) {
     memory->jacobian_size = 0;
     return status;
