@@ -10,12 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import final
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import offset_at
-from cosserat_casadi.loads.load import coefficients, legendre_series
+from cosserat_casadi.loads.load import coefficients, combined, legendre_series
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Numbers, among, is_zero, rows_of, stacked_rows
+from cosserat_casadi.maths.splines import spline_basis
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import StrainSum
 
@@ -43,15 +46,19 @@ class MuscleActuator(Actuator[scenes.Muscle]):
 
 
 def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
-    """Work of a unit of activation, for a profile of Legendre coefficients, shape (1, degrees)."""
+    """Work of a unit of activation, for a profile of Legendre coefficients, or of values at knots, shape (1, k)."""
     nodes = grid.nodes_in(*actuator.span)
     X = grid.nodes_at(nodes)
-    (profile,) = rows_of(legendre_series(series, X))
+    if actuator.knots is None:
+        along = legendre_series(series, X)
+    else:
+        along = combined(series, spline_basis(np.array(actuator.knots), X))
+    (profile,) = rows_of(along)
     offset, _ = offset_at(actuator, X)
     x, y = rows_of(offset)
     fx, fy, fz = actuator.force
     lx, ly, lz = actuator.moment
     stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
     components = [c for c, stress in enumerate(stresses) if not is_zero(stress)]
-    along = [stresses[c] * profile for c in components]
-    return StrainSum(components, among(stacked_rows(along), nodes, grid.size))
+    rows = [stresses[c] * profile for c in components]
+    return StrainSum(components, among(stacked_rows(rows), nodes, grid.size))

@@ -291,10 +291,14 @@ def polynomials_at(count: int, X: Numbers) -> Numbers:
 
 def legendre_series(series: Numbers, X: Numbers) -> Numbers:
     """Series of Legendre polynomials in 2X − 1 at abscissae, from coefficients (m, k): shape (m, len(X))."""
-    table = polynomials_at(series.shape[1], X)
-    if any_symbolic([series, table]):
-        return as_matrix(series) @ as_matrix(table)
-    return known(series) @ known(table)
+    return combined(series, polynomials_at(series.shape[1], X))
+
+
+def combined(weights: Numbers, functions: Numbers) -> Numbers:
+    """Functions (k, n) that are given at n abscissae, with weights (m, k): shape (m, n)."""
+    if any_symbolic([weights, functions]):
+        return as_matrix(weights) @ as_matrix(functions)
+    return known(weights) @ known(functions)
 
 
 def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers:

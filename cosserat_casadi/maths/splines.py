@@ -1,4 +1,4 @@
-"""Tables of values over time as piecewise polynomials, and how near to zero such a polynomial comes."""
+"""Tables of values over time or along a rod as piecewise polynomials, and how near to zero one of them comes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable
 from typing import Literal
 
+import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 
 Interpolation = Literal["linear", "cubic", "step"]
@@ -72,6 +74,28 @@ def table_values(
         return found
 
     return at
+
+
+def spline_basis(knots: FloatArray, X: Numbers) -> Numbers:
+    """Weights of the values at knots in the cubic spline through them, as :func:`table_values` has it.
+
+    Args:
+        knots: ascending, shape (k,).
+        X: places, shape (n,), numbers or expressions.
+
+    Returns:
+        shape (k, n).
+    """
+    coefficients = table_coefficients(knots, np.eye(len(knots)), "cubic")[1:-1]
+    first = np.zeros((len(knots), 1))
+    first[0] = 1.0
+    weights = as_matrix(first @ np.ones((1, X.shape[0])))
+    for start, length, (_, *powers) in zip(knots[:-1], np.diff(knots), coefficients, strict=True):
+        # Each segment adds what the spline gains in it, up to X. At a knot the segment before it has the slope.
+        gone = ca.fmin(ca.fmax(0.0, as_matrix(X) - start), length)
+        for degree, power in enumerate(powers, 1):
+            weights = weights + ca.DM(power) @ (gone**degree).T
+    return weights if is_symbolic(X) else ca.DM(weights).full()
 
 
 def least_norm(path: Callable[[FloatArray], FloatArray], cuts: FloatArray) -> tuple[float, float]:

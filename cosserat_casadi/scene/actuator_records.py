@@ -284,6 +284,25 @@ reference_pressure = 2.0e4
             yield Fault(("reference_pressure",), "stands without area_growth and offset_growth", "leave it out")
 
 
+def _faults_of_knots(given: Table) -> Iterator[Fault]:
+    """Knots ascend from the beginning of the span to its end, and each has a value."""
+    knots = numbers_of(given.get("knots"))
+    span = numbers_of(given.get("span", [0.0, 1.0]))
+    profile = given.get("profile")
+    if len(knots) < 2:
+        yield Fault(("knots",), f"must be at least 2 abscissae, got {len(knots)}", "leave them out for one value")
+        return
+    for i, (before, at) in enumerate(itertools.pairwise(knots), 1):
+        if not at > before:
+            yield Fault(("knots", i), f"must be > {shown(before)}, the knot before it, got {shown(at)}")
+    if len(span) == 2 and not (knots[0] <= span[0] and span[1] <= knots[-1]):
+        problem = f"must reach over its span, {span[0]:g} to {span[1]:g}, got {knots[0]:g} to {knots[-1]:g}"
+        yield Fault(("knots",), problem)
+    if not isinstance(profile, list | tuple) or len(profile) != len(knots):
+        got = len(profile) if isinstance(profile, list | tuple) else shown(profile)
+        yield Fault(("profile",), f"must be a list of {len(knots)} values, one for each knot, got {got}")
+
+
 @ACTUATORS.register
 class Muscle(ActuatorRecord):
     """An active moment and force in the sections of a rod: activation × profile(X) × (moment, force)."""
@@ -314,7 +333,13 @@ profile = { base = 1.0, tip = 0.2 }
     )
     profile: LegendreComponent = Field(
         1.0,
-        description="factor on both along the rod, without unit; a list is of Legendre coefficients in 2X − 1",
+        description="factor on both along the rod, without unit; a list is of Legendre coefficients in 2X − 1, or of "
+        "values at knots",
+    )
+    knots: tuple[Share, ...] | None = Field(
+        None,
+        description="abscissae X, ascending over its span, without unit, at which profile lists its values: a cubic "
+        "spline between them, whose slope is zero at both ends",
     )
     offset: Offset = Field(
         (0.0, 0.0),
@@ -325,8 +350,16 @@ profile = { base = 1.0, tip = 0.2 }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A muscle has a force or a moment."""
+        """A muscle has a force or a moment, and as many values as knots."""
         yield from force_or_moment(given)
+        if "knots" in given:
+            yield from _faults_of_knots(given)
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """Knots stay where they are."""
+        if key == "knots":
+            return "is where the values of profile stand", "let the values be parameters: profile"
+        return super().parameter_refusal(key)
 
 
 # The type checker knows the kinds that ship; a scene may hold any that is registered.

@@ -29,7 +29,8 @@ def make_room_for_waves(tables: dict[str, Any]) -> None:
         name, _, field = motion.input.partition(".")
         record, owner = owners_of(scene).get(name, (None, {}))
         declared = None if record is None else record.inputs.get(field)
-        if declared is not None and declared.polynomial and isinstance(owner, dict):
+        # Values at knots are no coefficients; the rules refuse waves of them.
+        if declared is not None and declared.polynomial and isinstance(owner, dict) and "knots" not in owner:
             value = owner.get(field, [0.0] * declared.components)
             owner[field] = _filled_up(value, declared, motion.degrees)
 

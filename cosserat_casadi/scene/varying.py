@@ -46,6 +46,9 @@ def _of_record(record: Record, table: Mapping[str, Any], owner: str) -> Iterator
         mark = varying_mark(field)
         if mark is None:
             yield from _of_contents(getattr(record, name), written, where)
+        elif "knots" in table and not varies_by_component(field):
+            # Values at knots have one meaning.
+            continue
         elif varies_by_component(field):
             for i, component in enumerate(written):
                 yield from _of_value(component, mark, unit_of(field), f"{where}[{i}]")

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
+from scipy.integrate import quad
+from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 
 from cosserat_casadi import SceneError, build, scene_from_dict, simulate, solve
@@ -57,9 +59,31 @@ def test_a_muscle_of_stiffness_times_curvature_is_an_unloaded_curvature() -> Non
     assert_allclose(found.tip().position, wanted.tip().position, rtol=0, atol=1e-9)
 
 
-def test_a_profile_may_be_free() -> None:
+def test_values_at_knots_are_those_of_a_spline() -> None:
+    """The curvature is moment over stiffness times SciPy's spline, wherever elements end, and the tip its integral."""
+    knots, values = [0.0, 0.3, 0.45, 1.0], [0.2, 1.5, -0.4, 0.8]
+    curvature = 0.6 / STIFFNESS["bending_y"]
+    turned = CubicSpline(knots, curvature * np.array(values), bc_type="clamped").antiderivative()
+    tables = with_muscle(strain="planar", profile=values, knots=knots).model_dump(by_alias=True, exclude_unset=True)
+    solution = solve(scene_from_dict({**tables, "accuracy": {"tolerance": 1e-6}}))
+    x, _ = quad(lambda X: 0.8 * np.sin(0.8 * turned(X)), 0.0, 1.0, epsabs=1e-12)
+    z, _ = quad(lambda X: 0.8 * np.cos(0.8 * turned(X)), 0.0, 1.0, epsabs=1e-12)
+    assert_allclose(solution.tip().position[0], [x, 0.0, z], rtol=0, atol=1e-6)
+    # The same numbers as parameters, with nodes that one of them moves.
+    tables["parameters"] = ["muscle.profile[1]", "muscle.span.end"]
+    (muscle,) = tables["actuators"]
+    tables["actuators"] = [{**muscle, "profile": [0.2, 0.0, -0.4, 0.8], "span": [0.0, 0.9]}]
+    model = build(scene_from_dict(tables)).at({"muscle.profile[1]": 1.5, "muscle.span.end": 0.7})
+    tables |= {"actuators": [{**muscle, "span": [0.0, 0.7]}], "parameters": []}
+    shorter = solve(build(scene_from_dict(tables)))
+    assert_allclose(solve(model).tip().position, shorter.tip().position, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("knots", [None, [0.0, 0.2, 1.0]])
+def test_a_profile_may_be_free(knots: list[float] | None) -> None:
     """Value and derivative are those of scenes with these numbers."""
-    tables = with_muscle(push(), profile=[1.0, 0.2, 0.0]).model_dump(by_alias=True, exclude_unset=True)
+    at_knots = {} if knots is None else {"knots": knots}
+    tables = with_muscle(push(), profile=[1.0, 0.2, 0.0], **at_knots).model_dump(by_alias=True, exclude_unset=True)
     model = build(scene_from_dict({**tables, "inputs": ["muscle.profile", "muscle.activation"]}))
     inputs = np.array([0.4, -0.3, 0.5, 0.9])
     solution = solve(model, inputs)
@@ -195,6 +219,30 @@ def test_waves_that_cannot_be_are_refused(motion: dict[str, Any], sentence: str)
 def test_a_muscle_without_moment_and_force_is_refused() -> None:
     with pytest.raises(SceneError, match="give force, moment or both"):
         scene(actuators=[{key: value for key, value in MUSCLE.items() if key != "moment"}])
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"knots": [0.0]}, "knots: must be at least 2 abscissae, got 1"),
+        ({"knots": [0.0, 0.6, 0.5]}, "knots[2]: must be > 0.6, the knot before it, got 0.5"),
+        ({"knots": [0.0, 0.5, 0.9]}, "knots: must reach over its span, 0 to 1, got 0 to 0.9"),
+        ({"knots": [0.0, 1.0]}, "profile: must be a list of 2 values, one for each knot, got 3"),
+        ({"profile": {"base": 1.0, "tip": 0.0}}, "profile: must be a list of 3 values, one for each knot"),
+    ],
+)
+def test_knots_that_cannot_be_are_refused(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        with_muscle(**{"knots": [0.0, 0.5, 1.0], "profile": [1.0, 0.0, 1.0], **changes})
+    assert sentence in str(refused.value)
+
+
+def test_waves_and_parameters_leave_knots_alone() -> None:
+    tables = with_muscle(profile=[1.0, 0.2], knots=[0.0, 1.0]).model_dump(by_alias=True, exclude_unset=True)
+    with pytest.raises(SceneError, match=r"muscle\.profile has values at knots"):
+        scene_from_dict({**tables, "motions": [WAVE]})
+    with pytest.raises(SceneError, match="is where the values of profile stand"):
+        scene_from_dict({**tables, "parameters": ["muscle.knots"]})
 
 
 def test_a_free_rod_that_may_spin_without_inertia_is_refused() -> None:

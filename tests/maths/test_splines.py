@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, interp1d
 
-from cosserat_casadi.maths.splines import Interpolation, least_norm, table_values
+from cosserat_casadi.maths.splines import Interpolation, least_norm, spline_basis, table_values
 from cosserat_casadi.maths.typing import FloatArray
 
 KNOTS = np.array([0.1, 0.4, 0.5, 1.3])
@@ -33,6 +34,22 @@ def test_values_are_those_of_scipy(interpolation: Interpolation) -> None:
     times = np.linspace(-0.2, 1.6, 181)
     found = table_values(KNOTS, values, interpolation)(times)
     assert_allclose(found, of_scipy(values, interpolation, times), rtol=1e-12, atol=1e-12)
+
+
+def test_weights_of_values_at_knots_are_those_of_scipy() -> None:
+    """At numbers and at an expression, with its slope, which is one at knots too."""
+    values = drawn(2)[:, 0]
+    places = np.concatenate([np.linspace(0.0, 1.4, 29), KNOTS])
+    wanted = of_scipy(values, "cubic", places)
+    assert_allclose(values @ spline_basis(KNOTS, places), wanted, rtol=0, atol=1e-13)
+    X = ca.MX.sym("X")
+    along = ca.DM(values).T @ spline_basis(KNOTS, X)
+    function = ca.Function("along", [X], [along, ca.jacobian(along, X)])
+    value, slope = function.map(len(places))(ca.DM(places).T)
+    assert_allclose(value.full()[0], wanted, rtol=0, atol=1e-13)
+    inside = CubicSpline(KNOTS, values, bc_type="clamped")(places, 1)
+    wanted = np.where((places > KNOTS[0]) & (places < KNOTS[-1]), inside, 0.0)
+    assert_allclose(slope.full()[0], wanted, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
