@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow, scene_from_dict, solve
 from cosserat_casadi.equilibrium.relax import energy_at
@@ -114,6 +117,37 @@ def test_solve_of_a_model_settles_only_if_asked() -> None:
     assert bent.stable is True
     assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), column_tip(2.0), rtol=0, atol=1e-7)
     assert solve(model, {"push.force": [0.1, 0, 0]}, stable=True).message == Outcome.CONVERGED.value
+
+
+def buckled_tip(push: float, tangent: Callable[[float], float]) -> FloatArray:
+    """Place x, z of the tip of a column of length 1 with a tangent stiffness by curvature, by shooting from its tip."""
+
+    def from_tip(angle: float) -> FloatArray:
+        """Angle at the base, and the way from base to tip."""
+        places = solve_ivp(
+            lambda _, y: [-y[1], push * np.sin(y[0]) / tangent(y[1]), np.sin(y[0]), np.cos(y[0])],
+            (0.0, 1.0),
+            [angle, 0.0, 0.0, 0.0],
+            rtol=1e-10,
+            atol=1e-12,
+        )
+        return np.asarray(places.y[[0, 2, 3], -1])
+
+    return from_tip(brentq(lambda angle: float(from_tip(angle)[0]), 0.1, 2.5, xtol=1e-12))[1:]
+
+
+def test_column_of_a_law_that_stiffens_settles_where_shooting_ends() -> None:
+    """It buckles at Euler's load, as its tangent at rest is that of a linear one, and yields less beyond."""
+    matter = {"law": "polynomial", "terms": [{"bending_y": 4, "coefficient": 0.05}], "youngs_modulus": 4 / np.pi}
+    upright = {"name": "rod", "length": 1.0, "strain": "planar", "section": {"shape": "circle", "radius": 1.0}}
+    rods = [{**upright, "material": {**matter, "poisson_ratio": 0.5}}]
+    wanted = scene(push(force=[0, 0, -1.2 * CRITICAL]), rods=rods)
+    straight, bent = solve(wanted), solve(wanted, stable=True)
+    assert (straight.converged, straight.stable) == (True, False)
+    assert (bent.converged, bent.stable) == (True, True)
+    x, z = buckled_tip(1.2 * CRITICAL, lambda curvature: 1.0 + 0.6 * curvature**2)
+    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), [x, z], rtol=0, atol=1e-5)
+    assert x < 0.8 * column_tip(1.2)[0]
 
 
 def test_dead_moment_in_the_plane_settles_without_a_written_energy() -> None:
