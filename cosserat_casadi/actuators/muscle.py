@@ -2,13 +2,13 @@
 
 A muscle of activation a has in each section the active moment a p(X) (l + D × f) and the active force a p(X) f, in
 section axes, beside the elastic ones. Its work on the rod is a W with W = ℓ ∫ p ((l + D × f)·K + f·Γ) dX. A moment
-K_b κ₀(X) is the same as an unloaded curvature κ₀(X).
+K_b κ₀(X) is the same as an unloaded curvature κ₀(X), which the scene may give instead.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import final
+from collections.abc import Mapping, Sequence
+from typing import Any, final
 
 import numpy as np
 
@@ -59,6 +59,11 @@ def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
     fx, fy, fz = actuator.force
     lx, ly, lz = actuator.moment
     stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
-    components = [c for c, stress in enumerate(stresses) if not is_zero(stress)]
-    rows = [stresses[c] * profile for c in components]
-    return StrainSum(components, among(stacked_rows(rows), nodes, grid.size))
+    strains = [*actuator.curvature, 0.0, 0.0, 0.0]
+    components = [c for c in range(6) if not is_zero(stresses[c]) or not is_zero(strains[c])]
+
+    def everywhere(numbers: Sequence[Any]) -> Numbers:
+        return among(stacked_rows([numbers[c] * profile for c in components]), nodes, grid.size)
+
+    unloaded = None if is_zero(strains) else everywhere(strains)
+    return StrainSum(components, everywhere(stresses), unloaded=unloaded)

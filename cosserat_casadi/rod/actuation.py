@@ -15,7 +15,18 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, known, product, row_times, rows_of
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    column,
+    known,
+    product,
+    repeated,
+    row_times,
+    rows_of,
+)
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench
@@ -136,17 +147,19 @@ class Actuation:
 
 @dataclass(frozen=True)
 class StrainSum:
-    """A quantity that is linear in the strains: L = ℓ Σ_c f_c Σ_k w_k g_ck ξ_ck.
+    """A quantity that is linear in the strains: L = ℓ Σ_c f_c Σ_k w_k (g_ck + H_ck ε_ck) ξ_ck.
 
     Attributes:
         components: the strains c that it depends on.
         densities: g, shape (len(components), M), numbers or expressions.
         factors: f, one for each component, such as what an input makes of constant densities; None where all are 1.
+        unloaded: ε, shaped as the densities: strains whose stress the rod's Hooke tensor H gives; None without any.
     """
 
     components: Sequence[int]
     densities: Numbers
     factors: Sequence[Scalar] | None = None
+    unloaded: Numbers | None = None
 
     def on(self, shape: Shape) -> StrainSumOnRod:
         """The quantity on a rod of this shape."""
@@ -205,6 +218,15 @@ class StrainSumOnRod(Lossless):
 
     @property
     def _weighted(self) -> list[Numbers]:
-        """ℓ w g of each component, shape (M,)."""
-        lengths = self.shape.rod.reference_lengths
-        return [row_times(lengths, row) for row in rows_of(self.quantity.densities)]
+        """ℓ w (g + H ε) of each component, shape (M,)."""
+        rod = self.shape.rod
+        rows = rows_of(self.quantity.densities)
+        if self.quantity.unloaded is not None:
+            hooke = rod.properties.hooke(rod.grid.nodes)
+            for i, (c, strain) in enumerate(
+                zip(self.quantity.components, rows_of(self.quantity.unloaded), strict=True)
+            ):
+                stress = row_times(repeated(column(hooke, c), rod.grid.size), strain)
+                symbolic = any_symbolic([rows[i], stress])
+                rows[i] = as_matrix(rows[i]) + as_matrix(stress) if symbolic else known(rows[i]) + known(stress)
+        return [row_times(rod.reference_lengths, row) for row in rows]

@@ -305,7 +305,7 @@ def _faults_of_knots(given: Table) -> Iterator[Fault]:
 
 @ACTUATORS.register
 class Muscle(ActuatorRecord):
-    """An active moment and force in the sections of a rod: activation × profile(X) × (moment, force)."""
+    """An active moment and force, or an unloaded curvature: activation × profile(X) × its value at activation 1."""
 
     example: ClassVar[str] = """\
 [[actuators]]
@@ -331,9 +331,13 @@ profile = { base = 1.0, tip = 0.2 }
     force: Vector = Field(
         (0.0, 0.0, 0.0), description="force in section axes that shears and stretches the rod at activation 1, N"
     )
+    curvature: Vector = Field(
+        (0.0, 0.0, 0.0),
+        description="unloaded curvature about the section axes that is added to the rod's at activation 1, 1/m",
+    )
     profile: LegendreComponent = Field(
         1.0,
-        description="factor on both along the rod, without unit; a list is of Legendre coefficients in 2X − 1, or of "
+        description="factor on these along the rod, without unit; a list is of Legendre coefficients in 2X − 1, or of "
         "values at knots",
     )
     knots: tuple[Share, ...] | None = Field(
@@ -350,10 +354,22 @@ profile = { base = 1.0, tip = 0.2 }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A muscle has a force or a moment, and as many values as knots."""
-        yield from force_or_moment(given)
+        """A muscle has a force, a moment or a curvature, and as many values as knots."""
+        if "curvature" not in given:
+            yield from force_or_moment(given)
         if "knots" in given:
             yield from _faults_of_knots(given)
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """An unloaded curvature is a moment where the stiffness is one number for each strain."""
+        _, rod = scene.named("rods").get(str(given.get("rod")), (0, {}))
+        material = rod.get("material")
+        law = material.get("law", "linear") if isinstance(material, Mapping) else "linear"
+        if "curvature" in given and (law != "linear" or "stiffness_matrix" in rod):
+            yield Fault(
+                ("curvature",), "is for a rod with one stiffness for each strain", "give the moment that it has"
+            )
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
         """Knots stay where they are."""

@@ -59,6 +59,54 @@ def test_a_muscle_of_stiffness_times_curvature_is_an_unloaded_curvature() -> Non
     assert_allclose(found.tip().position, wanted.tip().position, rtol=0, atol=1e-9)
 
 
+TAPERED = {
+    "name": "rod",
+    "length": 0.3,
+    "strain": "kirchhoff",
+    "material": {"youngs_modulus": 1.2e6, "poisson_ratio": 0.4, "density": 1000.0},
+    "section": {"shape": "circle", "radius": {"base": 8e-3, "tip": 5e-3}},
+    "damping": {"retardation_time": 0.2},
+}
+CURVED = {"name": "muscle", "kind": "muscle", "rod": "rod", "curvature": [0.0, 2.0, 1.0], "profile": [1.5, 0.4, -0.3]}
+TIP_LOAD = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.02, 0.03, 0.01]}
+
+
+def curved(at_once: bool, **more: Any) -> Scene:
+    """A tapered rod of an unloaded curvature that a muscle has, or the rod itself."""
+    profile = np.array(CURVED["profile"])
+    own = [0.0, {"legendre": (2.0 * profile).tolist()}, {"legendre": profile.tolist()}]
+    rods = [{**TAPERED, "intrinsic": {"curvature": own}} if at_once else TAPERED]
+    tables = {"schema": 1, "accuracy": {"modes": 6, "nodes": 12}, "rods": rods, "loads": [TIP_LOAD]}
+    return scene_from_dict({**tables, "actuators": [] if at_once else [CURVED], **more})
+
+
+def test_the_curvature_of_a_muscle_is_an_unloaded_curvature() -> None:
+    """Of a tapered rod under a load, with the modulus that a parameter gives; over time it goes there from straight."""
+    named = {"parameters": ["rod.material.youngs_modulus"]}
+    softer = {"rod.material.youngs_modulus": 0.7e6}
+    wanted, found = (solve(build(curved(at_once, **named)).at(softer)) for at_once in (True, False))
+    assert_allclose(found.tip().position, wanted.tip().position, rtol=0, atol=1e-9)
+    ramp = {"input": "muscle.activation", "times": [0.0, 0.2], "values": [0.0, 1.0], "interpolation": "cubic"}
+    course = {"duration": 3.0, "times": [0.0, 3.0], "tolerance": 1e-3}
+    motion = simulate(build(curved(False, motions=[ramp], simulation=course).with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    begin, end = motion.tip("rod").position
+    assert np.abs(end - begin).max() > 0.05
+    assert_allclose(end, solve(build(curved(True))).tip().position[0], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "rod_table",
+    [
+        {**TAPERED, "material": {"law": "neo_hookean", "youngs_modulus": 1.2e6, "density": 1000.0}},
+        {"name": "rod", "length": 0.3, "strain": "planar", "stiffness_matrix": [[1.0]]},
+    ],
+)
+def test_the_curvature_of_a_muscle_is_refused_beside_a_law(rod_table: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match=r"curvature: is for a rod with one stiffness for each strain"):
+        scene_from_dict({"schema": 1, "rods": [rod_table], "actuators": [CURVED]})
+
+
 def test_values_at_knots_are_those_of_a_spline() -> None:
     """The curvature is moment over stiffness times SciPy's spline, wherever elements end, and the tip its integral."""
     knots, values = [0.0, 0.3, 0.45, 1.0], [0.2, 1.5, -0.4, 0.8]
