@@ -395,7 +395,8 @@ def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, A
         "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
         "defaults": ", ".join(initialiser(value, names) for value in values) or "0",
-        "axes_note": "Polynomials along the rod are Legendre coefficients in 2X − 1, three numbers for each degree."
+        "axes_note": "Lists along the rod are Legendre coefficients in 2X − 1, all components of one degree after "
+        "another, or values at knots."
         if polynomial
         else "Section axes turn with the rod.",
     }
