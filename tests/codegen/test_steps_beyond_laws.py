@@ -73,8 +73,8 @@ def stepped(made: Exported, moment: float, pressure: float, count: int, step: fl
 def test_steps_of_a_law_vs_simulate(lattice: Exported) -> None:
     """The path of the tip is that of the simulator, and not that of a linear law."""
     ends = []
-    for law in (LATTICE, {"density": 1000.0}):
-        tables = described(duration=0.1, times=[0.1], tolerance=1e-7)
+    for law, tolerance in ((LATTICE, 1e-7), ({"density": 1000.0}, 1e-4)):
+        tables = described(duration=0.1, times=[0.1], tolerance=tolerance)
         tables["rods"] = [rod(law, CIRCLE, "planar", damping={"retardation_time": 0.01})]
         tables["loads"] = [{**PUSH, "moment": [0.0, 0.02, 0.0]}]
         motion = simulate(build(scene_from_dict(tables), moving=True))
