@@ -4,54 +4,38 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import build
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.drawn_model import drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
-from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
+from cosserat_casadi.view.answers import accuracy_of, state_of
+from cosserat_casadi.view.robot_session import RobotSession
 
 ALONG_LINE = 25
 """Points at which a stretch of contact is drawn."""
 
 
-@dataclass
-class ContactSession:
+class ContactSession(RobotSession):
     """A robot that touches obstacles and is moved from a browser.
 
     The contacts are unknowns, which the compiled library does not look for: :func:`cosserat_casadi.solve` does, from
     those of the last equilibrium.
-
-    Attributes:
-        first: the equilibrium at the scene's own inputs, with its contacts.
-        asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
 
-    first: Solution
-    asked: Given | None = None
-    model: Model = field(init=False)
-    _present: Solution = field(init=False)
-
     def __post_init__(self) -> None:
-        first = self.first.model
-        # As the scene's file has it: contacts come and go.
-        self.model = build(without_contacts(first.scene), first.discretisation)
-        self._present = self.first
-
-    @property
-    def input_count(self) -> int:
-        """Numbers in the stacked inputs; forces of contacts, which are found, are not among them."""
-        return self.model.inputs.size
+        super().__post_init__()
+        # As the scene's file has it: contacts come and go, and their forces are no inputs.
+        self.model = build(without_contacts(self.first.model.scene), self.first.model.discretisation)
 
     def facts(self) -> dict[str, Any]:
         """Facts of the scene for its page, which offers only the questions that this session answers."""
@@ -65,18 +49,10 @@ class ContactSession:
         offered = {"hand": [], "motion": False, "modes": False, "derivatives": False}
         return {**page_facts(self.first, self.model, self.asked), **offered, "note": note}
 
-    def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs, whose contacts are tried from those of the last one on."""
-        given = stacked_inputs(inputs)
-        before = self._present if self._present.converged else self.first
-        return self._accepted(given, before)
-
     def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs from the one at the scene's own inputs, whatever was before."""
-        return self._accepted(stacked_inputs(inputs), self.first)
-
-    def derivatives(self) -> None:
-        """There are none: a contact that begins or ends has a derivative to one side alone."""
+        self._present = self.first
+        return self.move(inputs)
 
     def eigenvalues(self) -> list[float] | None:
         """The smallest eigenvalue of the second variation, contacts held; None where stability has no meaning."""
@@ -86,22 +62,28 @@ class ContactSession:
         return [smallest]
 
     def accuracy(self) -> dict[str, Any]:
-        """The estimated error of the present equilibrium, as :meth:`Session.accuracy` tells it."""
+        """The estimated error of the present equilibrium, whose contacts are no inputs of the model."""
         if not self._present.converged:
             return accuracy_of(None)
         given = self._present.model.inputs.split(self._present.inputs)
         values = {name: given[name] for name in self.model.inputs.names}
         return accuracy_of(solve(self.model, values, start=self._present))
 
-    def _accepted(self, given: FloatArray, start: Solution) -> dict[str, Any]:
+    def _followed(self, given: FloatArray) -> None:
+        """No way is followed: a solve begins at the last equilibrium."""
+
+    def _solved(self, given: FloatArray) -> Solution:
+        """The equilibrium for inputs, whose contacts are tried from those of the last one on."""
+        before: Solution = self._last
         if np.all(np.isfinite(given)):
-            found = solve(self.model, given, start=start, estimate_error=False)
-        else:
-            found = replace(start, outcome=Outcome.NOT_FINITE, message=Outcome.NOT_FINITE.value)
+            return solve(self.model, given, start=before, estimate_error=False)
+        return replace(before, outcome=Outcome.NOT_FINITE, message=Outcome.NOT_FINITE.value)
+
+    def _accepted(self, given: FloatArray, found: Solution, *, anew: bool) -> dict[str, Any]:
         self._present = found
         numbers = drawn_numbers(self.model, found)
         contacts = [_drawn_contact(found, contact) for contact in found.contacts]
-        return {**state_of(found, numbers, anew=False), "text": found.message, "contacts": contacts}
+        return {**state_of(found, numbers, anew=anew), "text": found.message, "contacts": contacts}
 
 
 def _drawn_contact(solution: Solution, contact: Contact) -> dict[str, Any]:

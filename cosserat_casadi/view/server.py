@@ -15,6 +15,7 @@ import socket
 import sys
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
@@ -24,10 +25,8 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
-from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.questions import Question, QuestionError
-from cosserat_casadi.view.tube_session import TubeSession
-from cosserat_casadi.view.view_session import ViewSession
+from cosserat_casadi.view.robot_session import RobotSession
 
 HOST = "127.0.0.1"
 """Nobody else's machine reaches it."""
@@ -70,7 +69,7 @@ class Desk:
         policy: what the page may do, as the header Content-Security-Policy says it.
     """
 
-    session: ViewSession | ContactSession | TubeSession
+    session: RobotSession
     page: bytes = field(init=False)
     policy: str = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
@@ -93,44 +92,22 @@ class Desk:
             QuestionError: there is no such question, or something it needs is missing or wrong.
         """
         session = self.session
-        if name == "motion" and isinstance(session, ViewSession):
-            # It may take a minute, in which the robot can be moved: it has a model of its own.
-            return _refusable(session.motion)
-        if name == "refined" and isinstance(session, ViewSession):
-            # The robot can be moved while modes are chosen: what it is then refined for counts no more.
-            inputs = question.inputs(session.input_count)
-            with self._lock:
-                near = session.present
-            return _refusable(lambda: session.refined(inputs, near))
-        with self._lock:
-            if name in ("move", "reset"):
-                inputs = question.inputs(session.input_count)
-                answer = session.move if name == "move" else session.reset
-                return _refusable(lambda: answer(inputs))
-            if name == "derivatives":
-                return session.derivatives()
-            if name == "eigenvalues":
-                return session.eigenvalues()
-            if name == "accuracy":
-                return session.accuracy()
-            if name == "reach" and isinstance(session, ViewSession | TubeSession):
-                pose = question.pose(_pose_names(session))
-                position = question.position()
-                return _refusable(lambda: session.reach(pose, position))
-            if name == "modes" and isinstance(session, ViewSession):
-                return _refusable(session.modes)
-        raise QuestionError("the page asks no such question")
+        if name not in session.questions:
+            raise QuestionError("the page asks no such question")
+        given: list[Any] = []
+        if name in ("move", "reset", "refined"):
+            given = [question.inputs(session.input_count)]
+        elif name == "reach":
+            given = [question.pose(session.pose_names), question.position()]
+        # A motion and other modes may take a minute, in which the robot can be moved: they have models of their own.
+        at_once = name not in ("motion", "refined")
+        with self._lock if at_once else nullcontext():
+            return _refusable(getattr(session, name), *given)
 
 
-def _pose_names(session: ViewSession | TubeSession) -> dict[str, list[str]]:
-    """Names of what can be led to a point, by kind."""
-    scene = session.first.model.scene
-    return {"rod": list(session.first.model.lengths), "body": [body.name for body in scene.bodies]}
-
-
-def _refusable(answer: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def _refusable(method: Callable[..., Any], *given: Any) -> Any:
     try:
-        return answer()
+        return method(*given)
     except CosseratError as error:
         return {"refused": str(error)}
 
@@ -161,7 +138,7 @@ def _digest(text: str) -> str:
 class RobotServer(ThreadingHTTPServer):
     """A server of a session's page, ready to serve."""
 
-    def __init__(self, session: ViewSession | ContactSession | TubeSession, port: int = 0) -> None:
+    def __init__(self, session: RobotSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
         self._secret = secrets.token_urlsafe(SECRET_BYTES)

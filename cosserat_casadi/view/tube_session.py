@@ -2,53 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.control.inverse import search_near
-from cosserat_casadi.control.inverse_result import with_verdict
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.page.page_facts import facts_of_every_page, rounded, target_points
-from cosserat_casadi.page.slider_ranges import Slider, movable
+from cosserat_casadi.page.slider_ranges import Slider
 from cosserat_casadi.plots.colours import rod_colour
 from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_arrows import ALONG, arrows_on, borne_loads, sort_of
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import model_of, moved_to, solve_at
-from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
+from cosserat_casadi.view.answers import stacked_inputs, state_of
+from cosserat_casadi.view.robot_session import OF_EVERY_SESSION, RobotSession
 
 NOTE = "A robot that snaps is solved anew from straight tubes, and may come to rest elsewhere than a real one."
 
 
-@dataclass
-class TubeSession:
-    """A robot of concentric tubes that is moved from a browser.
+class TubeSession(RobotSession):
+    """A robot of concentric tubes that is moved from a browser; a robot that fails stays at its last equilibrium."""
 
-    Attributes:
-        first: the equilibrium at the scene's own inputs.
-    """
-
-    first: TubeSolution
-    _present: TubeSolution = field(init=False)
-    _problems: dict[str, LiftedProblem] = field(init=False, default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self._present = self.first
-
-    @property
-    def input_count(self) -> int:
-        """Numbers in the stacked inputs."""
-        return self.first.model.inputs.size
+    questions = OF_EVERY_SESSION | {"reach"}
+    searched = search_near
 
     def facts(self) -> dict[str, Any]:
         """Facts of the scene for its page, which offers only the questions that this session answers."""
@@ -76,27 +62,6 @@ class TubeSession:
             "note": NOTE,
         }
 
-    def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs: along the way from the last one, or anew where that leads nowhere.
-
-        Raises:
-            SceneError: an input is no number, or out of its range.
-        """
-        given = self.first.model.pack(stacked_inputs(inputs))
-        found = moved_to(self.first.model, self._present, given)
-        if found.converged:
-            return self._accepted(found, anew=False)
-        return self._accepted(solve_at(self.first.model, given), anew=True)
-
-    def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
-        """The equilibrium for these inputs from straight tubes, whatever was before.
-
-        Raises:
-            SceneError: likewise.
-        """
-        given = self.first.model.pack(stacked_inputs(inputs))
-        return self._accepted(solve_at(self.first.model, given), anew=False)
-
     def derivatives(self) -> list[float] | None:
         """Derivatives of all tips by all inputs, [pose][input][7]; None where the robot snaps."""
         model, present = self.first.model, self._present
@@ -109,43 +74,28 @@ class TubeSession:
         of_tips = columns.reshape(-1, POSE_SIZE, columns.shape[1]).transpose(0, 2, 1)
         return list(of_tips.ravel().tolist())
 
-    def eigenvalues(self) -> None:
-        """There are none: stability is judged by pivots along the robot."""
+    def _read(self, inputs: Sequence[float | None]) -> FloatArray:
+        """Stacked inputs as the page sends them; SceneError where one is no number, or out of its range."""
+        return np.asarray(self.model.pack(stacked_inputs(inputs)))
 
-    def accuracy(self) -> dict[str, Any]:
-        """The estimated error of the present equilibrium, in words, and whether it is within the tolerance."""
-        return accuracy_of(solve(self.first.model, self._present.inputs, start=self._present.x))
+    def _followed(self, given: FloatArray) -> TubeSolution:
+        return moved_to(self.first.model, self._present, given)
 
-    def reach(self, pose: Mapping[str, str], position: Sequence[float]) -> dict[str, Any]:
-        """Inputs that bring a tip to a point, as ``inverse`` finds them from where the robot is.
+    def _solved(self, given: FloatArray) -> TubeSolution:
+        return solve_at(self.model, given)
 
-        Args:
-            pose: {"rod": name} of a tube.
-            position: world axes, m.
+    def _lifted(self, scene: scenes.Scene) -> LiftedProblem:
+        asked = model_of(robot_of(scene), self.model.steps)
+        return lifted_problem(asked, scene.targets, self._present, stable=False)
 
-        Returns:
-            the equilibrium as :meth:`move` gives it, with the inputs and a sentence on whether the point is met.
-        """
-        target = scenes.PositionTarget(kind="position", position=tuple(position), **pose)
-        (name,) = pose.values()
-        if name not in self._problems:
-            self._problems[name] = self._problem(target)
-        origin = self._problems[name].variables.clipped(self._present.inputs)
-        problem = replace(self._problems[name], targets=(target,), origin=origin)
-        found = with_verdict(search_near(problem, self._present, stable=False, starts=0), stable=False)
+    def _reached(self, found: Inverse) -> dict[str, Any]:
         solution = found.solution
         assert isinstance(solution, TubeSolution)
-        state = self._accepted(replace(solution, model=self.first.model), anew=False)
-        return {**state, "inputs": solution.inputs.tolist(), "text": solution.message, "met": found.met}
+        solution = replace(solution, model=self.model)
+        state = self._accepted(solution.inputs, solution, anew=False)
+        return {**state, "text": solution.message, "met": found.met}
 
-    def _problem(self, target: scenes.PositionTarget) -> LiftedProblem:
-        """The inverse problem of a tip, made once: other points are other parameters of it."""
-        model = self.first.model
-        changes = {"targets": (target,), "bounds": self._bounds()}
-        asked = model_of(robot_of(model.scene.model_copy(update=changes)), model.steps)
-        return lifted_problem(asked, (target,), self._present, stable=False)
-
-    def _accepted(self, found: TubeSolution, *, anew: bool) -> dict[str, Any]:
+    def _accepted(self, given: FloatArray, found: TubeSolution, *, anew: bool) -> dict[str, Any]:
         if found.converged:
             self._present = found
         numbers = [part.ravel() for part in _drawn(found)]
@@ -183,17 +133,6 @@ class TubeSession:
                 label = suffix.removeprefix(".")
                 sliders.append(Slider(entry.name, label, entry.unit, k, value, min(least, value), max(most, value)))
         return sliders
-
-    def _bounds(self) -> tuple[scenes.Bound, ...]:
-        """The scene's bounds, or else the ends of the sliders of the drives."""
-        if self.first.model.scene.bounds:
-            return self.first.model.scene.bounds
-        by_hand = movable(self.first.model)
-        return tuple(
-            scenes.Bound(input=slider.input, lower=slider.least, upper=slider.most)
-            for slider in self._sliders()
-            if slider.input in by_hand
-        )
 
 
 def _tube(tube: scenes.Tube, index: int) -> dict[str, Any]:

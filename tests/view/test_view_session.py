@@ -14,7 +14,8 @@ from cosserat_casadi import Scene, SceneError, build, choose, scene_from_dict, s
 from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.page.slider_ranges import sliders
-from cosserat_casadi.view.view_session import ELSEWHERE, PERIOD_FRAMES, ViewSession, opened
+from cosserat_casadi.view.robot_session import ELSEWHERE
+from cosserat_casadi.view.view_session import PERIOD_FRAMES, ViewSession, opened
 from tests.page.pages_made import FEW
 from tests.scenes import rod
 
@@ -194,7 +195,7 @@ def test_the_estimated_error_is_told_where_modes_were_chosen_for_other_inputs(pl
 def test_the_robot_is_refined_where_the_hand_rests(planar: ViewSession) -> None:
     inputs = [0.3, 3.0, -0.2]
     rough = tip(planar.reset(inputs))
-    refined = planar.refined(inputs, planar.present)
+    refined = planar.refined(inputs)
     assert refined["within"] is True
     exact = solve(unfixed(planar.first.model.scene, 1e-6), {"push.force": inputs}).tip().position[0]
     assert_allclose(tip(refined), exact, rtol=0, atol=1e-4 * planar.first.model.scene.rods[0].length)
