@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -128,7 +129,7 @@ class _OfFrame(Target[FrameType]):
     def gap(self, target: Any, solution: Equilibrium[Any]) -> TargetMiss:
         """The distance."""
         what, position, _ = self._reached(target, solution)
-        return TargetMiss(what, float(np.linalg.norm(position - np.array(target.position))), None)
+        return TargetMiss(what, math.dist(position, target.position), None)
 
     def model_error(self, target: Any, solution: Equilibrium[Any]) -> float | None:
         """That of the tips, of which a body is held; of a section in between that of the shapes."""
@@ -195,7 +196,7 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
     def gap(self, target: scenes.PoseTarget, solution: Equilibrium[Any]) -> TargetMiss:
         """The distance and the angle."""
         what, position, quaternion = self._reached(target, solution)
-        distance = float(np.linalg.norm(position - np.array(target.position)))
+        distance = math.dist(position, target.position)
         angles = rotation_angles(np.array([target.quaternion]), quaternion)
         return TargetMiss(what, distance, float(angles[0]))
 
