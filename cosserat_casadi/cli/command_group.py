@@ -14,7 +14,7 @@ LINES = {
     "docs": "Show a page of the documentation.",
     "solve": "Find the equilibrium of a scene.",
     "view": "Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion.",
-    "path": "Follow equilibria while an input grows from zero, through folds.",
+    "path": "Follow equilibria while an input moves, through folds.",
     "simulate": "Simulate the motion of a scene over time.",
     "modes": (
         "Find frequencies, damping and shapes of small vibrations about the equilibrium, and whether it is stable."

@@ -148,7 +148,7 @@ def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class EquilibriumPath(InputPath[Model, PathEvent]):
-    """Equilibria of rods along one of their inputs, which grows from zero.
+    """Equilibria of rods along one of their inputs, which grows from zero, or from where it is told to begin.
 
     Attributes:
         smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
@@ -163,7 +163,11 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     @property
     def value(self) -> FloatArray:
         """Value of the input at factor 1, shaped as the input."""
-        return self.model.inputs.unpack(self.inputs(1.0))[self.name]
+        return self.value_at(1.0)
+
+    def value_at(self, factor: float) -> FloatArray:
+        """Value of the input at a factor, shaped as the input."""
+        return self.model.inputs.unpack(self.inputs(factor))[self.name]
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:

@@ -154,16 +154,16 @@ def follow_path(
     first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
-    """Follow the equilibrium of a model while one input grows from zero to a value, through folds and back.
+    """Follow the equilibrium of a model while one input moves from zero to a value, through folds and back.
 
-    The path starts at the equilibrium with that input at zero and all other inputs at their values, goes straight on
-    through bifurcations, and ends where the factor first reaches 1.
+    The path starts at the equilibrium with that input at zero, or where ``values`` says, and all other inputs at their
+    values, goes straight on through bifurcations, and ends where the factor first reaches 1.
 
     Args:
         model: what to follow, on the discretisation it has.
         name: the input, such as "push.force".
         value: its value at factor 1, shaped as the input, SI units.
-        values: other inputs by name; those not named keep the scene's values.
+        values: other inputs by name, those not named keep the scene's values; of the followed input where it begins.
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
         settings: limits.
@@ -280,9 +280,12 @@ def _followed(
         full = model.pack(model.inputs.unpack(base) | given)
         return _Followed(model, name, base, full - base)
     full = model.pack(given)
-    base = full.copy()
-    # The followed input grows from zero, whatever the scene gives it; all others keep their values.
-    base[model.inputs.slices[name]] = 0.0
+    if values is not None and name in values:
+        base = model.pack(values)
+    else:
+        base = full.copy()
+        # The followed input grows from zero, whatever the scene gives it; all others keep their values.
+        base[model.inputs.slices[name]] = 0.0
     change = full - base
     return _Followed(model, name, base, change)
 

@@ -97,13 +97,13 @@ def follow(
     is followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
     relative to the lengths, change by less than the tolerance; the last change is ``error_estimate``.
 
-    An input of rods grows from zero; one of concentric tubes moves on from the value that it has.
+    An input begins at its value in ``values``; without one, of rods at zero, of concentric tubes at the scene's value.
 
     Args:
         subject: a validated scene, or a model of it: of rods, or of concentric tubes.
         name: an input; of concentric tubes one that is one number, such as "inner.rotation" or "push.force.z".
         value: its value at factor 1.
-        values: other inputs, by name; inputs that are left out keep the scene's values.
+        values: inputs where the path begins, by name; other inputs that are left out keep the scene's values.
         options: named as follows.
         branch: of rods: number of the bifurcation, counted from 1, to leave at along the branch that crosses there;
             negative for the other half of that branch, 0 goes straight on.

@@ -86,8 +86,7 @@ class TubePath(InputPath[TubeFunctions, TubeEvent]):
     @property
     def unit(self) -> str:
         """Unit of the input."""
-        index = self.robot.input_index(self.name)
-        return next(entry.unit for entry, span in self.robot.layout if index < span.stop)
+        return _unit_of(self.robot, self.name)
 
     @property
     def values(self) -> FloatArray:
@@ -116,6 +115,16 @@ class TubePath(InputPath[TubeFunctions, TubeEvent]):
         """Positions of a tube's tip at each point, shape (k, 3), m; as :meth:`TubeSolution.tip`."""
         positions = [solution.tip(tube).position for solution in self.solutions]
         return np.array(positions).reshape(-1, 3)
+
+
+def _unit_of(robot: Robot, name: str) -> str:
+    index = robot.input_index(name)
+    return next(entry.unit for entry, span in robot.layout if index < span.stop)
+
+
+def usual_limits(robot: Robot, name: str) -> ArcSettings:
+    """Limits of a path over an input: those of a translation, or those of a rotation or a load."""
+    return SLIDING if _unit_of(robot, name) == "m" else TURNING
 
 
 def follow_tubes(
@@ -236,7 +245,7 @@ def _followed(
     )
     if not first.converged:
         return path
-    usual = SLIDING if path.unit == "m" else TURNING
+    usual = usual_limits(path.robot, name)
     curve = Curve(input_path(model, first.x, start, end), DETERMINANT, limits or usual)
     traced = trace(curve, progress=progress)
     outcome = traced.outcome or PathOutcome.MAX_STEPS

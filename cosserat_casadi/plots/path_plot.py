@@ -123,7 +123,7 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
         axes.plot([], [], color="0.3", linestyle=stroke, label=words)
     axes.axhline(0.0, color="0.7", linewidth=0.8)
     axes.set_xlabel(f"displacement of {section.words} / length")
-    axes.set_ylabel(f"factor × {_input_value(path)}")
+    axes.set_ylabel(_way_words(path))
     axes.grid(alpha=0.3)
     # Below the panel: inside it would cover a curve sooner or later.
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=9, frameon=False)
@@ -177,12 +177,20 @@ def _runs(styles: FloatArray) -> list[tuple[int, int, int]]:
     return runs
 
 
-def _input_value(path: EquilibriumPath) -> str:
-    numbers = np.ravel(path.value, order="F")
-    components = ", ".join(f"{number:.4g}" for number in numbers)
+def _way_words(path: EquilibriumPath) -> str:
     (unit,) = [entry.declared.unit for entry in path.model.scene.free_inputs() if entry.name == path.name]
-    value = f"[{components}]" if len(numbers) > 1 else components
-    return f"{path.name} {value}" if unit == "1" else f"{path.name} {value} {unit}"
+    suffix = "" if unit == "1" else f" {unit}"
+    start = path.value_at(0.0)
+    value = _numbers(path.value)
+    if not start.any():
+        return f"factor × {path.name} {value}{suffix}"
+    return f"factor, {path.name} {_numbers(start)} to {value}{suffix}"
+
+
+def _numbers(value: FloatArray) -> str:
+    numbers = np.ravel(value, order="F")
+    components = ", ".join(f"{number:.4g}" for number in numbers)
+    return f"[{components}]" if len(numbers) > 1 else components
 
 
 def _subtitle(path: EquilibriumPath) -> str:

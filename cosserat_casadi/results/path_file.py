@@ -43,6 +43,7 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
     data = {
         "title": path.model.scene.title,
         "input": path.name,
+        "start": path.value_at(0.0).T.squeeze(),
         "value": path.value.T.squeeze(),
         "outcome": path.outcome.label,
         "message": path.message,

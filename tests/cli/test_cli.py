@@ -147,7 +147,13 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         ),
         (["solve", "wire.toml", "--set", "wire.section.radius=1e-60"], "too large or too small to compute with"),
         (["solve", "wire.toml", "--colour"], "colour"),
-        (["path", "wire.toml"], "--input"),
+        (["path", "wire.toml"], "--input: is missing"),
+        (["path", "wire.toml", "--input", "push.force"], "--to: is missing: the value that push.force goes to"),
+        (["path", "wire.toml", "--range", "push.force=0:1:5"], "no number of an input"),
+        (["path", "wire.toml", "--range", "push.force.x=0:1:1"], "asks for 1 points"),
+        (["path", "wire.toml", "--range", "push.force.x=2:2"], "ends where it begins"),
+        (["path", "wire.toml", "--range", "push.force.x=0:1", "--to", "[0,0,1]"], "beside --input or --to"),
+        (["path", "wire.toml", "--range", "push.force.x=0:1", "--range", "push.force.y=0:1"], "follows one input"),
         (["path", "wire.toml", "--input", "shove.force", "--to", "[0,0,1]"], "shove.force: is not an input"),
         (["path", "wire.toml", "--input", "push.force", "--to", "1.0"], "must have 3 numbers, got 1"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0]"], "must have 3 numbers, got 2"),
@@ -227,6 +233,22 @@ def test_path_writes_json_csv_and_figure(tmp_path: Path) -> None:
     assert head.startswith("factor,stable,smallest_eigenvalue,column.x,")
     assert len(rows) == len(path["path"])
     assert_allclose(float(rows[-1].split(",")[3]), last["rods"]["column"]["tip"]["position"][0], rtol=1e-15, atol=0)
+
+
+def test_a_range_leads_from_a_value_to_another(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    options = ["--set", "push.force=[0.3,0,-1]", "--output", "p.json"]
+    done = cosserat("path", "column.toml", "--range", "push.force.z=1:-0.5:25", *options, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    path = json.loads((tmp_path / "p.json").read_text())
+    assert (path["input"], path["start"], path["value"]) == ("push.force", [0.3, 0.0, 1.0], [0.3, 0.0, -0.5])
+    assert len(path["path"]) >= 25
+    assert "0.3, 0, 1" in done.stdout
+    # Both ends are the equilibria that a solve gives.
+    for force, entry in (([0.3, 0, 1], path["path"][0]), ([0.3, 0, -0.5], path["path"][-1])):
+        end = solve(read_scene(tmp_path / "column.toml", [f"push.force={force}"]))
+        tip = entry["rods"]["column"]["tip"]["position"]
+        assert_allclose(tip, end.tip().position[0], rtol=0, atol=1e-5)
 
 
 def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: Path) -> None:

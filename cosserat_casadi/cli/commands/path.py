@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -27,17 +28,51 @@ from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.load_cases import AskedRange, column_indices, read_range
+from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.paths.path_refinement import follow
-from cosserat_casadi.paths.tube_path import TubePath
+from cosserat_casadi.paths.tube_path import TubePath, usual_limits
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.robot import robot_of
 
+MOST_POINTS = 1000
+"""Largest count of points in a range: half of the steps that a path may take."""
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The way of the input that a path follows.
+
+    Attributes:
+        name: the input.
+        value: where it goes.
+        start: the value at which the path begins, by the name of the input; empty for the usual one.
+        limits: of the path; None for the usual ones.
+    """
+
+    name: str
+    value: FloatArray
+    start: dict[str, FloatArray] = field(default_factory=dict)
+    limits: ArcSettings | None = None
+
 
 def path(
     scene: SceneFile,
-    name: Annotated[str, typer.Option("--input", metavar="LOAD.FIELD", help="The input to follow: push.force.")],
-    to: Annotated[str, typer.Option("--to", metavar="VALUE", help="Its value at factor 1, such as [0,0,-5].")],
+    name: Annotated[
+        str | None, typer.Option("--input", metavar="LOAD.FIELD", help="The input to follow from zero: push.force.")
+    ] = None,
+    to: Annotated[
+        str | None, typer.Option("--to", metavar="VALUE", help="Its value at factor 1, such as [0,0,-5].")
+    ] = None,
+    ranges: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--range",
+            metavar="COLUMN=FROM:TO:COUNT",
+            help="Instead of --input: one number of an input from a value to another, at least COUNT points.",
+        ),
+    ] = None,
     branch: Annotated[bool, typer.Option("--branch", help="Leave along the branch of the first bifurcation.")] = False,
     bifurcation: Annotated[
         int, typer.Option("--bifurcation", help="With --branch: leave at this one; below zero the branch's other half.")
@@ -47,7 +82,7 @@ def path(
     plot: Annotated[Path | None, typer.Option(help="Draw load against displacement here: .png, .pdf or .svg.")] = None,
     table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
 ) -> None:
-    """Follow equilibria while an input grows from zero, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
+    """Follow equilibria while an input moves, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
     # Every check adds to the list; the last one raises, so that all faults are seen at once.
     problems: list[Problem] = []
     if bifurcation == 0:
@@ -58,15 +93,17 @@ def path(
         check_file(table, "--csv", ".csv")
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot, "--csv": table}, scene, settings)
-    checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
+    checked_scene, way = _check_way(scene, tuple(settings or ()), name, to, ranges or [], problems)
     # The branch that follow leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0
     with solve_display("Following the path") as display:
         followed = follow(
             checked_scene,
-            name,
-            value,
+            way.name,
+            way.value,
+            way.start,
             branch=branch_number,
+            settings=way.limits,
             progress=display.show_share,
             report=display.show_stage,
         )
@@ -80,31 +117,99 @@ def path(
         raise typer.Exit(NOT_FOUND)
 
 
-def _check_input(
-    scene_file: Path, settings: tuple[str, ...], name: str, text: str, problems: list[Problem]
-) -> tuple[Scene, FloatArray]:
-    """The scene, and the value of the input that is followed.
+def _check_way(
+    scene_file: Path,
+    settings: tuple[str, ...],
+    name: str | None,
+    text: str | None,
+    ranges: list[str],
+    problems: list[Problem],
+) -> tuple[Scene, _Way]:
+    """The scene, and the way of its input.
 
     Args:
         scene_file: the scene.
         settings: values of it to change.
         name: the input.
         text: its value, as TOML.
+        ranges: texts of --range.
         problems: the refusals so far.
 
     Raises:
         SceneError: with those problems and every fault of the scene, the input and its value.
     """
     value: FloatArray | None = None
+    asked: AskedRange | None = None
     scene: Scene | None = None
+    way: _Way | None = None
     with collect_problems(problems):
-        value = _vector(text)
+        _check_spelling(name, text, ranges)
+    with collect_problems(problems):
+        value = None if text is None else _vector(text)
+    with collect_problems(problems):
+        asked = _asked_range(ranges[0]) if ranges else None
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
-        _check_name_and_size(scene, name, value)
-    if problems or scene is None:
+        if name is not None:
+            _check_name_and_size(scene, name, value)
+            way = None if value is None else _Way(name, value)
+        elif asked is not None:
+            way = _way_of(scene, asked)
+    if problems or scene is None or way is None:
         raise SceneError(*problems)
-    return scene, np.asarray(value)
+    return scene, way
+
+
+def _check_spelling(name: str | None, text: str | None, ranges: list[str]) -> None:
+    """Refuse options that are neither --input with --to nor one --range."""
+    if ranges and (name is not None or text is not None):
+        raise SceneError(Problem("--range", "stands beside --input or --to", "give one of them"))
+    if len(ranges) > 1:
+        raise SceneError(Problem("--range", "stands more than once: a path follows one input", "or use cosserat sweep"))
+    if ranges:
+        return
+    example = "or write --range push.force.z=0:-5:21"
+    if name is None:
+        raise SceneError(Problem("--input", "is missing: the input to follow", example))
+    if text is None:
+        raise SceneError(Problem("--to", f"is missing: the value that {name} goes to", example))
+
+
+def _asked_range(text: str) -> AskedRange:
+    asked = read_range(text)
+    if asked.low == asked.high:
+        raise SceneError(Problem("--range", f"{text!r} ends where it begins", "give another value to go to"))
+    if asked.count is not None and not 2 <= asked.count <= MOST_POINTS:
+        remedy = f"a path has 2 to {MOST_POINTS} points; leave the count out for as many as it needs"
+        raise SceneError(Problem("--range", f"{text!r} asks for {asked.count} points", remedy))
+    return asked
+
+
+def _way_of(scene: Scene, asked: AskedRange) -> _Way:
+    """One number of an input from a value to another; the others keep the scene's values.
+
+    Raises:
+        SceneError: the scene has no such number.
+    """
+    robot = robot_of(scene) if scene.tubes else None
+    layout = build(scene).inputs if robot is None else robot.layout
+    columns = column_indices(layout)
+    if asked.column not in columns:
+        names = ", ".join(columns) or "none"
+        raise SceneError(Problem("--range", f"{asked.column!r} is no number of an input", f"its columns are {names}"))
+    limits = ArcSettings() if robot is None else usual_limits(robot, asked.column)
+    if asked.count is not None:
+        limits = replace(limits, load_factor_change=min(limits.load_factor_change, 1 / (asked.count - 1)))
+    if robot is not None:
+        return _Way(asked.column, np.array([asked.high]), {asked.column: np.array([asked.low])}, limits)
+    index = columns[asked.column]
+    (name,) = [name for name, span in layout.slices.items() if span.start <= index < span.stop]
+    ends = []
+    for number in (asked.low, asked.high):
+        inputs = layout.pack()
+        inputs[index] = number
+        ends.append(layout.unpack(inputs)[name])
+    return _Way(name, ends[1], {name: ends[0]}, limits)
 
 
 def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> None:

@@ -100,7 +100,7 @@ def _event_kind(event: PathEvent) -> str:
 
 def _add_row(table: Table, path: EquilibriumPath, row: _TableRow, abscissae: dict[str, float]) -> None:
     """A line for each rod; what belongs to the point stands on the first."""
-    value = row.factor * np.ravel(path.value, order="F")
+    value = np.ravel(path.value_at(row.factor), order="F")
     value_cell = ", ".join(digits(value))
     cells = [row.kind, f"{row.factor:.10g}", f"[{value_cell}]", _stability(path, row.beyond)]
     for (name, X), position in zip(abscissae.items(), row.positions, strict=True):
