@@ -60,6 +60,24 @@ class Result:
         """
         return _presentation().figure_of(self, **options)
 
+    def animate(self, path: Any, **options: Any) -> Any:
+        """Draw a motion, a path of rods or a mode as a film into a file, whole or not at all; the suffix says which.
+
+        Args:
+            path: of the file, a string or a Path: ``.gif`` or ``.mp4``; of a motion ``.glb`` or ``.usda`` too.
+            options: ``speed`` of a motion, 0.1 shows it ten times slower; ``mode``, the number of a mode, from 1;
+                ``progress``, a function that receives the share of the frames that are drawn.
+
+        Returns:
+            pathlib.Path of the file.
+
+        Raises:
+            SceneError: this kind of result has no film, none with that suffix, or no state to show.
+            CosseratError: the film needs a package or a program that is not installed; the sentence names it.
+            WriteError: the file cannot be written, as on a full disk.
+        """
+        return _presentation().animate(self, path, **options)
+
     def __repr__(self) -> str:
         """The result in at most ten lines."""
         text: str = _presentation().text_of(self)

@@ -19,7 +19,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
 from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
-from cosserat_casadi.files import write_atomically, write_errors
+from cosserat_casadi.files import MESHES, write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
@@ -79,8 +79,12 @@ class AnimationUnavailableError(CosseratError):
         )
 
 
-def check_animation_path(path: str | Path) -> None:
+def check_animation_path(path: str | Path, where: str = "path") -> None:
     """Refuse an animation that cannot be made, before any work is done for it.
+
+    Args:
+        path: the file.
+        where: what a refusal calls it.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -89,7 +93,7 @@ def check_animation_path(path: str | Path) -> None:
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         problem = f"{path} has no suffix of an animation that can be made"
-        raise SceneError(Problem("--animation", problem, f"use one of {', '.join(FORMATS)}"))
+        raise SceneError(Problem(where, problem, f"use one of {', '.join(FORMATS)}"))
     figure_class()
     if suffix == ".mp4":
         from matplotlib.animation import FFMpegWriter
@@ -115,23 +119,34 @@ def frame_times(motion: Motion, speed: float = 1.0) -> FloatArray:
     return np.linspace(first, last, intervals + 1)
 
 
-def save_animation(
+def animate_motion(
     motion: Motion, file: str | Path, *, speed: float = 1.0, progress: Callable[[float], None] | None = None
 ) -> None:
     """Draw the animation of a motion into a file, whole or not at all.
 
     Args:
-        motion: at least one time of it was computed.
-        file: its suffix is one of FORMATS.
+        motion: what to show.
+        file: its suffix is one of FORMATS, or of MESHES.
         speed: 1 shows the motion as fast as it is, 0.1 ten times slower.
-        progress: receives the share of the frames that are drawn.
+        progress: receives the share of the frames that are drawn; not of meshes.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of these, the speed is not positive, or the motion has no state.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
         AnimationFailedError: ffmpeg gives up, as where it was built without H.264.
         WriteError: the file cannot be written, as on a full disk.
     """
+    if not speed > 0.0:
+        raise SceneError(Problem("speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
+    if Path(file).suffix.lower() in MESHES:
+        # Imported here, because few films are meshes.
+        from cosserat_casadi.plots.film import write_film
+
+        write_film(motion, file, speed)
+        return
+    check_animation_path(file)
+    if not len(motion.times):
+        raise SceneError(Problem("path", "the motion has no state: it was not started"))
     save_frames(motion_frames(motion, frame_times(motion, speed), speed), file, progress=progress)
 
 
@@ -159,7 +174,7 @@ class AnimationFrames:
 
 
 def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`save_animation`."""
+    """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`animate_motion`."""
     check_animation_path(file)
     path = Path(file)
     film = _Film(frames)

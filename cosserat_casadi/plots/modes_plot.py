@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
@@ -96,33 +97,37 @@ def mode_words(mode: Mode, index: int) -> str:
     return words
 
 
-def save_mode_animation(
-    modes: Modes, index: int, file: str | Path, *, progress: Callable[[float], None] | None = None
+def animate_mode(
+    modes: Modes, file: str | Path, *, mode: int = 1, progress: Callable[[float], None] | None = None
 ) -> None:
     """Draw one period of a mode into a file, whole or not at all; a GIF repeats it.
 
     Args:
-        modes: at least one.
-        index: of the mode, from 0.
+        modes: of a scene.
         file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        mode: number of the mode, from 1.
         progress: receives the share of the frames that are drawn.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of FORMATS, or there is no such mode.
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
         WriteError: the file cannot be written, as on a full disk.
     """
-    mode = modes.modes[index]
+    count = len(modes.modes)
+    if not 1 <= mode <= count:
+        raise SceneError(Problem("mode", f"must be from 1 to {count}, the number of modes; got {mode}"))
+    index = mode - 1
+    shown = modes.modes[index]
     drawn = _mode_lines(modes)[index]
     phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
     # From the equilibrium on, so that the first picture is known.
-    swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * mode.vector)
+    swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * shown.vector)
     frames = AnimationFrames(
         model=modes.model,
         x=modes.solution.x + swing,
         inputs=np.tile(modes.solution.inputs, (PERIOD_FRAMES, 1)),
-        words=[f"mode {mode_words(mode, index)}"] * PERIOD_FRAMES,
-        colour=FAILURE if mode.grows else PLAIN_TEXT,
+        words=[f"mode {mode_words(shown, index)}"] * PERIOD_FRAMES,
+        colour=FAILURE if shown.grows else PLAIN_TEXT,
         interval=1 / FRAME_RATE,
         section_axes=bool(drawn.arms),
     )

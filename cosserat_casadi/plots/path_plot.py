@@ -5,14 +5,18 @@ matplotlib is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath
+from cosserat_casadi.plots.animation import FRAME_RATE, MOST_FRAMES, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class
@@ -45,6 +49,9 @@ SMALLEST_DISPLACEMENT = 1e-9
 """Displacement relative to the length below which a component is not drawn."""
 
 
+SHOWN_SECONDS = 6.0
+"""Time in which a film goes along a path; a path of many points takes longer, s."""
+
 COLUMNS = 3
 """Most panels beside each other."""
 
@@ -67,6 +74,40 @@ def plot_path(path: EquilibriumPath) -> Any:
         axes.set_title(title, fontsize=10, color=PLAIN_TEXT if path.converged else FAILURE, wrap=True)
     add_title(figure, path.model.scene.title)
     return figure
+
+
+def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Draw the equilibria of a path one after the other into a file, whole or not at all.
+
+    A frame is a point of the path: nothing is interpolated. Of more than MOST_FRAMES points some are left out.
+
+    Args:
+        path: what to show.
+        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        progress: receives the share of the frames that are drawn.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS, or the path has no point.
+        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
+        WriteError: the file cannot be written, as on a full disk.
+    """
+    count = len(path.factor)
+    if not count:
+        raise SceneError(Problem("path", "the path has no point: it was not started"))
+    shown = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
+    stability = _stability(path)[shown]
+    frames = AnimationFrames(
+        model=path.model,
+        x=path.x[shown],
+        inputs=path.all_inputs[shown],
+        words=[
+            f"{_way_words(path)}: {factor:.4f}, {STYLES[style][1]}"
+            for factor, style in zip(path.factor[shown], stability, strict=True)
+        ],
+        colour=PLAIN_TEXT if path.converged else FAILURE,
+        interval=max(1 / FRAME_RATE, SHOWN_SECONDS / len(shown)),
+    )
+    save_frames(frames, file, progress=progress)
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,7 @@ class Presentation:
         facts: function of the result that returns what matters as pairs of a label and its words.
         figure: function of the result that returns the matplotlib figure.
         table: function of the result that returns the header and the rows of its CSV file; empty where it has none.
+        film: function (result, path, options) that draws its film; empty where it has none.
         writers: functions (result, path) that write a file of another format, by its suffix.
     """
 
@@ -46,6 +47,7 @@ class Presentation:
     facts: str
     figure: str
     table: str = ""
+    film: str = ""
     writers: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -80,17 +82,20 @@ PRESENTATIONS = {
         facts="results.facts:path_facts",
         figure="plots.path_plot:plot_path",
         table="results.path_file:path_table",
+        film="plots.path_plot:animate_path",
     ),
     "Motion": Presentation(
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
+        film="plots.animation:animate_motion",
         writers={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
     ),
     "Modes": Presentation(
         data="results.modes_file:modes_result",
         facts="results.facts:modes_facts",
         figure="plots.modes_plot:plot_modes",
+        film="plots.modes_plot:animate_mode",
     ),
     "Inverse": Presentation(
         data="results.solution_file:inverse_result",
@@ -189,6 +194,22 @@ def figure_of(result: Any, **options: Any) -> Any:
         PlotUnavailableError: matplotlib is not installed.
     """
     return _function(presentation_of(result).figure)(result, **options)
+
+
+def animate(result: Any, path: str | Path, **options: Any) -> Path:
+    """Draw the film of a result into a file, whole or not at all; the path of the file.
+
+    Raises:
+        SceneError: this kind of result has no film, or none with that suffix.
+        CosseratError: the film needs a package or a program that is not installed.
+        WriteError: the file cannot be written.
+    """
+    film = presentation_of(result).film
+    if not film:
+        problem = f"{type(result).__name__} has no film"
+        raise SceneError(Problem("animate", problem, "motions, modes and paths of rods have one; plot() is a figure"))
+    _function(film)(result, path, **options)
+    return Path(path)
 
 
 def facts_of(result: Any) -> tuple[str | None, list[tuple[str, str]]]:

@@ -20,9 +20,9 @@ from cosserat_casadi.plots.animation import (
     MOST_FRAMES,
     AnimationFailedError,
     AnimationUnavailableError,
+    animate_motion,
     check_animation_path,
     frame_times,
-    save_animation,
 )
 from tests.families import mostly_slow
 from tests.motions import planar_swing, swinging_rod, two_rods_on_a_platform
@@ -46,7 +46,7 @@ def film(path: Path) -> tuple[int, float]:
 @pytest.mark.parametrize("speed", mostly_slow([1.0, 0.5], quick=[1.0]))
 def test_gif_takes_as_long_as_the_motion(short: Motion, tmp_path: Path, speed: float) -> None:
     path = tmp_path / "swing.gif"
-    save_animation(short, path, speed=speed)
+    animate_motion(short, path, speed=speed)
     frames, seconds = film(path)
     assert frames == FRAME_RATE * 0.4 / speed + 1
     # The last frame is shown as long as the others.
@@ -116,13 +116,13 @@ def test_a_motion_that_ended_early_says_so(short: Motion) -> None:
 
 def test_a_motion_of_one_time_is_a_picture(tmp_path: Path) -> None:
     path = tmp_path / "one.gif"
-    save_animation(swinging_rod(frames=1), path)
+    animate_motion(swinging_rod(frames=1), path)
     assert film(path)[0] >= 1
 
 
 def test_progress_goes_to_one(short: Motion, tmp_path: Path) -> None:
     shares: list[float] = []
-    save_animation(short, tmp_path / "swing.gif", progress=shares.append)
+    animate_motion(short, tmp_path / "swing.gif", progress=shares.append)
     assert_allclose(shares, np.arange(1, 12) / 11, rtol=1e-14, atol=0)
 
 
@@ -135,13 +135,13 @@ def test_an_interrupt_leaves_no_file(short: Motion, tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        save_animation(short, path, progress=interrupt)
+        animate_motion(short, path, progress=interrupt)
     assert path.read_bytes() == b"what was there before"
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_unknown_suffix_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(SceneError, match=r"--animation: .*use one of \.gif, \.mp4"):
+    with pytest.raises(SceneError, match=r"path: .*use one of \.gif, \.mp4"):
         check_animation_path("swing.avi")
 
 
@@ -163,14 +163,14 @@ def put_ffmpeg(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> No
 def test_mp4_gets_every_frame(short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     put_ffmpeg(tmp_path, 'cat > "$file"', monkeypatch)
     path = tmp_path / "swing.mp4"
-    save_animation(short, path)
+    animate_motion(short, path)
     assert path.stat().st_size == 11 * 1920 * 1080 * 4
 
 
 def test_ffmpeg_that_gives_up_is_a_sentence(short: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     put_ffmpeg(tmp_path, "cat > /dev/null; exit 3", monkeypatch)
     with pytest.raises(AnimationFailedError, match=r"exit code 3: write \.gif"):
-        save_animation(short, tmp_path / "swing.mp4")
+        animate_motion(short, tmp_path / "swing.mp4")
     assert [file.name for file in tmp_path.iterdir()] == ["ffmpeg"]
 
 
@@ -181,12 +181,12 @@ def test_an_interrupt_ends_ffmpeg(short: Motion, tmp_path: Path, monkeypatch: py
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        save_animation(short, tmp_path / "swing.mp4", progress=interrupt)
+        animate_motion(short, tmp_path / "swing.mp4", progress=interrupt)
     assert sorted(file.name for file in tmp_path.iterdir()) == ["ended", "ffmpeg"]
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="needs ffmpeg")
 def test_mp4(short: Motion, tmp_path: Path) -> None:
     path = tmp_path / "swing.mp4"
-    save_animation(short, path)
+    animate_motion(short, path)
     assert path.read_bytes()[4:8] == b"ftyp"

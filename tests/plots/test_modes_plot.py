@@ -12,7 +12,7 @@ from PIL import Image
 from cosserat_casadi import modes_of
 from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
-from cosserat_casadi.plots.modes_plot import mode_words, plot_modes, save_mode_animation
+from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
 from tests.scenes import rod, scene
 
 ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.05}
@@ -64,7 +64,7 @@ def test_figure_and_animation_are_written(modes: Modes, tmp_path: Path, monkeypa
     assert (tmp_path / "m.png").read_bytes() == (tmp_path / "again.png").read_bytes()
     torsion = next(index for index, axes in enumerate(plot_modes(modes).axes) if axes.name == "3d")
     shares: list[float] = []
-    save_mode_animation(modes, torsion, tmp_path / "m.gif", progress=shares.append)
+    modes.animate(tmp_path / "m.gif", mode=torsion + 1, progress=shares.append)
     assert shares[-1] == 1.0
     with Image.open(tmp_path / "m.gif") as film:
         # Sections that only turn are seen to turn.

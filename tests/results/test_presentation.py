@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 
 import cosserat_casadi
 import cosserat_casadi.control
@@ -181,6 +182,7 @@ NO_RESULTS = {
     "Lifted",
     "LinearModel",
     "Model",
+    "MotionEvent",
     "MotionStage",
     "Problem",
     "Scene",
@@ -269,6 +271,35 @@ def test_what_is_no_table_is_no_data_frame(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(PandasUnavailableError, match=r"pip install 'cosserat-casadi\[frames\]'"):
         MAKERS["EquilibriumPath"]().to_dataframe()
+
+
+@pytest.mark.parametrize("name", ["EquilibriumPath", "Motion"])
+def test_a_film_is_written_and_named(name: str, tmp_path: Path) -> None:
+    result = MAKERS[name]()
+    assert result.animate(str(tmp_path / "film.gif")) == tmp_path / "film.gif"
+    with Image.open(tmp_path / "film.gif") as film:
+        pictures = film.n_frames
+    # A frame of a path is a point of it; those of a motion follow the clock.
+    assert pictures == (len(result.factor) if name == "EquilibriumPath" else 1 + 25 * result.times[-1] // 1)
+    with pytest.raises(SceneError, match=r"film\.doc has no suffix of an animation .*use one of \.gif"):
+        result.animate(tmp_path / "film.doc")
+
+
+def test_a_film_of_meshes_is_that_of_write(tmp_path: Path) -> None:
+    motion = MAKERS["Motion"]()
+    motion.write(tmp_path / "a.glb")
+    motion.animate(tmp_path / "b.glb")
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_what_has_no_film_says_so(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="Solution has no film"):
+        solution().animate(tmp_path / "film.gif")
+    with pytest.raises(SceneError, match="the motion has no state"):
+        without_start().animate(tmp_path / "film.gif")
+    with pytest.raises(SceneError, match="from 1 to 2"):
+        MAKERS["Modes"]().animate(tmp_path / "film.gif", mode=3)
+    assert not list(tmp_path.iterdir())
 
 
 def test_words_are_no_markup() -> None:

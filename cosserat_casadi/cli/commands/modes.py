@@ -82,21 +82,16 @@ def _check_files(output: Path | None, plot: Path | None, animation: Path | None,
     with collect_problems(problems):
         check_writable(animation, "--animation")
     with collect_problems(problems):
-        check_animation_path(animation)
+        check_animation_path(animation, "--animation")
 
 
 def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) -> list[Path]:
     """Draw the figure and the animation that are asked for; returns the files that were written."""
-    if plot is None and animation is None:
-        return []
-    from cosserat_casadi.plots.modes_plot import save_mode_animation
-
     written = []
     if plot is not None:
         found.write(plot)
         written.append(plot)
     # Where there is no equilibrium nothing swings.
     if animation is not None and found.modes:
-        save_mode_animation(found, number - 1, animation)
-        written.append(animation)
+        written.append(found.animate(animation, mode=number))
     return written

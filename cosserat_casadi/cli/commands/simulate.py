@@ -138,7 +138,7 @@ def _check_files(
     from cosserat_casadi.plots.animation import check_animation_path
 
     with collect_problems(problems):
-        check_animation_path(animation)
+        check_animation_path(animation, "--animation")
 
 
 def _check_scene(
@@ -179,15 +179,12 @@ def _simulate_with_progress(
 
 def _animate(motion: Motion, file: Path, speed: float) -> None:
     """Draw an animation, and say how to slow it down where it has next to no frames."""
-    if file.suffix.lower() in MESHES:
-        from cosserat_casadi.plots.film import write_film
-
-        write_film(motion, file, speed)
-        return
-    from cosserat_casadi.plots.animation import frame_times, save_animation
-
     with share_display("Drawing the animation") as show_share:
-        save_animation(motion, file, speed=speed, progress=show_share)
+        motion.animate(file, speed=speed, progress=show_share)
+    if file.suffix.lower() in MESHES:
+        return
+    from cosserat_casadi.plots.animation import frame_times
+
     frames = len(frame_times(motion, speed))
     computed_time = float(motion.times[-1] - motion.times[0])
     if frames < HASTY_FRAMES and computed_time > 0.0:
