@@ -26,9 +26,24 @@ class Result:
 
         Raises:
             SceneError: this kind of result has no table.
-            PandasUnavailableError: pandas is not installed.
+            FramesUnavailableError: pandas is not installed.
         """
         return _presentation().frame_of(self)
+
+    def to_xarray(self) -> Any:
+        """The arrays of a motion over time, or of a sweep over its grid, with named axes and units.
+
+        A motion has the axis ``time``; of each rod its sections have the axis ``<rod>.X``. A sweep over every
+        combination of its columns has an axis for each of them, any other sweep the axis ``row``.
+
+        Returns:
+            xarray.Dataset.
+
+        Raises:
+            SceneError: this kind of result has no such arrays.
+            FramesUnavailableError: xarray is not installed.
+        """
+        return _presentation().dataset_of(self)
 
     def write(self, path: Any) -> None:
         """Write the result into a file, whole or not at all; the suffix says in which format.

@@ -24,6 +24,7 @@ from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry, rubbing_entries
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain
+from cosserat_casadi.results.named_arrays import NamedArrays
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 
@@ -110,6 +111,43 @@ def motion_result(motion: Motion) -> dict[str, Any]:
     if motion.end is not None:
         data[KEY] = motion.end.to_data()
     return data
+
+
+def motion_arrays(motion: Motion) -> NamedArrays:
+    """The arrays of a motion over ``time``: inputs, rods, bodies, actuators, joints and energies, SI units."""
+    model = motion.model
+    arrays = NamedArrays(
+        coordinates={"time": ("time", motion.times, {"units": "s"}), "axis": list("xyz"), "quaternion": list("wxyz")},
+        attributes={"title": model.scene.title or "", **{key: _head(motion)[key] for key in ("outcome", "message")}},
+    )
+    if motion.error_estimate is not None:
+        arrays.attributes["error_estimate"] = motion.error_estimate
+    units = {entry.name: entry.declared.unit for entry in model.scene.free_inputs()}
+    for name, values in _inputs_over_time(motion).items():
+        axes = tuple(f"{name}.{number}" for number in range(1, values.ndim))
+        if values.shape[-1] == 3 and values.ndim > 1:
+            axes = (*axes[:-1], "axis")
+        arrays.add(name, ("time", *axes), values, units[name])
+    for name in model.discrete.rods:
+        entry = _rod_entry(motion, name)
+        _add_pose(arrays, f"{name}.tip", entry["tip"])
+        arrays.coordinates[f"{name}.X"] = entry["X"]
+        arrays.add(f"{name}.position", ("time", f"{name}.X", "axis"), entry["position"], "m")
+    for body in model.scene.bodies:
+        _add_pose(arrays, body.name, _pose_entry(motion.body(body.name)))
+    numbers = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in model.scene.actuators}
+    numbers |= {name: _joint_entry(motion, name) for name in model.joint}
+    for name, quantities in numbers.items():
+        for quantity, values in quantities.items():
+            arrays.add(f"{name}.{quantity}", ("time",), values)
+    for quantity, values in asdict(motion.energy).items():
+        arrays.add(f"energy.{quantity}", ("time",), values, "" if quantity == "imbalance" else "J")
+    return arrays
+
+
+def _add_pose(arrays: NamedArrays, name: str, pose: dict[str, FloatArray]) -> None:
+    arrays.add(f"{name}.position", ("time", "axis"), pose["position"], "m")
+    arrays.add(f"{name}.quaternion", ("time", "quaternion"), pose["quaternion"])
 
 
 def _contact_entry(motion: Motion) -> dict[str, Any]:

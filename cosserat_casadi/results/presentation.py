@@ -19,6 +19,7 @@ from typing import Any
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import MESHES, write_atomically
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, json_text, plain
+from cosserat_casadi.results.named_arrays import NamedArrays
 
 PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of figures."""
@@ -39,6 +40,7 @@ class Presentation:
         facts: function of the result that returns what matters as pairs of a label and its words.
         figure: function of the result that returns the matplotlib figure.
         table: function of the result that returns the header and the rows of its CSV file; empty where it has none.
+        arrays: function of the result that returns its arrays with named axes; empty where it has none.
         film: function (result, path, options) that draws its film; empty where it has none.
         writers: functions (result, path) that write a file of another format, by its suffix.
     """
@@ -47,6 +49,7 @@ class Presentation:
     facts: str
     figure: str
     table: str = ""
+    arrays: str = ""
     film: str = ""
     writers: Mapping[str, str] = field(default_factory=dict)
 
@@ -57,13 +60,13 @@ class Presentation:
         return tuple(dict.fromkeys((".json", *table, *self.writers, *PICTURES)))
 
 
-class PandasUnavailableError(CosseratError):
-    """A table as a DataFrame needs pandas."""
+class FramesUnavailableError(CosseratError):
+    """A result as a DataFrame needs pandas, as a Dataset xarray."""
 
     page = "notebook"
 
-    def __init__(self) -> None:
-        super().__init__("to_dataframe needs pandas: install it with  pip install 'cosserat-casadi[frames]'")
+    def __init__(self, method: str, package: str) -> None:
+        super().__init__(f"{method} needs {package}: install it with  pip install 'cosserat-casadi[frames]'")
 
 
 _MOTION = "results.motion_file:write_motion"
@@ -88,6 +91,7 @@ PRESENTATIONS = {
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
+        arrays="results.motion_file:motion_arrays",
         film="plots.animation:animate_motion",
         writers={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
     ),
@@ -117,6 +121,7 @@ PRESENTATIONS = {
         data="results.sweep_data:sweep_result",
         facts="results.facts:sweep_facts",
         figure="plots.sweep_plot:plot_sweep",
+        arrays="results.sweep_data:sweep_arrays",
         writers={".csv": _SWEEP, ".parquet": _SWEEP, ".dataset": _SWEEP},
     ),
     "SobolIndices": Presentation(
@@ -172,7 +177,7 @@ def frame_of(result: Any) -> Any:
 
     Raises:
         SceneError: this kind of result has no table.
-        PandasUnavailableError: pandas is not installed.
+        FramesUnavailableError: pandas is not installed.
     """
     if ".csv" not in presentation_of(result).suffixes:
         problem = f"{type(result).__name__} has no table"
@@ -180,11 +185,30 @@ def frame_of(result: Any) -> Any:
     try:
         import pandas
     except ImportError as error:
-        raise PandasUnavailableError from error
+        raise FramesUnavailableError("to_dataframe", "pandas") from error
     with TemporaryDirectory() as folder:
         table = Path(folder) / "table.csv"
         write(result, table)
         return pandas.read_csv(table)
+
+
+def dataset_of(result: Any) -> Any:
+    """The arrays of a result as an xarray.Dataset.
+
+    Raises:
+        SceneError: this kind of result has no arrays with named axes.
+        FramesUnavailableError: xarray is not installed.
+    """
+    arrays = presentation_of(result).arrays
+    if not arrays:
+        problem = f"{type(result).__name__} has no arrays over time or over a grid"
+        raise SceneError(Problem("to_xarray", problem, "take to_dict(), or what its attributes hold"))
+    try:
+        import xarray
+    except ImportError as error:
+        raise FramesUnavailableError("to_xarray", "xarray") from error
+    named: NamedArrays = _function(arrays)(result)
+    return xarray.Dataset(named.variables, named.coordinates, named.attributes)
 
 
 def figure_of(result: Any, **options: Any) -> Any:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
+
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.results.named_arrays import NamedArrays
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.sobol import CONFIDENCE, Estimates, SobolIndices
 
@@ -16,6 +20,28 @@ def sweep_result(sweep: Sweep) -> dict[str, Any]:
         "columns": {name: sweep[name] for name in sweep.columns},
         "record": sweep.record,
     }
+
+
+def sweep_arrays(sweep: Sweep) -> NamedArrays:
+    """The columns of a sweep: over an axis for each swept column where it is a full grid, else over ``row``."""
+    attributes = {"title": sweep.record.get("title") or ""}
+    swept = np.column_stack([sweep[name] for name in sweep.swept])
+    ticks = [np.unique(column) for column in swept.T]
+    shape = tuple(len(values) for values in ticks)
+    if len(swept) == math.prod(shape) == len(np.unique(swept, axis=0)):
+        # In the order of the axes: the last column runs fastest.
+        order = np.lexsort(swept.T[::-1])
+        arrays = NamedArrays(coordinates=dict(zip(sweep.swept, ticks, strict=True)), attributes=attributes)
+        axes, names = sweep.swept, sweep.found
+    else:
+        order = np.arange(len(swept))
+        shape = (len(swept),)
+        arrays = NamedArrays(attributes=attributes)
+        axes, names = ("row",), sweep.columns
+    for name in names:
+        arrays.add(name, axes, sweep[name][order].reshape(shape))
+    arrays.variables["outcome"] = (axes, np.array(sweep.outcome)[order].reshape(shape), {})
+    return arrays
 
 
 def sobol_result(indices: SobolIndices) -> dict[str, Any]:

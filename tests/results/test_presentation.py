@@ -12,11 +12,13 @@ from dataclasses import replace
 from enum import Enum
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
 from PIL import Image
 
 import cosserat_casadi
@@ -39,7 +41,7 @@ from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.result import Result
-from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, PandasUnavailableError, presentation_of
+from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, FramesUnavailableError, presentation_of
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.sweeps.outcome_file import read_sweep
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
@@ -269,8 +271,55 @@ def test_what_is_no_table_is_no_data_frame(monkeypatch: pytest.MonkeyPatch) -> N
     with pytest.raises(SceneError, match="Solution has no table"):
         solution().to_dataframe()
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(PandasUnavailableError, match=r"pip install 'cosserat-casadi\[frames\]'"):
+    with pytest.raises(FramesUnavailableError, match=r"pip install 'cosserat-casadi\[frames\]'"):
         MAKERS["EquilibriumPath"]().to_dataframe()
+
+
+@pytest.fixture
+def named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The three arguments that xarray receives, in its place where it is not installed."""
+    monkeypatch.setitem(sys.modules, "xarray", SimpleNamespace(Dataset=lambda *arguments: arguments))
+
+
+@pytest.mark.usefixtures("named")
+def test_a_motion_is_arrays_over_time() -> None:
+    motion = MAKERS["Motion"]()
+    variables, coordinates, attributes = motion.to_xarray()
+    axes, positions, about = variables["rod.position"]
+    assert (axes, about) == (("time", "rod.X", "axis"), {"units": "m"})
+    assert_allclose(positions, motion.section("rod", coordinates["rod.X"]).position, rtol=0, atol=0)
+    assert_allclose(variables["rod.tip.position"][1], positions[:, -1], rtol=0, atol=1e-14)
+    assert (variables["push.force"][0], variables["push.force"][2]) == (("time", "axis"), {"units": "N"})
+    assert variables["energy.kinetic"][0] == ("time",)
+    assert attributes["outcome"] == "completed"
+    sizes = {"time": len(motion.times), "axis": 3, "quaternion": 4, "rod.X": len(coordinates["rod.X"])}
+    for axes, values, _ in variables.values():
+        assert values.shape == tuple(sizes[axis] for axis in axes)
+
+
+@pytest.mark.usefixtures("named")
+def test_a_grid_has_an_axis_each_and_other_rows_one() -> None:
+    pairs = np.array([[1.0, 5.0, 6.0], [0.0, 5.0, 5.0], [0.0, 7.0, 7.0], [1.0, 7.0, 8.0]])
+    grid = Sweep(("a", "b"), ("sum",), pairs, np.array([0, 0, 1, 0]), {})
+    variables, coordinates, _ = grid.to_xarray()
+    assert {name: values.tolist() for name, values in coordinates.items()} == {"a": [0.0, 1.0], "b": [5.0, 7.0]}
+    axes, values, _ = variables["sum"]
+    assert (axes, values.tolist()) == (("a", "b"), [[5.0, 7.0], [6.0, 8.0]])
+    assert variables["outcome"][1][0, 1] == grid.outcome[2]
+    # Three corners of four, or one of them twice, are no grid.
+    for rows in ([0, 1, 2], [0, 1, 2, 2]):
+        variables, coordinates, _ = replace(grid, values=pairs[rows], outcomes=grid.outcomes[rows]).to_xarray()
+        assert not coordinates
+        assert variables["a"][0] == ("row",)
+        assert variables["sum"][1].tolist() == pairs[rows, 2].tolist()
+
+
+def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(SceneError, match="Solution has no arrays over time"):
+        solution().to_xarray()
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(FramesUnavailableError, match=r"to_xarray needs xarray: .*\[frames\]"):
+        sweep().to_xarray()
 
 
 @pytest.mark.parametrize("name", ["EquilibriumPath", "Motion"])
