@@ -24,7 +24,7 @@ help:
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema and the reference of the scene format anew"
-	@echo "make api        write docs/api anew from the docstrings"
+	@echo "make api        write docs/api anew from the docstrings, examples/notebook.ipynb from its page"
 	@echo "make docs       build the site of all pages, with a gallery of the examples, in build/site"
 
 $(STAMP): pyproject.toml
@@ -88,6 +88,7 @@ schema: $(STAMP)
 
 api: $(STAMP)
 	$(BIN)/python docs/api_pages.py
+	$(BIN)/python docs/notebook_file.py
 
 docs: $(STAMP)
 	$(BIN)/python -m docs.site --output build/site --runs out

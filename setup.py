@@ -14,6 +14,7 @@ SHIPPED = (
     "examples/sweeps/*.toml",
     "examples/validation/*.toml",
     "examples/*.py",
+    "examples/*.ipynb",
     "examples/swing_free/*.py",
     "examples/*.c",
     "docs/*.md",

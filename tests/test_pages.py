@@ -18,14 +18,15 @@ from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command
 ELSEWHERE = {
     "guide.md": "test_guide.py",
     "motion.md": "test_guide.py",
+    "notebook.md": "test_notebook.py",
     "control.md": "test_control_page.py",
     "sweeps.md": "sweep/test_page.py",
     "view.md": "view/test_view_page.py",
 }
 """Pages that a test of their own runs."""
 
-ONE_PROGRAM = ("extending.md", "notebook.md")
-"""Pages whose blocks of Python go on from each other; those of the first register kinds that no other test may meet."""
+ONE_PROGRAM = ("extending.md",)
+"""Pages whose blocks of Python go on from each other, and register kinds that no other test may meet."""
 
 RUN_HERE = [page for page in PAGES if page.name not in ELSEWHERE]
 

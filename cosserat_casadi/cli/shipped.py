@@ -7,6 +7,7 @@ there when a wheel is built.
 from __future__ import annotations
 
 import ast
+import json
 import os
 import re
 import tomllib
@@ -30,7 +31,7 @@ class Example:
 
     Attributes:
         name: its path in the folder of examples, without suffix.
-        file: a scene, a table of a sweep, or a program.
+        file: a scene, a table of a sweep, a program, or a notebook.
         title: one sentence.
         needs: files of the folder of examples that it reads or speaks of.
     """
@@ -42,10 +43,10 @@ class Example:
 
 
 def examples() -> dict[str, Example]:
-    """All examples by name: scenes, tables of sweeps, programs."""
+    """All examples by name: scenes, tables of sweeps, programs, notebooks."""
     folder = shipped_folder("examples")
     found = {}
-    for pattern in ("*.toml", "sweeps/*.toml", "validation/*.toml", "*.py"):
+    for pattern in ("*.toml", "sweeps/*.toml", "validation/*.toml", "*.py", "*.ipynb"):
         for file in sorted(folder.glob(pattern)):
             name = file.relative_to(folder).with_suffix("").as_posix()
             found[name] = Example(name, file, _title(file), _needs(file, folder))
@@ -69,7 +70,8 @@ def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
     """Other files that an example reads or mentions.
 
     Tables that a scene names, and what their folder says of source and licence; modules that a program imports from a
-    folder beside it; scenes and sources in C whose names stand in a program, its modules, or a table of a sweep.
+    folder beside it; scenes and sources in C whose names stand in a program, its modules, a notebook, or a table of a
+    sweep.
     """
     if file.suffix == ".toml" and file.parent.name != "sweeps":
         scene = tomllib.loads(file.read_text(encoding="utf-8"))
@@ -89,8 +91,10 @@ def _words(file: Path) -> set[str]:
 
 
 def _title(file: Path) -> str:
-    """Description of a file by itself: the title of a scene, else its first comment; the first line of a program."""
+    """The title of a scene, else its first comment; the first line of a program or a notebook."""
     text = file.read_text(encoding="utf-8")
+    if file.suffix == ".ipynb":
+        return str(json.loads(text)["cells"][0]["source"][0]).lstrip("# ").strip()
     if file.suffix == ".py":
         doc = ast.get_docstring(ast.parse(text)) or ""
         return doc.partition("\n")[0]

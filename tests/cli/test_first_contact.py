@@ -110,9 +110,10 @@ def test_a_bare_command_shows_its_help_and_no_error(capsys: pytest.CaptureFixtur
 
 def test_examples_are_those_of_the_repository() -> None:
     found = examples()
-    files = [*(ROOT / "examples").rglob("*.toml"), *(ROOT / "examples").glob("*.py")]
+    files = [path for kind in ("**/*.toml", "*.py", "*.ipynb") for path in (ROOT / "examples").glob(kind)]
     assert {example.file for example in found.values()} == set(files)
     assert found["nitinol_wire"].title == "Nitinol wire, own weight and a push at the tip"
+    assert found["notebook"].title == "From a notebook"
     assert all(example.title for example in found.values())
 
 
@@ -151,13 +152,14 @@ def test_chosen_examples_are_copied(tmp_path: Path) -> None:
         ("tendon_robot_mpc", "two_section_robot.toml"),
         ("tendon_robot_swing_free", "two_section_robot.toml"),
         ("feel_tip_force", "feel_tip_force.c"),
+        ("notebook", "nitinol_wire.toml"),
     ],
 )
 def test_copy_comes_with_what_it_needs(name: str, needed: str, tmp_path: Path) -> None:
     assert cosserat("examples", name, "--output", str(tmp_path)) == 0
     files = [file.relative_to(tmp_path) for file in tmp_path.rglob("*.*")]
     modules = [file for file in files if file.parent.name == "swing_free"]
-    assert len(files) == 2 + len(modules)
+    assert len(files) == 2 + len(modules) + (name == "notebook")
     assert bool(modules) == (name == "tendon_robot_swing_free")
     assert (tmp_path / needed).read_bytes() == (ROOT / "examples" / needed).read_bytes()
 
