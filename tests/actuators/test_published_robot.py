@@ -13,8 +13,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, scene_from_dict, solve
+from cosserat_casadi import build, read_scene, solve
 from cosserat_casadi.maths.typing import FloatArray
+from tests.conftest import ROOT
 from tests.families import mostly_slow
 
 YOUNGS_MODULUS = 54e9
@@ -30,15 +31,9 @@ LAST = np.repeat([DISKS, 2 * DISKS], 3)
 SHEAR_MODULUS = YOUNGS_MODULUS / (2 * (1 + POISSON_RATIO))
 AREA = np.pi * RADIUS**2
 SECOND_MOMENT = np.pi * RADIUS**4 / 4
-STIFFNESS = {
-    "bending_x": YOUNGS_MODULUS * SECOND_MOMENT,
-    "bending_y": YOUNGS_MODULUS * SECOND_MOMENT,
-    "torsion": 2 * SHEAR_MODULUS * SECOND_MOMENT,
-    "shear_x": SHEAR_MODULUS * AREA,
-    "shear_y": SHEAR_MODULUS * AREA,
-    "extension": YOUNGS_MODULUS * AREA,
-}
-COMPLIANCE = 1 / np.array(list(STIFFNESS.values()))
+BENDING = YOUNGS_MODULUS * SECOND_MOMENT
+TORSION = 2 * SHEAR_MODULUS * SECOND_MOMENT
+COMPLIANCE = 1 / np.array([BENDING, BENDING, TORSION, *AREA * np.array([SHEAR_MODULUS, SHEAR_MODULUS, YOUNGS_MODULUS])])
 ITERATIONS = 30
 
 
@@ -101,17 +96,12 @@ def published(tensions: FloatArray, *, without_normal: bool, rigid: bool = False
 
 
 def tip(tensions: FloatArray, strain: str) -> FloatArray:
-    """Of our robot, m."""
-    actuators = []
-    for number, (tension, hole, last) in enumerate(zip(tensions, HOLES, LAST, strict=True)):
-        there = (np.arange(1, last + 1) / (2 * DISKS)).tolist()
-        course = {"offset": hole[:2].tolist(), "holes": there, "span": [0.0, there[-1]]}
-        actuators.append({"name": f"t{number}", "kind": "tendon", "rod": "a", "tension": tension, **course})
-    admitted = list(STIFFNESS)[: 3 if strain == "kirchhoff" else 6]
-    stiffness = {name: STIFFNESS[name] for name in admitted}
-    rod = {"name": "a", "length": 2 * SECTION, "strain": strain, "stiffness": stiffness}
-    accuracy = {"modes": 3, "nodes": 5}
-    solution = solve(build(scene_from_dict({"schema": 1, "accuracy": accuracy, "rods": [rod], "actuators": actuators})))
+    """Of the robot of our example, m."""
+    file = ROOT / "examples" / "disk_robot.toml"
+    names = [actuator.name for actuator in read_scene(file).actuators]
+    settings = [f"{name}.tension={tension}" for name, tension in zip(names, tensions, strict=True)]
+    settings += [f'backbone.strain="{strain}"', "accuracy.modes=3", "accuracy.nodes=5"]
+    solution = solve(build(read_scene(file, settings)))
     assert solution.converged, solution.message
     return np.asarray(solution.tip().position[0])
 
