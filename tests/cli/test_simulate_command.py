@@ -52,7 +52,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def swing(scene: Scene, *, start: Solution | None = None, progress: Any = None, compiled: Any = None) -> Motion:
+def swing(
+    scene: Scene, *, start: Solution | None = None, progress: Any = None, compiled: Any = None, **_: Any
+) -> Motion:
     """Stands for the simulation: it reports as one does, and comes to the end."""
     assert scene.simulation is not None
     duration = scene.simulation.duration
@@ -148,7 +150,7 @@ def test_options_override_the_scene(folder: Path, command: Callable[..., int]) -
 def test_a_motion_may_start_from_a_result(folder: Path, command: Callable[..., int]) -> None:
     starts: list[Solution | None] = []
 
-    def remember(scene: Scene, *, start: Solution | None, progress: Any, compiled: Any) -> Motion:
+    def remember(scene: Scene, *, start: Solution | None, progress: Any, compiled: Any, **_: Any) -> Motion:
         starts.append(start)
         return swing(scene, progress=progress)
 
@@ -267,7 +269,7 @@ from cosserat_casadi.cli.main import main
 from cosserat_casadi.motion.trajectory import MotionOutcome, MotionProgress
 from tests.motions import motion_of
 
-def simulate(scene, *, start, progress, compiled):
+def simulate(scene, *, start, progress, compiled, **_):
     motion = motion_of(scene, {"push.force": [0.1, 0.3, 0.0]}, duration=0.2, frames=5)
     outcome = MotionOutcome.INTERRUPTED
     try:
