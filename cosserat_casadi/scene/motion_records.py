@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -148,7 +147,7 @@ wave = "one_minus_cosine"
         """Whether it is a wave along the rod."""
         return self.wave == "travelling"
 
-    @cached_property
+    @property
     def along_the_rod(self) -> FloatArray:
         """Legendre coefficients of envelope(X) cos(2π X/wavelength) and of envelope(X) sin(…), shape (2, degrees)."""
         assert self.wavelength is not None, "the record's rules ask for one"
