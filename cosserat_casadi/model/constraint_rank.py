@@ -20,6 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.spinning_bodies import free_spins
 from cosserat_casadi.model.system import Arguments, System
@@ -50,7 +51,11 @@ def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:
         return
-    probe = discrete_scene(scene, input_layout(scene), discretise(scene, MODES, NODES, "magnus4"))
+    layout = input_layout(scene)
+    # Loads with a number for each node are made for the nodes of another discretisation, and hold no rod.
+    loads = [load for load in scene.loads if layout.of_load(load.name or "", EFFECTS[load.kind].nodal) is None]
+    without_nodal = scene.model_copy(update={"loads": tuple(loads)})
+    probe = discrete_scene(without_nodal, layout, discretise(scene, MODES, NODES, "magnus4"))
     system = _at_a_random_shape(probe)
     spins = list(free_spins(system))
     if spins and not moving:
