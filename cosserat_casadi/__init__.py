@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.model.discretise import discretise as discretise
     from cosserat_casadi.motion.linear_model import LinearModel as LinearModel
     from cosserat_casadi.motion.linear_model import linearise as linearise
-    from cosserat_casadi.motion.motion_event import MotionEvent as MotionEvent
     from cosserat_casadi.motion.trajectory import Motion as Motion
     from cosserat_casadi.motion.trajectory import MotionOutcome as MotionOutcome
     from cosserat_casadi.motion.vibration_modes import Modes as Modes
@@ -85,7 +84,6 @@ _NAMES = {
     "model.build": ("Model",),
     "model.discretise": ("discretise",),
     "motion.linear_model": ("LinearModel", "linearise"),
-    "motion.motion_event": ("MotionEvent",),
     "motion.trajectory": ("Motion", "MotionOutcome"),
     "motion.vibration_modes": ("Modes", "modes_of"),
     "numerics.outcome": ("Outcome",),

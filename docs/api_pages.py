@@ -87,7 +87,6 @@ CONCEPTS = (
         (
             "simulate",
             "Motion",
-            "MotionEvent",
             "MotionOutcome",
             "modes_of",
             "Modes",

@@ -20,6 +20,7 @@ from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.motion_event import MotionEvent
@@ -214,8 +215,11 @@ def simulate(
             subject, start=start, simulation=simulation, progress=progress, source=source, events=events
         )
 
+    if part is None:
+        return simulated(start, simulation, progress)
+    refuse_tubes(subject)
     scene = subject.scene if isinstance(subject, Model) else subject
     whole = simulation or scene.simulation
-    if part is None or whole is None:
+    if whole is None:
         return simulated(start, simulation, progress)
     return simulate_in_parts(simulated, whole, Path(output or ""), part, start, progress)

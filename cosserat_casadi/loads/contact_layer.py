@@ -184,14 +184,15 @@ class _Drag:
 
 def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
     """How a section has moved; None where nothing rubs: at rest without memory, and on bodies."""
+    in_motion = load.takes_energy and load.obstacle.rubs and _moves(section)
+    if not (in_motion or _remembers(section)):
+        return None
     touching = _touching(load, section, normal)
-    if load.takes_energy and load.obstacle.rubs and _moves(section):
+    if in_motion:
         slip = load.obstacle.slip_speed
         velocity = section.velocity + ca.cross(section.angular_velocity, touching)
         sliding = _along_surface(velocity, normal)
         return _Drag(sliding, ca.sqrt(ca.sumsqr(sliding) + slip**2), slip, slip)
-    if not _remembers(section):
-        return None
     start, turned = section.data[1:4], ca.reshape(section.data[4:], 3, 3)
     moved = section.position - start + (section.rotation @ turned.T - ca.DM.eye(3)) @ touching
     way = _along_surface(moved, normal)

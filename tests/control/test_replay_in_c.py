@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import export, load
 from cosserat_casadi.codegen.compiled_motion import StepOptions
+from cosserat_casadi.numerics.collocation import radau
 from tests.codegen.test_load import cached, needs_compiler
 from tests.control.swing import STEP, optimum, task
 
@@ -21,7 +22,8 @@ EXACT = StepOptions(tolerance=1e-14, iterations=20)
 
 def test_an_optimum_replays_in_c(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
-    wanted = task()
+    # Steps in C have two stages.
+    wanted = task(radau(2))
     found = optimum(wanted)
     export(wanted.stage.model, tmp_path / "arm", "arm", dynamics=True)
     library = load(tmp_path / "arm")

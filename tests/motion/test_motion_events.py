@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, MotionEvent, SceneError, simulate
+from cosserat_casadi import Model, SceneError, simulate
+from cosserat_casadi.motion.motion_event import MotionEvent
 from tests.motion.stepping import moving_model
 from tests.motion.test_motions_that_go_on import swing
 

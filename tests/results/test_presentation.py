@@ -184,7 +184,6 @@ NO_RESULTS = {
     "Lifted",
     "LinearModel",
     "Model",
-    "MotionEvent",
     "MotionStage",
     "Problem",
     "Scene",
