@@ -124,6 +124,8 @@ def test_four_times_the_rows_take_no_more_memory(
         monkeypatch.setattr(f"cosserat_casadi.sweeps.{module}.BLOCK", 512)
     # What writing takes is looked at apart.
     monkeypatch.setattr(run, "write_sweep", lambda *_: None)
+    # How many chunks wait to be taken is else a matter of how threads are scheduled: 50 kB each.
+    monkeypatch.setattr("cosserat_casadi.sweeps.local.AHEAD", 1)
     peaks = []
     for rows in (FEW, 4 * FEW):
         over = written(rows, tmp_path / f"over-{rows}{suffix}")
