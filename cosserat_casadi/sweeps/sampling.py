@@ -83,7 +83,7 @@ def farthest_rows(
 
 
 def from_neighbour_to_neighbour(values: FloatArray) -> npt.NDArray[np.int64]:
-    """An order of few rows in which each is followed by the nearest of those left; the first stays first.
+    """An order of few rows in which each is followed by the nearest row that is left; the first stays first.
 
     Args:
         values: shape (rows, columns).

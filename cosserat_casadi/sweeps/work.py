@@ -9,8 +9,11 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.rows import RowLibrary
+from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import from_neighbour_to_neighbour
@@ -110,10 +113,9 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM, *, stability:
     modelled = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
-        exact = entry.scene.touches_exactly
-        in_contact = exact and not stability and len(entry.rows) >= IN_CONTACT_FROM
+        in_contact = len(entry.rows) >= IN_CONTACT_FROM and _touches_in_c(entry.scene, stability=stability)
         # Tubes choose their steps row by row.
-        if few or entry.scene.tubes or (exact and not in_contact):
+        if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):
@@ -123,6 +125,15 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM, *, stability:
         pieces = _pieces(modelled[first : first + MODELLED_ROWS])
         listed.append(Chunk(len(listed), tuple(pieces), compiled=False))
     return listed
+
+
+def _touches_in_c(scene: Scene, *, stability: bool) -> bool:
+    """Whether a scene is in exact contact, and C knows all that it has."""
+    try:
+        check_contact(scene, {"stability": stability})
+    except ExportError:
+        return False
+    return scene.touches_exactly
 
 
 def solve_parts(parts: Sequence[Part]) -> FloatArray:

@@ -59,6 +59,10 @@ def test_which_rows_in_contact_are_compiled() -> None:
     assert all(chunk.in_contact and not chunk.compiled for chunk in chunks(inputs_alone))
     # Stability in contact is not written in C.
     assert not any(chunk.in_contact for chunk in chunks(inputs_alone, stability=True))
+    # Nor are bodies: their rows keep the small chunks of Python.
+    body = '[[bodies]]\nname = "head"\nmass = 0.1\n[[joints]]\nrod = "rod"\nbody = "head"\nkind = "fixed"\n'
+    headed = variants_of(parse_scene(SCENE + body), table_of({"push.force.z": many}))
+    assert not any(chunk.in_contact for chunk in chunks(headed))
     few = variants_of(scene, table_of({"push.force.z": many[: IN_CONTACT_FROM - 1]}))
     assert not any(chunk.in_contact for chunk in chunks(few))
 
