@@ -244,7 +244,7 @@ def _estimate_in_c(
         touching = compiled.solve(inputs)
         if not touching.converged:
             return None
-        ways = [np.linalg.norm(tip[:3] - answer.tip(rod).position[0]) for rod, tip in touching.tips.items()]
+        ways = [np.linalg.norm(tip[:3] - answer.tip(rod).position) for rod, tip in touching.tips.items()]
         return touching.error_estimate if max(ways) <= SAME * min(rod.length for rod in here.model.scene.rods) else None
     parameters = here.parameters if here.parameters.size else None
     solved = compiled.solve(inputs, parameters=parameters)

@@ -75,20 +75,20 @@ def bending() -> tuple[Any, list[Row]]:
         dead.plot(r[:, 0], r[:, 2], label=f"{load:g}")
         shortening, across, _ = elastica(load)
         dead.plot(across, 1 - shortening, "k.", markersize=5)
-        error = distance_between(found.tip().position[0], [across, 0, 1 - shortening])
+        error = distance_between(found.tip().position, [across, 0, 1 - shortening])
     rows.append(("(a) elastica, F L²/EI = 100", "elliptic integrals", error))
     for load in (5.0, 20.0, 40.0):
         found = solved(cases.table({}, cases.tip([load, 0, 0], frame="body")))
         r, (across, along) = shape(found), cases.follower_cantilever(load)
         follower.plot(r[:, 0], r[:, 2], label=f"{load:g}")
         follower.plot(across, along, "k.", markersize=5)
-        error = distance_between(found.tip().position[0], [across, 0, along])
+        error = distance_between(found.tip().position, [across, 0, along])
     rows.append(("(a) follower force, F L²/EI = 40", "pendulum, DOP853", error))
     for turns in (0.5, 1, 2, 5):
         found = solved(cases.table(cases.round_rod(1.0), cases.tip(moment=[0, 2 * np.pi * turns, 0])))
         r = shape(found)
         rolled.plot(r[:, 0], r[:, 2], label=f"{turns:g}")
-        error = distance_between(found.tip().position[0], roll_up(turns)[0])
+        error = distance_between(found.tip().position, roll_up(turns)[0])
     rows.append(("(b) roll-up into 5 circles", "closed form", error))
     titles = ("dead force, F L²/EI", "follower force, F L²/EI", "tip moment, turns")
     for panel, title in zip((dead, follower, rolled), titles, strict=True):
@@ -108,7 +108,7 @@ def helix() -> tuple[Any, list[Row]]:
         values = {"tip.force": [0, 50 * share, 0], "tip.moment": [0, 200 * np.pi * share, 0]}
         found = solve(model, values, start=found)
         assert found.converged, found.message
-        lifted.append(float(found.tip().position[0][1]))
+        lifted.append(float(found.tip().position[1]))
     assert found is not None
     ends.plot(shares, lifted, color=BLUE)
     named(ends, "tip along the force", "λ", "displacement, m", equal=False)
@@ -217,7 +217,7 @@ def spring() -> tuple[Any, list[Row]]:
     for force in forces:
         found = solve(model, {"tip.force": [0, 0, force], "tip.moment": [0, -force, 0]}, start=found)
         assert found.converged, found.message
-        heights.append(float(found.tip().position[0][2]) - cases.TURNS * cases.PITCH)
+        heights.append(float(found.tip().position[2]) - cases.TURNS * cases.PITCH)
         if force in (forces[0], forces[4], forces[-1]):
             r = found.pose(np.linspace(0, 1, 1501)).position
             coils.plot(r[:, 0] + 3 * len(coils.lines), r[:, 2], linewidth=0.8)
@@ -249,7 +249,7 @@ def extremes() -> list[Row]:
     for name, tables in scenes.items():
         found, oracle = solved(tables).tip(), solve_by_shooting(tables)
         true = (oracle.tip_position, oracle.tip_rotation)
-        error = pose_error((found.position[0], found.rotation[0]), true, tables["rods"][0]["length"])
+        error = pose_error((found.position, found.rotation), true, tables["rods"][0]["length"])
         rows.append((name, "shooting, DOP853", error))
     return rows
 
@@ -268,7 +268,7 @@ def order() -> tuple[Any, list[Row]]:
     errors, modes = [], [2, 4, 6, 8, 12, 16, 24, 32, 48, 64]
     for count in modes:
         found = solve(fine_model(cases.table({}, cases.tip([10.0, 0, 0])), count, 4 * count))
-        errors.append(distance_between(found.tip().position[0], [across, 0, 1 - shortening]))
+        errors.append(distance_between(found.tip().position, [across, 0, 1 - shortening]))
     error.semilogy(modes, np.maximum(errors, 1e-17), ".-", color=BLUE, label="tip, elastica at 10")
     named(error, "error as the order grows", "modes; four times as many intervals", "error / L", equal=False)
     for panel in (condition, error):

@@ -189,7 +189,7 @@ def far_finer(near: Solution) -> Solution:
 
 def tip(solution: Solution) -> Tip:
     pose, length = solution.tip(), solution.model.scene.rods[0].length
-    return pose.position[0] / length, pose.rotation[0]
+    return pose.position / length, pose.rotation
 
 
 def cold_tip(seed: int) -> Tip | None:

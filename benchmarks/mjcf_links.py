@@ -39,7 +39,7 @@ def rows_of(name: str) -> list[list[str]]:
         chain = Chain(scene, links, shares=10)
         if chain.model.nv > MOST_COORDINATES:
             break
-        gaps = [np.linalg.norm(chain.tip(rod.name) - solution.tip(rod.name).position[0]) for rod in scene.rods]
+        gaps = [np.linalg.norm(chain.tip(rod.name) - solution.tip(rod.name).position) for rod in scene.rods]
         errors = np.abs(chain.frequencies(FREQUENCIES) / expected - 1.0)
         cells = [f"`{name}`" if not rows else "", str(links), str(chain.model.nv)]
         rows.append([*cells, f"{max(gaps) / length:.1e}", f"{errors.max():.1e}"])

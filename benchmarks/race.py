@@ -168,7 +168,7 @@ def in_python(case: Case) -> Iterator[Peer]:
     for tolerance in ERRORS:
         scene = scene_from_dict(case.scene(tolerance))
         solution, took = shortest(partial(solve_rods, scene), 1)
-        x, y, z = solution.tip().position[0]
+        x, y, z = solution.tip().position
         error = case.tip_error((x, y, z))
         yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, choosing and building included", error, took)
         _, again = shortest(partial(solve, solution.model), 20)

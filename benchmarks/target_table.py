@@ -44,7 +44,7 @@ def reachable(scene: Scene, count: int) -> list[tuple[PositionTarget, ...]]:
         placed = solve(model, {"flexor.tension": flexor, "abductor.tension": abductor})
         if not placed.converged:
             raise RuntimeError(placed.message)
-        rows.append((target.model_copy(update={"position": tuple(placed.tip().position[0])}),))
+        rows.append((target.model_copy(update={"position": tuple(placed.tip().position)}),))
     return rows
 
 

@@ -193,7 +193,7 @@ def arm_moved(found: Identification, pressure: float) -> FloatArray:
     places = []
     for pascals in (0.0, 100.0 * pressure):
         pose = at(found, {"chamber.pressure": pascals}).body("end")
-        places.append(pose.position[0] + markers @ pose.rotation[0].T)
+        places.append(pose.position + markers @ pose.rotation.T)
     return np.asarray(places[1] - places[0])
 
 
@@ -297,7 +297,7 @@ def draw_strip(axes: Any, found: Identification) -> None:
     data = columns("cantilever-steel/strip_tip.csv")
     loads = np.array(data["tip_load_N"], dtype=float)
     curve = np.linspace(0.0, loads.max(), 25)
-    drops = [-at(found, {"hung.force": [0, 0, -load]}).tip().position[0, 2] for load in curve]
+    drops = [-at(found, {"hung.force": [0, 0, -load]}).tip().position[2] for load in curve]
     axes.plot(curve, 1e3 * np.array(drops), color=MODELLED, label="modelled")
     axes.plot(loads, 1e3 * np.array(data["tip_drop_m"], dtype=float), "o", color=MEASURED, ms=4, label="measured")
     axes.set(title="Steel strip", xlabel="load, N", ylabel="drop of the tip, mm")
@@ -326,7 +326,7 @@ def draw_silicone(axes: Any, found: Identification) -> None:
     drops = []
     for load in curve:
         pose = at(found, {"hung.force": [0, 0, -load]}).body("face")
-        drops.append(0.021 - (pose.position[0] + pose.rotation[0] @ np.array([0.0, 0.0, 0.021]))[2])
+        drops.append(0.021 - (pose.position + pose.rotation @ np.array([0.0, 0.0, 0.021]))[2])
     axes.plot(curve, 1e3 * np.array(drops), color=MODELLED, label="modelled")
     measured = -1e3 * np.array(data["dz_m"], dtype=float)[chosen]
     axes.plot(loads, measured, "o", color=MEASURED, ms=4, label="measured, twice each")
@@ -358,7 +358,7 @@ def draw_wing(axes: Any, found: Identification) -> None:
         curve = np.linspace(0.0, masses.max(), 13)
         for mass in curve:
             pose = at(found, {load: [0, 0, -9.807 * mass]}).body("tip")
-            heights.append((pose.position[0] + pose.rotation[0] @ np.array([0.0, offset, 0.0]))[2])
+            heights.append((pose.position + pose.rotation @ np.array([0.0, offset, 0.0]))[2])
         axes.plot(curve, 1e3 * np.array(heights), color=MODELLED)
         words = f"{name}, {column.split('_')[0]}"
         axes.plot(masses, 1e3 * np.array(data[column], dtype=float), marker, color=MEASURED, ms=4, label=words)

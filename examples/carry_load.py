@@ -132,7 +132,7 @@ def carry(model: Model, points: np.ndarray, *, bounded: bool) -> list[Solution]:
 def place_of_load(solution: Solution) -> np.ndarray:
     """Where the load is, m."""
     platform = solution.body()
-    return np.asarray(platform.position[0] + platform.rotation[0] @ [0.0, 0.0, HEIGHT])
+    return np.asarray(platform.position + platform.rotation @ [0.0, 0.0, HEIGHT])
 
 
 def margins(equilibria: list[Solution]) -> np.ndarray:
@@ -144,7 +144,7 @@ def margins(equilibria: list[Solution]) -> np.ndarray:
 def draw_robot(space: Axes3D, solution: Solution, colour: str, alpha: float = 1.0) -> None:
     """Legs, platform and load."""
     platform, load = solution.body(), place_of_load(solution)
-    corners = platform.position[0] + PLATE * RAILS @ platform.rotation[0].T
+    corners = platform.position + PLATE * RAILS @ platform.rotation.T
     for leg in LEGS:
         line = solution.pose(np.linspace(0.0, 1.0, 25), leg).position
         space.plot(*line.T, color=colour, alpha=alpha, linewidth=1.6)

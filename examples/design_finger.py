@@ -202,7 +202,7 @@ def equilibria_of(model: Model, tensions: FloatArray) -> list[Solution]:
 
 def reached(equilibria: list[Solution]) -> float:
     """Area that the tips enclose, m²."""
-    tips = np.array([solution.tip("finger").position[0] for solution in equilibria])
+    tips = np.array([solution.tip("finger").position for solution in equilibria])
     return float(area_of(ca.DM(tips[:, [0, 2]].T)))
 
 
@@ -214,7 +214,7 @@ def draw(designs: Mapping[str, Design], file: Path) -> None:
     region, *fingers = figure.subplots(1, 1 + len(designs), width_ratios=[2.4, *[1.0] * len(designs)])
     for panel, color, (name, design) in zip(fingers, ("0.5", "#4477aa"), designs.items(), strict=True):
         equilibria = equilibria_of(finger(design), tensions_around(FINE))
-        tips = np.array([solution.tip("finger").position[0] for solution in equilibria])
+        tips = np.array([solution.tip("finger").position for solution in equilibria])
         outline = 1e3 * np.vstack([tips, tips[:1]])
         region.fill(outline[:, 0], outline[:, 2], color=color, alpha=0.4, label=name)
         for solution in equilibria[:: FINE // 4]:

@@ -236,7 +236,7 @@ def circle(centre: np.ndarray, seconds: np.ndarray) -> np.ndarray:
 
 def simulate(known: Solution, robot: Model, stage: ca.Function, solver: str, steps: int, repeats: int = 1) -> Run:
     """Follow the circle; a plan that is none holds the tensions for a step."""
-    centre = known.tip().position[0]
+    centre = known.tip().position
     controller = Controller(known.model, stage, solver, STAGES, known)
     tensions, offset = known.inputs.copy(), np.zeros(3)
     state = solve(robot, raise_on_failure=True)
@@ -248,9 +248,9 @@ def simulate(known: Solution, robot: Model, stage: ca.Function, solver: str, ste
             controller.take(plan)
             tensions = np.clip(controller.next_tensions(plan), LEAST, LARGEST)
         state = move(robot, tensions, HEAVIER if k >= steps // 2 else PAYLOAD, state)
-        tip = state.tip().position[0]
+        tip = state.tip().position
         predicted = solve(known.model, dict(zip(TENSIONS, tensions, strict=True)), start=known, raise_on_failure=True)
-        offset = tip - predicted.tip().position[0]
+        offset = tip - predicted.tip().position
         wanted.append(ahead[0])
         tips.append(tip)
         pulls.append(tensions)

@@ -96,7 +96,7 @@ def draw(tensions: np.ndarray, equilibria: list[Solution], file: Path) -> None:
     space = figure.add_subplot(1, 2, 1, projection="3d")
     for solution in equilibria:
         space.plot(*solution.pose(np.linspace(0, 1, 41)).position.T, color="#4477aa", alpha=0.6)
-    tips = np.array([solution.tip().position[0] for solution in [*equilibria, equilibria[0]]])
+    tips = np.array([solution.tip().position for solution in [*equilibria, equilibria[0]]])
     space.plot(*tips.T, color="#ee6677", marker="o", markersize=4)
     space.set(xlabel="x, m", ylabel="y, m", zlabel="z, m")
     space.set_aspect("equal")

@@ -251,7 +251,7 @@ class Height(Target[HeightRecord]):
         return (position[2] - target.height) / length_of(model, target)
 
     def gap(self, target: HeightRecord, solution: Solution) -> TargetMiss:
-        height = solution.tip(target.rod).position[0, 2]
+        height = solution.tip(target.rod).position[2]
         return TargetMiss(f"height of {target.rod}", abs(float(height - target.height)), None)
 
 
@@ -523,7 +523,7 @@ def test_joints_and_supports_are_marked_by_what_they_hold() -> None:
 def test_inverse() -> None:
     """The height that other inputs lead to is found again by the muscle alone."""
     driven = FINGER.replace(INPUTS, '["muscle.contraction"]')
-    wanted = solve(build(parse_scene(driven)), {"muscle.contraction": 0.03}).tip().position[0, 2]
+    wanted = solve(build(parse_scene(driven)), {"muscle.contraction": 0.03}).tip().position[2]
     target = f'[[targets]]\nkind = "height"\nrod = "finger"\nheight = {wanted}\n'
     bound = '[[bounds]]\ninput = "muscle.contraction"\nlower = 0.0\nupper = 0.1\n'
     found = inverse(build(parse_scene(driven + target + bound)))
@@ -540,7 +540,7 @@ def test_identification() -> None:
     stiffer = parse_scene(FINGER.replace("5e8", "6e8"))
     forces = [0.02, 0.2]
     solutions = [solve(build(stiffer), {"push.force": [force, -0.03, 0.0]}) for force in forces]
-    heights = [solution.tip().position[0, 2] for solution in solutions]
+    heights = [solution.tip().position[2] for solution in solutions]
     found = identify(build(scene.with_unknowns()), {"a.csv": {"f": forces, "z": heights}})
     assert_allclose(found.shared, [6e8], rtol=1e-6, atol=0)
 
@@ -554,7 +554,7 @@ def test_sweep_and_derivatives_in_c(
     library = load(folder / "robot")
     (rod, *_) = solution.model.discrete.rods
     position = library.tip[rod](library.solve().x, library.defaults)[0].full()[:, 0]
-    assert_allclose(position, solution.tip(rod).position[0], rtol=0, atol=1e-9)
+    assert_allclose(position, solution.tip(rod).position, rtol=0, atol=1e-9)
     columns = {
         "finger": "push.force.x = [0.0, 0.1, 0.2]\nspring.anchor.y = [0.0, 0.1]\nspring.stiffness = [2.0, 3.0]\n",
         "plate": "pull.force.x = [0.0, 1.0, 2.0]\nwind.force.z = [0.0, -0.1]\nleft.length = [0.2, 0.21]\n",
@@ -604,7 +604,7 @@ def test_solution_vs_initial_value() -> None:
     scene = parse_scene(FINGER.replace("modes = 3, nodes = 6, tolerance = 0.05", "tolerance = 1e-6"))
     solution = solve(scene)
     assert solution.converged
-    tip = solution.tip().position[0]
+    tip = solution.tip().position
     pull = STIFFNESS * (ANCHOR - tip)
     properties = rod_properties(scene.rods[0])
     assert properties.linear_density is not None
@@ -660,11 +660,11 @@ def test_cylindrical_joint_bears_nothing_along_and_about_its_axis() -> None:
     found = plate(pull={"force": [force, 0, 0], "moment": [moment, 0, 0]})
     assert found.outcome is Outcome.CONVERGED
     body = found.body("plate")
-    assert_allclose(body.position[0], [HALF * (1 + force / 2000), 0, 0], rtol=0, atol=1e-12)
+    assert_allclose(body.position, [HALF * (1 + force / 2000), 0, 0], rtol=0, atol=1e-12)
     twist = moment * HALF / 0.04
     turned = [[1, 0, 0], [0, np.cos(twist), -np.sin(twist)], [0, np.sin(twist), np.cos(twist)]]
     straight = found.model.discrete.unloaded.frames[next(iter(found.model.discrete.frames))].start.rotation
-    assert_allclose(body.rotation[0], turned @ straight, rtol=0, atol=1e-12)
+    assert_allclose(body.rotation, turned @ straight, rtol=0, atol=1e-12)
     assert_allclose(found.base_wrench("right").force, 0.0, rtol=0, atol=1e-12)
     assert_allclose(found.base_wrench("right").moment, 0.0, rtol=0, atol=1e-12)
 
@@ -674,7 +674,7 @@ def test_cylindrical_joint_holds_across_its_axis() -> None:
     force = 1e-3
     found = plate(pull={"force": [0, 0, -force]})
     sag = force * (2 * HALF) ** 3 / (192 * 0.05)
-    assert_allclose(found.body("plate").position[0, 2], -sag, rtol=1e-6, atol=0)
+    assert_allclose(found.body("plate").position[2], -sag, rtol=1e-6, atol=0)
     assert_allclose(found.base_wrench("right").force[0], 0.0, rtol=0, atol=1e-9)
 
 
@@ -683,7 +683,7 @@ def test_roller_vs_propped_cantilever() -> None:
     load = 0.01
     found = plate(wind={"force": [0, 0, -load]})
     assert found.converged
-    assert_allclose(found.tip("beam").position[0, 2], 0.0, rtol=0, atol=1e-12)
+    assert_allclose(found.tip("beam").position[2], 0.0, rtol=0, atol=1e-12)
     base = found.base_wrench("beam").force
     assert_allclose(base[2], 5 / 8 * load * 0.3, rtol=1e-5, atol=0)
     assert_allclose(base[:2], 0.0, rtol=0, atol=1e-12)

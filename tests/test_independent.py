@@ -70,8 +70,8 @@ def test_solution_vs_initial_value_integration(name: str) -> None:
     base = solution.base_wrench()
     reached = integrate(wanted, base.force, base.moment)
     tip = solution.tip()
-    assert_allclose(reached.position, tip.position[0], rtol=0, atol=1e-9)
-    assert_allclose(reached.rotation, tip.rotation[0], rtol=0, atol=1e-9)
+    assert_allclose(reached.position, tip.position, rtol=0, atol=1e-9)
+    assert_allclose(reached.rotation, tip.rotation, rtol=0, atol=1e-9)
     size = 1.0 + np.abs(base.force).max() + np.abs(base.moment).max()
     assert_allclose(reached.force_left, 0.0, rtol=0, atol=1e-10 * size)
     assert_allclose(reached.moment_left, 0.0, rtol=0, atol=1e-9 * size)
@@ -85,7 +85,7 @@ def test_error_estimate_vs_initial_value_integration(name: str) -> None:
     fine = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))
     tip, true = solution.tip(), fine.tip()
     length = wanted.rods[0].length
-    error = pose_error((tip.position[0], tip.rotation[0]), (true.position[0], true.rotation[0]), length)
+    error = pose_error((tip.position, tip.rotation), (true.position, true.rotation), length)
     assert solution.converged
     assert solution.error_estimate is not None
     assert error <= 10 * solution.error_estimate
@@ -112,9 +112,9 @@ def test_moment_rolls_a_rod_into_circles(turns: float) -> None:
     moment = 2 * np.pi * turns
     solution = solved(push(force=[0, 0, 0], moment=[0, 0, moment]))
     expected = [np.sin(moment) / moment, (1 - np.cos(moment)) / moment, 0.0]
-    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().position, expected, rtol=0, atol=1e-10)
     cosine, sine = np.cos(moment), np.sin(moment)
-    assert_allclose(solution.tip().rotation[0][:, 2], [cosine, sine, 0], rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().rotation[:, 2], [cosine, sine, 0], rtol=0, atol=1e-10)
 
 
 def test_constant_intrinsic_strain_is_a_screw() -> None:
@@ -130,8 +130,8 @@ def test_constant_intrinsic_strain_is_a_screw() -> None:
     ]
     twist[2, 3] = 1.0
     pose = expm(twist)
-    assert_allclose(solution.tip().position[0], pose[:3, 3], rtol=0, atol=1e-10)
-    assert_allclose(solution.tip().rotation[0], pose[:3, :3], rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().position, pose[:3, 3], rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().rotation, pose[:3, :3], rtol=0, atol=1e-10)
 
 
 def test_pull_stretches_by_force_over_axial_stiffness() -> None:
@@ -144,14 +144,14 @@ def test_pull_stretches_by_force_over_axial_stiffness() -> None:
         "extension": 50.0,
     }
     solution = solved(push(force=[5.0, 0, 0]), strain="reissner", stiffness=stiffness)
-    assert_allclose(solution.tip().position[0], [1.1, 0, 0], rtol=0, atol=1e-13)
+    assert_allclose(solution.tip().position, [1.1, 0, 0], rtol=0, atol=1e-13)
 
 
 def test_moment_along_the_axis_twists_by_moment_over_torsion_stiffness() -> None:
     solution = solved(push(force=[0, 0, 0], moment=[0.9, 0, 0]))
-    assert_allclose(solution.tip().position[0], [1, 0, 0], rtol=0, atol=1e-12)
+    assert_allclose(solution.tip().position, [1, 0, 0], rtol=0, atol=1e-12)
     # Local x starts along world y and turns about world x.
-    assert_allclose(solution.tip().rotation[0][:, 0], [0, np.cos(0.9), np.sin(0.9)], rtol=0, atol=1e-12)
+    assert_allclose(solution.tip().rotation[:, 0], [0, np.cos(0.9), np.sin(0.9)], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("load", mostly_slow([0.5, 1.0, 2.0, 5.0, 10.0, 30.0], quick=[0.5, 5.0, 30.0]))
@@ -159,14 +159,14 @@ def test_elastica_vs_elliptic_integrals(load: float) -> None:
     """Cantilever under a dead transverse force F: the inextensible elastica."""
     along, across, angle = elastica(load)
     tip = solved(push(force=[0, load, 0])).tip()
-    assert_allclose(tip.position[0], [along, across, 0], rtol=0, atol=1e-10)
-    assert_allclose(tip.rotation[0][:, 2], [np.cos(angle), np.sin(angle), 0], rtol=0, atol=1e-9)
+    assert_allclose(tip.position, [along, across, 0], rtol=0, atol=1e-10)
+    assert_allclose(tip.rotation[:, 2], [np.cos(angle), np.sin(angle), 0], rtol=0, atol=1e-9)
 
 
 def test_elastica_vs_published_table() -> None:
     """K. Mattiasson, Int. J. Numer. Meth. Engng 17 (1981) 145: F ℓ²/EI = 1 and 10, eight published digits or fewer."""
     for load, across, shortening in ((1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)):
-        position = solved(push(force=[0, load, 0])).tip().position[0]
+        position = solved(push(force=[0, load, 0])).tip().position
         assert_allclose([position[1], 1 - position[0]], [across, shortening], rtol=0, atol=6e-6)
 
 
@@ -188,14 +188,14 @@ def test_small_push_vs_beam_theory() -> None:
     stiffness = {"bending_x": 1.0, "bending_y": 2.0, "torsion": 1.0, "shear_x": 7.0, "shear_y": 5.0, "extension": 50.0}
     solution = solved(push(force=[0, force, 0]), strain="reissner", stiffness=stiffness)
     # World y is local x: bending about local y, shear along local x.
-    assert_allclose(solution.tip().position[0][1], force * (1 / 6 + 1 / 7), rtol=1e-8, atol=0)
+    assert_allclose(solution.tip().position[1], force * (1 / 6 + 1 / 7), rtol=1e-8, atol=0)
 
 
 @pytest.mark.parametrize("direction", [0, 1])
 def test_cantilever_pushed_to_plus_x_bends_to_plus_x(direction: int) -> None:
     force = [0.0, 0.0, 0.0]
     force[direction] = 0.3
-    tip = solve(build(scene(push(force=force)))).tip().position[0]
+    tip = solve(build(scene(push(force=force)))).tip().position
     assert tip[direction] > 0.01
 
 

@@ -58,7 +58,7 @@ def test_random_scenes_vs_shooting(seed: int) -> None:
     solution = solve(wanted)
     assert solution.converged, solution.message
     length, tip, base = wanted.rods[0].length, solution.tip(), solution.base_wrench()
-    error = pose_error((tip.position[0], tip.rotation[0]), (oracle.tip_position, oracle.tip_rotation), length)
+    error = pose_error((tip.position, tip.rotation), (oracle.tip_position, oracle.tip_rotation), length)
     assert error <= 2e-9
     size = np.abs(oracle.base_force).max() + np.abs(oracle.base_moment).max() / length
     assert_allclose(base.force, oracle.base_force, rtol=0, atol=1e-8 * size)

@@ -153,7 +153,7 @@ class _OfFrame(Target[FrameType]):
         return list(outputs[:2])
 
     def _reached(self, target: Any, solution: Any) -> tuple[str, FloatArray, FloatArray]:
-        """Name of the section or body of the target, its position, shape (3,), and its quaternion, shape (1, 4)."""
+        """Name of the section or body of the target, its position and its quaternion."""
         if target.rod is None:
             what = f"body {target.body}"
             pose = solution.body(target.body)
@@ -162,8 +162,8 @@ class _OfFrame(Target[FrameType]):
             pose = solution.tip(target.rod)
         else:
             what = f"section X = {target.at:g} of {target.rod}"
-            pose = solution.pose(np.array([target.at]), target.rod)
-        return what, np.ravel(pose.position), np.reshape(pose.quaternion, (1, 4))
+            pose = solution.pose(target.at, target.rod)
+        return what, pose.position, pose.quaternion
 
 
 @final
@@ -197,8 +197,8 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
         """The distance and the angle."""
         what, position, quaternion = self._reached(target, solution)
         distance = math.dist(position, target.position)
-        angles = rotation_angles(np.array([target.quaternion]), quaternion)
-        return TargetMiss(what, distance, float(angles[0]))
+        angle = rotation_angles(np.array(target.quaternion), quaternion)
+        return TargetMiss(what, distance, float(angle))
 
 
 @final

@@ -127,7 +127,7 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
 
 
 def _distance(first: SolvedPoses, second: SolvedPoses, length: float) -> float:
-    distances = np.linalg.norm(first.position - second.position, axis=1)
+    distances = np.linalg.norm(first.position - second.position, axis=-1)
     angles = rotation_angles(first.quaternion, second.quaternion)
     largest_distance = float(distances.max()) / length
     largest_angle = float(angles.max())

@@ -90,7 +90,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
 def _body_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     """The contact of a body, at its origin."""
     assert layer.body is not None
-    position = solution.body(layer.body).position[0]
+    position = solution.body(layer.body).position
     distance, gradient, _ = surface(layer.obstacle)(position)
     gap = float(distance) - layer.radius
     if gap < layer.obstacle.width:
@@ -102,8 +102,8 @@ def _body_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
 def _disk_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     """The contact of a disk, at its section."""
     at = float(layer.at)
-    pose = solution.pose([at], layer.rod)
-    gap, force = push_on_disk(layer)(pose.position[0], pose.rotation[0], [layer.radius, layer.thickness])
+    pose = solution.pose(at, layer.rod)
+    gap, force = push_on_disk(layer)(pose.position, pose.rotation, [layer.radius, layer.thickness])
     width = layer.obstacle.width
     if float(gap) < width:
         assert layer.rod is not None

@@ -26,12 +26,12 @@ ModelType = TypeVar("ModelType", bound=SystemFunctions)
 
 @dataclass(frozen=True)
 class SolvedPoses:
-    """Poses of k sections in the world frame.
+    """Pose of a section, a tip or a body in the world frame, or poses of k sections with an axis (k,) in front.
 
     Attributes:
-        position: shape (k, 3), m.
-        rotation: world_R_section, shape (k, 3, 3).
-        quaternion: world_Q_section, w x y z, shape (k, 4).
+        position: shape (3,) or (k, 3), m.
+        rotation: world_R_section, shape (3, 3) or (k, 3, 3).
+        quaternion: world_Q_section, w x y z, shape (4,) or (k, 4).
     """
 
     position: FloatArray
@@ -234,11 +234,10 @@ class Solution(Equilibrium[Model]):
 
     def tip(self, name: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip."""
-        tip = np.array([1.0])
-        return self.pose(tip, name)
+        return self.pose(1.0, name)
 
     def body(self, name: str | None = None) -> SolvedPoses:
-        """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
+        """Pose of a rigid body; the name may be left out where there is one body.
 
         Raises:
             KeyError: there is no such body, or there are several to choose from.
@@ -252,42 +251,37 @@ class Solution(Equilibrium[Model]):
         pose = self.model.body[chosen]
         position, quaternion, rotation = pose(self.x, self.inputs)
         return SolvedPoses(
-            position=position.full().T,
-            rotation=rotation.full()[None],
-            quaternion=quaternion.full().T,
+            position=position.full()[:, 0],
+            rotation=rotation.full(),
+            quaternion=quaternion.full()[:, 0],
         )
 
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> SolvedPoses:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
 
         Args:
-            X: shape (k,).
+            X: one abscissa, or an array of shape (k,).
             rod: name of the rod; may be left out where there is one.
         """
         name = self.model.rod_name(rod)
         fields = self._nodal_fields(name)
         interpolation = self._interpolation(X, name)
-        position = interpolation @ fields.position.T
-        quaternion = interpolation @ fields.quaternion.T
-        # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
-        quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
-        return SolvedPoses(position, rotations(quaternion), quaternion)
+        return poses_between_nodes(interpolation, fields.position.T, fields.quaternion.T)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
-        """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
+        """Strain ξ = [K; Γ] at abscissae X, shape (6,) at one or (k, 6) at k."""
         name = self.model.rod_name(rod)
         discrete = self.model.discrete
         discrete_rod = discrete.rods[name]
         rod_slice = discrete.unknowns.strain(name)
         # Strains are written per reference length: a rod that is drawn out takes the ratio.
         ratio = self.model.length_ratio(name, self.inputs)
-        abscissae = _abscissae(X)
         q = ca.DM(self.x[rod_slice])
-        strain = ca.DM(discrete_rod.at(q, abscissae, ratio))
-        return np.asarray(strain.full().T)
+        strain = ca.DM(discrete_rod.at(q, np.atleast_1d(X), ratio))
+        return np.reshape(strain.full().T, (*np.shape(X), 6))
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
-        """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
+        """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames, N m and N, shape as of strains."""
         name = self.model.rod_name(rod)
         fields = self._nodal_fields(name)
         interpolation = self._interpolation(X, name)
@@ -332,10 +326,8 @@ class Solution(Equilibrium[Model]):
         return _NodalFields(*arrays)
 
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
-        """Matrix that takes values at the nodes of a rod to abscissae, shape (k, nodes)."""
-        discrete_rod = self.model.discrete.rods[rod]
-        abscissae = _abscissae(X)
-        return discrete_rod.grid.interpolation_matrix(abscissae)
+        """Matrix that takes values at the nodes of a rod to abscissae, shape (nodes,) or (k, nodes)."""
+        return self.model.discrete.rods[rod].grid.interpolation_matrix(X)
 
 
 class _NodalFields(NamedTuple):
@@ -356,18 +348,28 @@ class _NodalFields(NamedTuple):
     base_moment: FloatArray
 
 
-def _abscissae(X: npt.ArrayLike) -> FloatArray:
-    abscissae = np.asarray(X, dtype=float)
-    return np.atleast_1d(abscissae)
+def poses_between_nodes(interpolation: FloatArray, position: FloatArray, quaternion: FloatArray) -> SolvedPoses:
+    """Poses of sections from those at the nodes of a rod.
+
+    Args:
+        interpolation: :meth:`Grid.interpolation_matrix`, shape (nodes,) for one section or (k, nodes).
+        position: at the nodes, shape (nodes, 3), m.
+        quaternion: at the nodes, shape (nodes, 4).
+    """
+    between = interpolation @ quaternion
+    # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
+    between /= np.linalg.norm(between, axis=-1, keepdims=True)
+    return SolvedPoses(interpolation @ position, rotations(between), between)
 
 
 def rotations(q: FloatArray) -> FloatArray:
     """Rotation matrices of unit quaternions.
 
     Args:
-        q: w x y z, shape (k, 4).
+        q: w x y z, shape (4,) or (k, 4).
 
     Returns:
-        shape (k, 3, 3).
+        shape (3, 3) or (k, 3, 3).
     """
-    return np.moveaxis(quaternion_to_matrix(q.T), -1, 0)
+    columns = quaternion_to_matrix(q.T)
+    return columns if q.ndim == 1 else np.moveaxis(columns, -1, 0)

@@ -205,18 +205,19 @@ class Grid:
         elements = np.searchsorted(inner, X, side="left")
         return elements.astype(np.int64)
 
-    def interpolation_matrix(self, X: FloatArray) -> FloatArray:
-        """Matrix from nodal values to values at abscissae X of the rod, in [0, 1], shape (len(X), M)."""
-        matrix = np.zeros((len(X), self.size))
-        elements = self.element_of(X)
+    def interpolation_matrix(self, X: npt.ArrayLike) -> FloatArray:
+        """Matrix from nodal values to values at abscissae X of the rod, in [0, 1], shape (M,) of one or (k, M) of k."""
+        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+        matrix = np.zeros((len(abscissae), self.size))
+        elements = self.element_of(abscissae)
         spans = list(pairwise(self.known_places))
         # All rows of an element at once: where many sections are looked at, this is most of the work.
         for element in np.unique(elements).tolist():
             rows = np.flatnonzero(elements == element)
             start, end = spans[element]
-            local = (X[rows] - start) / (end - start)
+            local = (abscissae[rows] - start) / (end - start)
             matrix[rows, self._nodes_of(element)] = chebyshev.interpolation_matrix(self.intervals, local)
-        return matrix
+        return matrix.reshape(*np.shape(X), self.size)
 
     @property
     def _nodes_per_element(self) -> int:

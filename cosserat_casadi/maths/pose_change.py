@@ -19,11 +19,11 @@ def rotation_vectors(first: FloatArray, second: FloatArray) -> FloatArray:
     """Rotations that lead from some orientations to others: axes times angles, in the axes of the first.
 
     Args:
-        first: unit quaternions world_Q_section, w x y z, shape (k, 4).
+        first: unit quaternions world_Q_section, w x y z, shape (4,) or (k, 4).
         second: as many others.
 
     Returns:
-        shape (k, 3), rad; the norms are in [0, π].
+        shape (3,) or (k, 3), rad; the norms are in [0, π].
     """
     difference = quaternion_product(quaternion_conjugate(first.T), second.T)
     # Q and −Q are one rotation: the sign that turns by less.
@@ -39,13 +39,13 @@ def rotation_vectors(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def rotation_angles(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Angles of the rotations between two sets of orientations, shape (k,), rad, in [0, π].
+    """Angles of the rotations between two sets of orientations, shape () or (k,), rad, in [0, π].
 
     Args:
-        first: unit quaternions, w x y z, shape (k, 4).
+        first: unit quaternions, w x y z, shape (4,) or (k, 4).
         second: as many others.
     """
-    return np.asarray(np.linalg.norm(rotation_vectors(first, second), axis=1))
+    return np.asarray(np.linalg.norm(rotation_vectors(first, second), axis=-1))
 
 
 def change_size(change: FloatArray) -> float:

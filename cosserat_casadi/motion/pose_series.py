@@ -88,21 +88,20 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
     Args:
         model: the model.
         rod: name of the rod.
-        X: abscissae in [0, 1], shape (k,).
+        X: one abscissa in [0, 1], or an array of shape (k,).
         x: unknowns at T times, shape (T, model.size).
         inputs: stacked inputs there, shape (T, model.inputs.size).
 
     Returns:
-        shapes (T, k, 3) and (T, k, 4).
+        shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4) of one abscissa.
     """
     # The nodes are asked for once a time, and the sections follow by one matrix: less than a call for each section.
     nodal_position, nodal_quaternion, *_ = evaluated(model.fields[rod], x, inputs)
-    abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-    interpolation = model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
-    position = np.einsum("kn,tin->tki", interpolation, nodal_position)
-    quaternion = np.einsum("kn,tin->tki", interpolation, nodal_quaternion)
+    interpolation = model.discrete.rods[rod].grid.interpolation_matrix(X)
+    position = np.einsum("...n,tin->t...i", interpolation, nodal_position)
+    quaternion = np.einsum("...n,tin->t...i", interpolation, nodal_quaternion)
     # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
-    quaternion /= np.linalg.norm(quaternion, axis=2, keepdims=True)
+    quaternion /= np.linalg.norm(quaternion, axis=-1, keepdims=True)
     return Poses(position, quaternion)
 
 

@@ -214,11 +214,11 @@ class Motion(Result):
         return tip_poses(self.model, name, self.x, self.inputs)
 
     def section(self, rod: str | None, X: npt.ArrayLike) -> Poses:
-        """Poses of a rod's sections at abscissae X in [0, 1], shapes (T, k, 3) and (T, k, 4).
+        """Poses of a rod's sections at abscissae X in [0, 1], shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4).
 
         Args:
             rod: name of the rod; None stands for the only one.
-            X: shape (k,).
+            X: one abscissa, or an array of shape (k,).
 
         Raises:
             KeyError: there is no such rod, or there are several to choose from.

@@ -97,7 +97,7 @@ def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
     """Points that a picture must hold: rods, bodies and targets."""
     scene = solution.model.scene
     parts = [points]
-    parts += [solution.body(body.name).position for body in scene.bodies]
+    parts += [solution.body(body.name).position[None] for body in scene.bodies]
     parts += [np.array([point]) for point in target_points(scene)]
     return np.concatenate(parts)
 

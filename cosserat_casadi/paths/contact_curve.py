@@ -12,6 +12,7 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
@@ -22,7 +23,7 @@ from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations
 from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, ball_is_inside_between, is_inside_between
-from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
+from cosserat_casadi.equilibrium.solution import SolvedPoses, poses_between_nodes, rotations
 from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, restricted, variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
@@ -280,11 +281,11 @@ class Arrangement:
         return ca.Function("body_poses", written.arguments, [positions, quaternions])
 
     def bodies(self, z: FloatArray, load_factor: float) -> dict[str, SolvedPoses]:
-        """Poses of the bodies of the scene by name, each as that of one section."""
+        """Poses of the bodies of the scene by name."""
         if not self.scene.bodies:
             return {}
         outputs = self._body_poses(*self.equations.parts(z), self.inputs(load_factor))
-        positions, quaternions = (output.full().T[:, None, :] for output in outputs)
+        positions, quaternions = (output.full().T for output in outputs)
         poses = [SolvedPoses(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
         return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
 
@@ -296,7 +297,7 @@ class Arrangement:
         bodies = self.bodies(z, load_factor)
         gaps = {}
         for body, obstacle in pairs_of_bodies:
-            (gap,) = ball_gaps(obstacle, ball_radius(body), bodies[body.name].position)
+            (gap,) = ball_gaps(obstacle, ball_radius(body), bodies[body.name].position[None])
             gaps[body.name, obstacle.name] = float(gap) / self._length_of(body)
         return gaps
 
@@ -337,15 +338,13 @@ class Arrangement:
             return positions
         return in_axes_of(self.bodies(z, load_factor)[obstacle.body], positions)
 
-    def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> SolvedPoses:
-        """Poses of sections at abscissae X."""
+    def poses(self, z: FloatArray, load_factor: float, X: npt.ArrayLike, rod: str) -> SolvedPoses:
+        """Pose of the section at one abscissa X, or poses at an array of them, shape (k,)."""
         nodes = self._nodes(z, load_factor)[rod]
         breaks = self.equations.nominal.model.discretisation[rod].breaks
         intervals = self.equations.nominal.model.discrete.rods[rod].grid.intervals
-        interpolation = Grid(breaks, intervals, tuple(self.ends(rod, z).tolist())).interpolation_matrix(X)
-        quaternions = interpolation @ nodes.quaternions
-        quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
-        return SolvedPoses(interpolation @ nodes.positions, rotations(quaternions), quaternions)
+        grid = Grid(breaks, intervals, tuple(self.ends(rod, z).tolist()))
+        return poses_between_nodes(grid.interpolation_matrix(X), nodes.positions, nodes.quaternions)
 
     @cached_property
     def _variations(self) -> ConstrainedVariations:

@@ -69,28 +69,26 @@ class ContactPath(EquilibriumPath):
         name = self.model.rod_name(rod)
         poses = [self._pose(index, TIP, name) for index in range(len(self.factor))]
         return SolvedPoses(
-            position=np.array([pose.position[0] for pose in poses]).reshape(-1, 3),
-            rotation=np.array([pose.rotation[0] for pose in poses]).reshape(-1, 3, 3),
-            quaternion=np.array([pose.quaternion[0] for pose in poses]).reshape(-1, 4),
+            position=np.array([pose.position for pose in poses]).reshape(-1, 3),
+            rotation=np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
+            quaternion=np.array([pose.quaternion for pose in poses]).reshape(-1, 4),
         )
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
-        """Pose of a rod's tip at an event, shapes (1, …)."""
+        """Pose of a rod's tip at an event."""
         name = self.model.rod_name(rod)
-        return self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([TIP]), name)
+        return self.arrangements[event.arrangement].poses(event.x, event.factor, TIP, name)
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
         name = self.model.rod_name(rod)
-        positions = [self._pose(index, X, name).position[0] for index in range(len(self.factor))]
+        positions = [self._pose(index, X, name).position for index in range(len(self.factor))]
         return np.array(positions).reshape(-1, 3)
 
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
         name = self.model.rod_name(rod)
-        return np.asarray(
-            self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([X]), name).position[0]
-        )
+        return self.arrangements[event.arrangement].poses(event.x, event.factor, X, name).position
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
@@ -100,7 +98,7 @@ class ContactPath(EquilibriumPath):
 
     def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:
         arrangement: Arrangement = self.arrangements[self.arrangement[index]]
-        return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
+        return arrangement.poses(self.x[index], float(self.factor[index]), X, rod)
 
     @property
     def stopped_at(self) -> str:

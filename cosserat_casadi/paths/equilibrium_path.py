@@ -191,9 +191,9 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return self._tips(name, self.factor, self.x)
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
-        """Pose of a rod's tip at an event, shapes (1, …)."""
-        name = self.model.rod_name(rod)
-        return self._tips(name, [event.factor], [event.x])
+        """Pose of a rod's tip at an event."""
+        tips = self._tips(self.model.rod_name(rod), [event.factor], [event.x])
+        return SolvedPoses(tips.position[0], tips.rotation[0], tips.quaternion[0])
 
     def section(self, rod: str | None = None) -> float:
         """Abscissa of the section whose way tells most of the path.

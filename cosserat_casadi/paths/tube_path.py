@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.load_path import input_path
+from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
@@ -111,10 +112,11 @@ class TubePath(InputPath[TubeFunctions, TubeEvent]):
         """Energy at each point, shape (k,), J, as :attr:`TubeSolution.energy`."""
         return np.array([solution.energy for solution in self.solutions])
 
-    def tip(self, tube: str | None = None) -> FloatArray:
-        """Positions of a tube's tip at each point, shape (k, 3), m; as :meth:`TubeSolution.tip`."""
-        positions = [solution.tip(tube).position for solution in self.solutions]
-        return np.array(positions).reshape(-1, 3)
+    def tip(self, tube: str | None = None) -> SolvedPoses:
+        """Poses of a tube's tip at the k points of the path; as :meth:`TubeSolution.tip`."""
+        tips = [solution.tip(tube) for solution in self.solutions]
+        quaternions = np.array([tip.quaternion for tip in tips]).reshape(-1, 4)
+        return SolvedPoses(np.array([tip.position for tip in tips]).reshape(-1, 3), rotations(quaternions), quaternions)
 
 
 def _unit_of(robot: Robot, name: str) -> str:

@@ -352,7 +352,7 @@ class _Film:
                 continue
             poses = body_poses(frames.model, obstacle.body, frames.x, frames.inputs)
             world_R_body = rotations(poses.quaternion)
-            first = SolvedPoses(poses.position[:1], world_R_body[:1], poses.quaternion[:1])
+            first = SolvedPoses(poses.position[0], world_R_body[0], poses.quaternion[0])
             label: str | None = obstacle.name
             for outline in surface_lines(self._canvas, obstacle, shapes.points, first):
                 in_body = in_axes_of(first, outline)

@@ -146,8 +146,8 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
         bodies = {}
         for name in {str(one.body) for one in moving}:
             poses = motion.body(name)
-            at_row = poses.quaternion[[row]]
-            bodies[name] = SolvedPoses(poses.position[[row]], rotations(at_row), at_row)
+            at_row = poses.quaternion[row]
+            bodies[name] = SolvedPoses(poses.position[row], rotations(at_row), at_row)
         draw_surfaces(canvas, moving, shapes.points, bodies, strength=share, named=row == rows[-1])
 
 

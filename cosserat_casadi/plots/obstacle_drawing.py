@@ -47,7 +47,7 @@ def draw_surfaces(
         canvas: where to draw.
         obstacles: what to draw.
         points: that are shown, world axes, shape (k, 3), m.
-        bodies: poses of the bodies that obstacles are fixed to, by name, each as that of one section.
+        bodies: poses of the bodies that obstacles are fixed to, by name.
         strength: share of its colour that an obstacle has.
         named: whether the legend names them.
     """
@@ -68,7 +68,7 @@ def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body:
     if body is None:
         return np.asarray(member.mesh(obstacle, near, size))
     (seen,) = in_axes_of(body, near[None])
-    return np.asarray(body.position[0] + member.mesh(obstacle, seen, size) @ body.rotation[0].T)
+    return np.asarray(body.position + member.mesh(obstacle, seen, size) @ body.rotation.T)
 
 
 def _draw_net(canvas: Canvas, mesh: FloatArray, strength: float) -> None:

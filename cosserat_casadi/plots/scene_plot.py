@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.control.inverse_result import Inverse
-from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.maths.typing import FloatArray
@@ -69,18 +69,16 @@ def scene_arrows(solution: Solution) -> list[Arrow]:
     """Arrows of all loads of a solution, in world axes."""
 
     def rod_poses(name: str, X: FloatArray) -> Poses:
-        return _columns(solution.pose(X, name))
+        pose = solution.pose(X, name)
+        # Kernels take columns, (3, k); results hold a row for each section.
+        return pose.position.T, pose.rotation
 
     def body_pose(name: str) -> Poses:
-        return _columns(solution.body(name))
+        pose = solution.body(name)
+        return pose.position[:, None], pose.rotation[None]
 
     arrows = LoadArrows(solution.model.discrete, ca.DM(solution.inputs), rod_poses, body_pose)
     return arrows.all()
-
-
-def _columns(pose: SolvedPoses) -> Poses:
-    # Kernels take columns, (3, k); results hold a row for each section.
-    return pose.position.T, pose.rotation
 
 
 def plot_inverse(inverse: Inverse) -> Any:

@@ -52,5 +52,4 @@ def rod_shapes(solution: Solution) -> RodShapes:
 
 def in_world(pose: SolvedPoses, points: FloatArray) -> FloatArray:
     """World coordinates of points given in the axes of a body, shape (k, 3), m."""
-    world_R_body = pose.rotation[0]
-    return np.asarray(pose.position[0] + points @ world_R_body.T)
+    return np.asarray(pose.position + points @ pose.rotation.T)

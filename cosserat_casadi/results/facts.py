@@ -52,7 +52,7 @@ def _equilibrium_facts(solution: Equilibrium[Any], smallest_eigenvalue: float | 
     """Outcome, tips, error and stability of an equilibrium."""
     scene = solution.model.scene
     facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
-    tips = [(f"tip of {name}", _point(np.ravel(solution.tip(name).position))) for name in solution.model.lengths]
+    tips = [(f"tip of {name}", _point(solution.tip(name).position)) for name in solution.model.lengths]
     facts += _first("tips", tips)
     facts.append(("error", _error(solution.judged_error, scene.accuracy.tolerance)))
     facts.append(("stable", _stable(solution.stable, smallest_eigenvalue)))

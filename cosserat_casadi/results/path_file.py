@@ -19,7 +19,7 @@ class _RodPoints:
     """Poses of a rod at k points of a path.
 
     Attributes:
-        tip: of the tip.
+        tip: of the tip, at k points.
         X: abscissa of a section that moves although the tip is held; 1 where the tip moves.
         positions: of that section, shape (k, 3), m.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,14 +71,13 @@ def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
         "quaternion": pose.quaternion,
         "strain": solution.strain(X, name),
         "internal_wrench": solution.internal_wrench(X, name),
-        "tip": {"position": tip.position[0], "rotation": tip.rotation[0], "quaternion": tip.quaternion[0]},
+        "tip": asdict(tip),
         "base_wrench": {"force": base_wrench.force, "moment": base_wrench.moment},
     }
 
 
 def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
-    pose = solution.body(name)
-    return {"position": pose.position[0], "rotation": pose.rotation[0], "quaternion": pose.quaternion[0]}
+    return asdict(solution.body(name))
 
 
 def _contact_entry(contact: Contact) -> dict[str, Any]:

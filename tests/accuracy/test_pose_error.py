@@ -82,7 +82,7 @@ def test_pose_error_vs_rotation_matrices() -> None:
 def test_error_along_a_diagonal_is_refined() -> None:
     """Where four modes would do by the largest component of their error, they do not by its length."""
     coarse, truth = bent(Rotation.identity(), 4), bent(Rotation.identity(), 14)
-    error = coarse.tip().position[0] - truth.tip().position[0]
+    error = coarse.tip().position - truth.tip().position
     # The world is turned so that this very error lies along its diagonal.
     diagonal = Rotation.align_vectors([[1.0, 1.0, 1.0]], [error])[0]
     coarse, truth = bent(diagonal, 4), bent(diagonal, 14)

@@ -59,8 +59,8 @@ def error(solution: Solution, reference: Solution) -> float:
     """Displacement of the tip over the length, or its angle."""
     tip = solution.tip()
     wanted = reference.tip()
-    moved = np.linalg.norm(tip.position[0] - wanted.position[0]) / 30.0
-    return max(float(moved), float(rotation_angles(tip.quaternion, wanted.quaternion)[0]))
+    moved = np.linalg.norm(tip.position - wanted.position) / 30.0
+    return max(float(moved), float(rotation_angles(tip.quaternion, wanted.quaternion)))
 
 
 def test_the_reference_is_straight_at_the_kink(reference: Solution) -> None:

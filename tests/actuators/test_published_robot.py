@@ -103,7 +103,7 @@ def tip(tensions: FloatArray, strain: str) -> FloatArray:
     settings += [f'backbone.strain="{strain}"', "accuracy.modes=3", "accuracy.nodes=5"]
     solution = solve(build(read_scene(file, settings)))
     assert solution.converged, solution.message
-    return np.asarray(solution.tip().position[0])
+    return np.asarray(solution.tip().position)
 
 
 @pytest.mark.parametrize(

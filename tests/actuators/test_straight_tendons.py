@@ -86,8 +86,8 @@ def shot(tension: float, friction: float) -> tuple[np.ndarray, np.ndarray]:
 def test_tip_vs_shooting(friction: float) -> None:
     solution = solved(scene(friction=friction))
     position, rotation = shot(4.0, friction)
-    assert_allclose(solution.tip().position[0], position, rtol=0, atol=1e-8)
-    assert_allclose(solution.tip().rotation[0], rotation, rtol=0, atol=1e-8)
+    assert_allclose(solution.tip().position, position, rtol=0, atol=1e-8)
+    assert_allclose(solution.tip().rotation, rotation, rtol=0, atol=1e-8)
 
 
 def test_many_holes_near_a_continuous_course_at_second_order() -> None:

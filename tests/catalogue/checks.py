@@ -39,7 +39,7 @@ def initial_value_error(solution: Solution) -> float:
     (rod,) = solution.model.discrete.rods.values()
     base, reached = solution.base_wrench(), integrate(solution.model.scene, *_wrench(solution))
     tip = solution.tip()
-    claimed = (tip.position[0], tip.rotation[0])
+    claimed = (tip.position, tip.rotation)
     error = pose_error(claimed, (reached.position, reached.rotation), rod.properties.length)
     if solution.model.scene.supports:
         return error

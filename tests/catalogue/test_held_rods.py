@@ -25,7 +25,7 @@ def test_held_rod_vs_initial_value(name: str, strain: str) -> None:
     """From the wrench that the clamp is said to exert, the rod arrives where its tip is held."""
     solution = solved(cases.held(name, strain))
     (position, _) = cases.HELD[name]
-    assert_allclose(solution.tip().position[0], position, rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().position, position, rtol=0, atol=1e-10)
     assert initial_value_error(solution) < 1e-8
     assert solution.stable is not None
     assert solution.stable or "unstable" in solution.message

@@ -248,7 +248,7 @@ def test_a_range_leads_from_a_value_to_another(tmp_path: Path) -> None:
     for force, entry in (([0.3, 0, 1], path["path"][0]), ([0.3, 0, -0.5], path["path"][-1])):
         end = solve(read_scene(tmp_path / "column.toml", [f"push.force={force}"]))
         tip = entry["rods"]["column"]["tip"]["position"]
-        assert_allclose(tip, end.tip().position[0], rtol=0, atol=1e-5)
+        assert_allclose(tip, end.tip().position, rtol=0, atol=1e-5)
 
 
 def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: Path) -> None:

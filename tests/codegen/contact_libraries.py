@@ -79,7 +79,7 @@ def assert_same(found: CompiledContactSolution, wanted: Solution, *, forces: flo
     """Whether C and Python agree on the tip and the places of contact to 1e-9, and on the forces."""
     assert found.converged, found.message
     assert wanted.converged, wanted.message
-    np.testing.assert_allclose(found.tips["rod"][:3], wanted.tip().position[0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found.tips["rod"][:3], wanted.tip().position, rtol=0, atol=1e-9)
     assert len(found.contacts) == len(wanted.contacts)
     for own, other in zip(found.contacts, wanted.contacts, strict=True):
         assert (own.obstacle, own.owner, own.kind) == (other.obstacle, other.owner, other.kind)

@@ -188,7 +188,7 @@ def test_heavy_rod_on_a_table(table: Solution) -> None:
     assert contact.end == 1.0
     assert_allclose(contact.start * 1.2, length, rtol=0, atol=1e-7)
     assert_allclose(contact.ends, [reaction, 0.0], rtol=0, atol=1e-7)
-    assert_allclose(table.tip().position[0], [x + 1.2 - length, 0.0, -0.08], rtol=0, atol=1e-7)
+    assert_allclose(table.tip().position, [x + 1.2 - length, 0.0, -0.08], rtol=0, atol=1e-7)
     # What lies on the table presses by its weight, and by the reaction at lift-off.
     on_table = (1.2 - length) * 0.1 * 9.81
     assert_allclose(contact.force, [0.0, 0.0, reaction + on_table], rtol=0, atol=1e-6)
@@ -206,7 +206,7 @@ def test_two_points_of_contact(bars: Solution) -> None:
     assert bars.stable
     # Without friction a force stands on the rod.
     for contact in bars.contacts:
-        tangent = bars.pose([contact.start]).rotation[0][:, 2]
+        tangent = bars.pose(contact.start).rotation[:, 2]
         assert_allclose(contact.force @ tangent, 0.0, rtol=0, atol=1e-9)
 
 
@@ -357,7 +357,7 @@ force = [0, 0, -1.0]
     (contact,) = held.contacts
     assert held.stable
     followed = follow(build(parse_scene(rod + bar)), "push.force", [0.0, 0.0, -1.0])
-    assert_allclose(held.tip().position, followed.tip().position[-1:], rtol=0, atol=1e-8)
+    assert_allclose(held.tip().position, followed.tip().position[-1], rtol=0, atol=1e-8)
     assert_allclose(contact.start, followed.contacts(-1)[0].start, rtol=0, atol=1e-8)
 
 
@@ -482,7 +482,7 @@ def test_turned_copies() -> None:
     turned = solved(ROD + TURNED_BALL)
     # y becomes z, and z becomes −y.
     quarter = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-    assert_allclose(turned.tip().position[0], quarter @ ball.tip().position[0], rtol=0, atol=1e-10)
+    assert_allclose(turned.tip().position, quarter @ ball.tip().position, rtol=0, atol=1e-10)
     (contact,) = ball.contacts
     (same,) = turned.contacts
     assert_allclose(same.start, contact.start, rtol=0, atol=1e-9)
@@ -579,7 +579,7 @@ def test_reference_cases(name: str) -> None:
     assert found.stable
     assert found.error_estimate is not None
     assert found.error_estimate <= 1e-7
-    assert_allclose(found.tip().position[0], expected["tip"]["position"], rtol=0, atol=1e-8)
+    assert_allclose(found.tip().position, expected["tip"]["position"], rtol=0, atol=1e-8)
     assert_allclose(found.base_wrench().force, expected["base_wrench"]["force"], rtol=0, atol=1e-7)
     assert_allclose(found.base_wrench().moment, expected["base_wrench"]["moment"], rtol=0, atol=1e-7)
     (contact,) = found.contacts

@@ -263,7 +263,7 @@ def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
     assert {(contact.owner, contact.of_body) for contact in tree.contacts} == {("rod", False), ("fruit", True)}
     check_complementary(tree, 1e-9)
     down = np.array([0.0, 0.0, -9.81])
-    fruit = tree.body("fruit").position[0]
+    fruit = tree.body("fruit").position
     forces = [0.02 * down]
     moments = [0.02 * np.cross(fruit, down)]
     for rod, mass in (("rod", 0.05), ("twig", 0.025)):
@@ -271,7 +271,7 @@ def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
         forces.append(mass * down)
         moments.append(mass * np.cross(centre, down))
     for contact in tree.contacts:
-        at = fruit if contact.of_body else tree.pose([contact.start], contact.owner).position[0]
+        at = fruit if contact.of_body else tree.pose(contact.start, contact.owner).position
         forces.append(contact.force)
         moments.append(np.cross(at, contact.force))
     wrench = tree.base_wrench("rod")
@@ -334,7 +334,7 @@ def test_a_ball_on_a_dome(on_dome: Solution) -> None:
     assert (contact.owner, contact.obstacle, contact.kind, contact.of_body) == ("ball", "dome", "point", True)
     check_complementary(on_dome, 1e-12)
     # The force is along the line of centres, and the clamp bears the rest.
-    out = on_dome.body().position[0] - [0.9, 0.03, -0.6]
+    out = on_dome.body().position - [0.9, 0.03, -0.6]
     assert_allclose(contact.force, contact.ends[0] * out / 0.4, rtol=0, atol=1e-12)
     assert_allclose(on_dome.base_wrench().force, -contact.force - [0, 0, -1.0], rtol=0, atol=1e-10)
 
@@ -355,7 +355,7 @@ def test_a_nearly_rigid_rod_presses_as_statics_by_hand_says(bending: float) -> N
     assert_allclose(contact.ends[0], np.cos(alpha), rtol=0, atol=0.15 / bending)
     assert_allclose(contact.ends[0], np.cos(alpha), rtol=0, atol=0.5 / bending)
     slide = -np.array([0.0, 0.0, 1.0]) + np.cos(alpha) * normal
-    assert_allclose(pressed.body().position[0] - [1, 0, 0], slide / (3 * bending), rtol=0, atol=0.2 / bending**2)
+    assert_allclose(pressed.body().position - [1, 0, 0], slide / (3 * bending), rtol=0, atol=0.2 / bending**2)
 
 
 @pytest.mark.parametrize(("share", "stable"), [pytest.param(0.98, True, marks=pytest.mark.slow), (1.02, False)])
@@ -427,7 +427,7 @@ def test_a_frame_that_leans_on_a_wall(frame: Solution) -> None:
     assert frame.stable
     # Leaning takes what the frame would give: it is stiffer than without the wall.
     free = solved(FRAME)
-    assert free.body().position[0, 0] > frame.body().position[0, 0] + 0.01
+    assert free.body().position[0] > frame.body().position[0] + 0.01
     assert free.smallest_eigenvalue is not None and frame.smallest_eigenvalue is not None
     assert frame.smallest_eigenvalue > free.smallest_eigenvalue
 
@@ -474,7 +474,7 @@ def test_a_ball_comes_down_on_a_dome(lowered: ContactPath, on_dome: Solution) ->
 
     def gap(factor: float) -> float:
         free = solve(bare, {"push.force": [0.0, 0.0, -factor]})
-        return float(np.linalg.norm(free.body().position[0] - [0.9, 0.03, -0.6]) - 0.4)
+        return float(np.linalg.norm(free.body().position - [0.9, 0.03, -0.6]) - 0.4)
 
     assert_allclose(touch.factor, brentq(gap, 0.1, 0.5, xtol=1e-12), rtol=0, atol=1e-8)
     end = lowered.solution(-1)

@@ -150,11 +150,11 @@ def test_a_bar_that_crosses_a_rod_in_space(crossed: Solution) -> None:
     assert_allclose(pushed.force + contact.force, 0.0, rtol=0, atol=1e-9)
     assert_allclose(pusher.force + push - contact.force, 0.0, rtol=0, atol=1e-9)
     # The force acts where they touch: about the origin it has one moment, on the one rod and on the other.
-    place = solution.pose([contact.start], "pushed").position[0]
+    place = solution.pose(contact.start, "pushed").position
     moment = np.cross(place, contact.force)
     base = np.array([0.95, -0.4, -0.1])
     assert_allclose(np.cross(base, pushed.force) + pushed.moment + moment, 0.0, rtol=0, atol=1e-9)
-    loaded = np.cross(solution.body("ball").position[0], push)
+    loaded = np.cross(solution.body("ball").position, push)
     assert_allclose(pusher.moment + loaded - moment, 0.0, rtol=0, atol=1e-9)
 
 
@@ -228,8 +228,8 @@ def test_a_rod_lies_on_a_plate_that_tilts(lying: Solution) -> None:
     assert contact.kind == "line" and contact.end == 1.0
     plate = lying.body("plate")
     stretch = lying.pose(np.linspace(contact.start, 1.0, 50), "rod").position
-    assert_allclose((stretch - plate.position) @ plate.rotation[0][:, 2], 0.0, rtol=0, atol=1e-8)
-    assert abs(plate.rotation[0][0, 2]) > 0.05
+    assert_allclose((stretch - plate.position) @ plate.rotation[:, 2], 0.0, rtol=0, atol=1e-8)
+    assert abs(plate.rotation[0, 2]) > 0.05
     weight = np.array([0, 0, 0.3 * 9.81])
     rod, post = lying.base_wrench("rod"), lying.base_wrench("post")
     assert_allclose(rod.force + contact.force, weight, rtol=0, atol=1e-9)
@@ -300,10 +300,10 @@ def test_large_deflections_are_those_of_two_elasticas(touching: Solution) -> Non
     section = elasticas.section(second, force, place)
     assert_allclose(contact.ends[0], force, rtol=1e-6, atol=0)
     assert_allclose(contact.start, place / 0.9, rtol=1e-6, atol=0)
-    assert_allclose(touching.pose([contact.start], "pushed").position[0, [0, 2]], section[:2], rtol=0, atol=1e-7)
+    assert_allclose(touching.pose(contact.start, "pushed").position[[0, 2]], section[:2], rtol=0, atol=1e-7)
     normal = np.array([-np.sin(section[2]), -np.cos(section[2])])
     disk = elasticas.disk(first, force * normal)
-    assert_allclose(touching.body("ball").position[0, [0, 2]], disk[:2], rtol=0, atol=1e-7)
+    assert_allclose(touching.body("ball").position[[0, 2]], disk[:2], rtol=0, atol=1e-7)
     assert section[2] > 0.15 and disk[2] > 0.15
 
 

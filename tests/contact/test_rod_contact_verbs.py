@@ -43,7 +43,7 @@ def test_the_fingers_press_each_other_where_they_cross() -> None:
     assert_allclose(borne, 0.0, rtol=0, atol=1e-12)
     # Without the other one the left finger is bent farther.
     alone = solve(build(fingers("rod_contacts=[]")))
-    assert alone.tip("left").position[0, 1] > found.tip("left").position[0, 1] + 5e-3
+    assert alone.tip("left").position[1] > found.tip("left").position[1] + 5e-3
 
 
 def test_a_parameter_of_rods_that_touch_is_a_number_of_the_scene() -> None:
@@ -76,7 +76,7 @@ def test_frequencies_are_those_of_the_differences_of_the_balance() -> None:
 def test_pulls_are_found_from_where_the_tips_are() -> None:
     """From weaker ones, with which the fingers touch too."""
     _, found = touching()
-    tips = [(rod, found.tip(rod).position[0].tolist()) for rod in ("left", "right")]
+    tips = [(rod, found.tip(rod).position.tolist()) for rod in ("left", "right")]
     targets = ", ".join(f'{{ kind = "position", rod = "{rod}", position = {place} }}' for rod, place in tips)
     weaker = ["left_pull.force=[0.02, 0.03, 0]", "right_pull.force=[-0.02, -0.03, 0]"]
     free = 'inputs=["left_pull.force", "right_pull.force"]'

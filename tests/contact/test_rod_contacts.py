@@ -222,7 +222,7 @@ def test_an_elastica_that_closes_on_itself() -> None:
     # It ends at its own base, and presses the centre of the end that is clamped.
     assert_allclose(contact.on_rods, [0.0, 1.0], rtol=0, atol=0.02)
     stiffness = 2e7 * np.pi / 4 * 0.02**4
-    tip = solution.tip().position[0]
+    tip = solution.tip().position
 
     def shot(unknowns: FloatArray) -> FloatArray:
         """Of a planar elastica with the moment and a force at the tip: how far its tip is from where it is."""

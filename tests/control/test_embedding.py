@@ -24,7 +24,7 @@ def cost(model: Model, x: ca.MX, force: ca.MX) -> ca.MX:
 
 
 def cost_of(solution: Solution) -> float:
-    tip = solution.tip().position[0]
+    tip = solution.tip().position
     return float(np.sum((tip - WANTED) ** 2) + 1e-2 * np.sum(solution.inputs**2))
 
 

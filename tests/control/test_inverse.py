@@ -25,7 +25,7 @@ def changed(base: Scene, **tables: Any) -> Scene:
 
 def pose_of(solution: Solution, rod: str) -> dict[str, Any]:
     tip = solution.tip(rod)
-    position, quaternion = tip.position[0].tolist(), tip.quaternion[0].tolist()
+    position, quaternion = tip.position.tolist(), tip.quaternion.tolist()
     return {"kind": "pose", "rod": rod, "position": position, "quaternion": quaternion}
 
 
@@ -107,7 +107,7 @@ def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
     """Four tensions for three coordinates: no solution on the line of solutions is nearer by more than the damping."""
     base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
     truth = dict(zip(TENSIONS, [9.0, 3.0, 7.0, 6.0], strict=True))
-    position = solve(build(base), truth).tip().position[0].tolist()
+    position = solve(build(base), truth).tip().position.tolist()
     model = build(changed(base, targets=[{"kind": "position", "rod": "backbone", "position": position}]))
     found = inverse(model)
     assert found.met
@@ -141,8 +141,8 @@ def test_lengths_of_a_parallel_robot() -> None:
     target = {
         "kind": "pose",
         "body": "platform",
-        "position": body.position[0].tolist(),
-        "quaternion": body.quaternion[0].tolist(),
+        "position": body.position.tolist(),
+        "quaternion": body.quaternion.tolist(),
     }
     found = inverse(build(changed(base, targets=[target])))
     # The pose is one of these four modes, to rounding; whether they are enough for the tolerance is not asked.
@@ -184,7 +184,7 @@ def test_bounds_are_kept_and_reached() -> None:
     assert_allclose(force, [0.3, 0.0, 0.0], rtol=0, atol=1e-6)
     assert "a local minimum at the bound of push.force, the best of 9 starts." in found.solution.message
     assert np.all(np.abs(force) <= [0.3, 0.0, 0.0])
-    tips = [solve(build(bounded), {"push.force": [f, 0, 0]}).tip().position[0] for f in np.linspace(-0.3, 0.3, 5)]
+    tips = [solve(build(bounded), {"push.force": [f, 0, 0]}).tip().position for f in np.linspace(-0.3, 0.3, 5)]
     scanned = min(float(np.linalg.norm(tip - target["position"])) for tip in tips)
     assert_allclose(found.gaps[0].position, scanned, rtol=0, atol=1e-6)
 
@@ -230,7 +230,7 @@ def test_a_gap_is_not_smaller_than_the_error_of_its_model() -> None:
     assert file["targets"][0]["position_error_estimate"] == gap.position_error
     # The estimate is honest: at the same inputs the resolved rod misses the target by no more than it.
     resolved = solve(build(changed(base, accuracy={"modes": 12, "nodes": 24})), coarse.values)
-    miss = np.linalg.norm(resolved.tip().position[0] - base.targets[0].position)
+    miss = np.linalg.norm(resolved.tip().position - base.targets[0].position)
     assert 1e-6 * 0.1 < miss <= gap.position_error
     wide = inverse(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 0.1}))
     assert wide.met

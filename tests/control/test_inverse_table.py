@@ -45,7 +45,7 @@ def tips(given: Scene) -> list[list[float]]:
     rows = []
     for force in FORCES:
         tip = solve(model, {"push.force": force}).tip()
-        rows.append([*tip.position[0].tolist(), *tip.quaternion[0].tolist()])
+        rows.append([*tip.position.tolist(), *tip.quaternion.tolist()])
     return rows
 
 
@@ -82,7 +82,7 @@ def test_poses_with_orientations(tmp_path: Path) -> None:
     model = build(given)
     truth = {"push.force": [0.4, 0.2, 0.0], "push.moment": [0.05, -0.1, 0.08]}
     tip = solve(model, truth).tip()
-    rows = [[*tip.position[0].tolist(), *(sign * tip.quaternion[0]).tolist()] for sign in (1, -1)]
+    rows = [[*tip.position.tolist(), *(sign * tip.quaternion).tolist()] for sign in (1, -1)]
     table = read_targets(write(tmp_path / "table.csv", rows, "x,y,z,qw,qx,qy,qz"), given)
     for row in inverse_rows(given, table.rows):
         assert row.met
@@ -120,7 +120,7 @@ def test_rows_start_from_their_nearest_neighbour(tmp_path: Path, monkeypatch: py
 
     def recording(search: Any) -> Any:
         def recorded(problem: Any, start: Any, *others: Any) -> Any:
-            seen.append((problem.targets[0].position, start.tip().position[0]))
+            seen.append((problem.targets[0].position, start.tip().position))
             return search(problem, start, *others)
 
         return recorded

@@ -38,9 +38,9 @@ def problem_at(model: Model, values: dict[str, Any]) -> tuple[LiftedProblem, Sol
     tip = solve(model, values).tip()
     (target,) = model.scene.targets
     assert isinstance(target, PositionTarget | PoseTarget)
-    wanted: dict[str, Any] = {"position": tuple(tip.position[0])}
+    wanted: dict[str, Any] = {"position": tuple(tip.position)}
     if isinstance(target, PoseTarget):
-        wanted["quaternion"] = tuple(tip.quaternion[0])
+        wanted["quaternion"] = tuple(tip.quaternion)
     near = solve(model, {name: 0.9 * np.array(value) for name, value in values.items()})
     return lifted_problem(model, (target.model_copy(update=wanted),), near, False), near
 
@@ -92,7 +92,7 @@ def test_rows_after_the_first_take_no_optimiser() -> None:
     rows = []
     for share in (0.25, 0.5, 0.75, 1.0):
         tip = solve(model, {"push.force": share * np.array(FORCE)}).tip()
-        rows.append((target.model_copy(update={"position": tuple(tip.position[0])}),))
+        rows.append((target.model_copy(update={"position": tuple(tip.position)}),))
     found = inverse_rows(model.scene, rows)
     assert all(row.met for row in found)
     assert found[0].rounds > 0

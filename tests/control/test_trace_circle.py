@@ -18,7 +18,7 @@ from tests.conftest import ROOT
 def test_the_tip_is_on_the_circle_at_little_effort() -> None:
     model = finger()
     tensions, equilibria = trace(model, 4)
-    tips = np.array([solve(model, s.model.inputs.unpack(s.inputs)).tip().position[0] for s in equilibria])
+    tips = np.array([solve(model, s.model.inputs.unpack(s.inputs)).tip().position for s in equilibria])
     angles = np.pi / 2 * np.arange(4)
     assert_allclose(tips[:, 1:], RADIUS * np.column_stack([np.cos(angles), np.sin(angles)]), rtol=0, atol=1e-8)
     assert np.all((tensions >= 0.0) & (tensions <= LARGEST))

@@ -131,7 +131,7 @@ def test_estimate_of_a_rod_beside_shooting() -> None:
         solution = solve(build(pushed, discretise(pushed, modes, 2 * modes + 4)))
         truth = shoot(solution, [1.0])
         tip = solution.tip()
-        error = pose_error((tip.position[0], tip.rotation[0]), (truth.position[0], truth.rotation[0]), truth.length)
+        error = pose_error((tip.position, tip.rotation), (truth.position[0], truth.rotation[0]), truth.length)
         assert solution.error_estimate is not None
         assert LEAST * error < solution.error_estimate < MOST_ABOVE * error
 

@@ -79,7 +79,7 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     assert_allclose(series.tip("b").position, single.tip().position, rtol=0, atol=2e-9)
     assert_allclose(series.tip("b").rotation, single.tip().rotation, rtol=0, atol=2e-9)
     assert_allclose(series.base_wrench("a").moment, single.base_wrench().moment, rtol=0, atol=2e-8)
-    passed = series.pose([1.0], "a").rotation[0] @ series.internal_wrench([1.0], "a")[0, :3]
+    passed = series.pose(1.0, "a").rotation @ series.internal_wrench([1.0], "a")[0, :3]
     assert_allclose(series.base_wrench("b").moment, -passed, rtol=0, atol=1e-7)
     assert series.stable is single.stable
     # A dead moment has a potential only where all turns share an axis.
@@ -110,8 +110,8 @@ def test_rod_carried_between_the_ends_vs_shooting() -> None:
     moments = solution_of(lambda unknown: poses(unknown)[2], np.zeros(6))
     end_a, end_b, _ = poses(moments)
     for name, end in (("a", end_a), ("b", end_b)):
-        assert_allclose(own.tip(name).position[0], end[0], rtol=0, atol=2e-9)
-        assert_allclose(own.tip(name).rotation[0], end[1], rtol=0, atol=3e-9)
+        assert_allclose(own.tip(name).position, end[0], rtol=0, atol=2e-9)
+        assert_allclose(own.tip(name).rotation, end[1], rtol=0, atol=3e-9)
     assert_allclose(own.base_wrench("a").moment, -moments[:3], rtol=0, atol=2e-8)
     assert_allclose(own.base_wrench("b").moment, -moments[3:], rtol=0, atol=2e-8)
     assert own.stable
@@ -157,10 +157,10 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
 
     # The shooting starts near the library's answer; that it stays there to its own tolerance is the test.
     roots = [np.concatenate([-own.base_wrench(n).force, -own.base_wrench(n).moment]) for n in "abc"]
-    near = np.concatenate([pose.position[0], pose.quaternion[0], *roots])
+    near = np.concatenate([pose.position, pose.quaternion, *roots])
     shot = solution_of(defect, near + 1e-3 * np.random.default_rng(3).standard_normal(len(near)))
-    assert_allclose(pose.position[0], shot[:3], rtol=0, atol=1e-8)
-    assert_allclose(pose.rotation[0], matrix(shot[3:7]), rtol=0, atol=2e-8)
+    assert_allclose(pose.position, shot[:3], rtol=0, atol=1e-8)
+    assert_allclose(pose.rotation, matrix(shot[3:7]), rtol=0, atol=2e-8)
     assert_allclose(np.concatenate(roots), shot[7:], rtol=0, atol=1e-6)
     assert own.stable
 
@@ -195,15 +195,15 @@ def test_portal_vs_its_half() -> None:
         )
     )
     pose = whole.body("beam")
-    assert_allclose(pose.position[0][:2], [0.2, 0.0], rtol=0, atol=1e-9)
-    assert_allclose(pose.rotation[0], np.eye(3), rtol=0, atol=1e-9)
+    assert_allclose(pose.position[:2], [0.2, 0.0], rtol=0, atol=1e-9)
+    assert_allclose(pose.rotation, np.eye(3), rtol=0, atol=1e-9)
     left, right = whole.base_wrench("l"), whole.base_wrench("r")
     assert_allclose(left.force + right.force, [0, 0, 3.0 * (0.4 + 0.5)], rtol=0, atol=1e-9)
     assert_allclose(left.force * [-1, 1, 1], right.force, rtol=0, atol=1e-9)
     support = {
         "rod": "l",
         "kind": "clamped",
-        "position": [0, 0, float(pose.position[0][2])],
+        "position": [0, 0, float(pose.position[2])],
         "quaternion": [1, 0, 0, 0],
     }
     half = solved(scene(legs[0], supports=[support], loads=[{**WEIGHT, "acceleration": [0, 0, -3.0]}]))
@@ -221,7 +221,7 @@ def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     single = solved(scene(rod("a", 0.8, "planar", base=base), supports=[{**support, "rod": "a"}], loads=[weight]))
     parts = (rod("a", 0.5, "planar", base=base), rod("b", 0.3, "planar", base={"rod": "a"}))
     series = solved(scene(*parts, supports=[{**support, "rod": "b"}], loads=[weight]))
-    assert_allclose(series.tip("a").position, single.pose([0.625]).position, rtol=0, atol=3e-9)
+    assert_allclose(series.tip("a").position, single.pose(0.625).position, rtol=0, atol=3e-9)
     assert_allclose(series.base_wrench("a").force, single.base_wrench().force, rtol=0, atol=1e-7)
     assert series.stable is True
     assert single.stable is True

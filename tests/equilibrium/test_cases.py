@@ -34,9 +34,9 @@ def reference(path: Path) -> dict[str, Any]:
 def true_tip_error(path: Path) -> float:
     case, tip = reference(path), solved(path).tip()
     wanted = case["expected"]["tip"]
-    error = distance_between(tip.position[0], wanted["position"]) / case["length"]
+    error = distance_between(tip.position, wanted["position"]) / case["length"]
     if "rotation" in wanted:
-        error = max(error, angle_between(tip.rotation[0], wanted["rotation"]))
+        error = max(error, angle_between(tip.rotation, wanted["rotation"]))
     return error
 
 
@@ -73,7 +73,7 @@ def test_error_estimate_vs_true_error(path: Path) -> None:
 def test_error_vs_tolerance_asked_for(path: Path, tolerance: float) -> None:
     solution = solve(read_scene(path, (f"accuracy.tolerance={tolerance}",)))
     case, tip = reference(path), solution.tip()
-    error = distance_between(tip.position[0], case["expected"]["tip"]["position"]) / case["length"]
+    error = distance_between(tip.position, case["expected"]["tip"]["position"]) / case["length"]
     assert solution.converged, solution.message
     assert error <= tolerance
 

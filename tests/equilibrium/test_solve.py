@@ -67,7 +67,7 @@ def test_unloaded_rod_needs_no_step() -> None:
     solution = solve(build(scene()))
     assert solution.converged
     assert_allclose(solution.x, 0.0, rtol=0, atol=0)
-    assert_allclose(solution.tip().position, [[0, 0, 0.8]], rtol=0, atol=1e-15)
+    assert_allclose(solution.tip().position, [0, 0, 0.8], rtol=0, atol=1e-15)
 
 
 def test_load_past_a_limit_point_is_reported_as_stalled() -> None:
@@ -247,10 +247,10 @@ def test_clamped_tip_meets_its_pose_and_balances(strain: str) -> None:
     solution = solve(scene(WEIGHT, strain=strain, supports=[support]))
     assert solution.converged, solution.message
     tip = solution.tip()
-    assert_allclose(tip.position, [support["position"]], rtol=0, atol=1e-11)
-    assert_allclose(np.abs(tip.quaternion @ quaternion), [1.0], rtol=0, atol=1e-11)
-    wrench = solution.internal_wrench([1.0])[0]
-    world_force = tip.rotation[0] @ wrench[3:]
+    assert_allclose(tip.position, support["position"], rtol=0, atol=1e-11)
+    assert_allclose(np.abs(tip.quaternion @ quaternion), 1.0, rtol=0, atol=1e-11)
+    wrench = solution.internal_wrench(1.0)
+    world_force = tip.rotation @ wrench[3:]
     weight = 0.9 * 0.8 * np.array(WEIGHT["acceleration"])
     assert_allclose(solution.base_wrench().force + world_force + weight, 0.0, rtol=0, atol=1e-7)
 
@@ -259,7 +259,7 @@ def test_pinned_tip_bears_no_moment() -> None:
     support = {"rod": "rod", "kind": "pinned", "position": [0.2, 0.15, 0.6]}
     solution = solve(scene(WEIGHT, supports=[support]))
     assert solution.converged, solution.message
-    assert_allclose(solution.tip().position, [support["position"]], rtol=0, atol=1e-11)
+    assert_allclose(solution.tip().position, support["position"], rtol=0, atol=1e-11)
     assert_allclose(solution.internal_wrench([1.0])[0, :3], 0.0, rtol=0, atol=1e-10)
 
 
@@ -372,7 +372,7 @@ def test_bar_that_only_stretches_vs_hookes_law(modes: int) -> None:
     """
     solution = solve(build(parse_scene(text)))
     assert solution.converged
-    assert_allclose(solution.tip().position[0], [0.0, 0.0, 2.0 * (1 + 25.0 / 500.0)], rtol=0, atol=1e-14)
+    assert_allclose(solution.tip().position, [0.0, 0.0, 2.0 * (1 + 25.0 / 500.0)], rtol=0, atol=1e-14)
 
 
 def test_a_path_from_a_solution_does_not_speak_of_the_unloaded_rod_alone() -> None:

@@ -52,7 +52,7 @@ def assert_integrates(solution: Solution, atol: float) -> None:
     """An initial-value integration from the base wrench ends at the tip, and at the tip's load where it is free."""
     base = solution.base_wrench()
     tip = integrate(solution.model.scene, base.force, base.moment)
-    assert_allclose(tip.position, solution.tip().position[0], rtol=0, atol=atol)
+    assert_allclose(tip.position, solution.tip().position, rtol=0, atol=atol)
     if not solution.model.scene.supports:
         assert_allclose([tip.force_left, tip.moment_left], np.zeros((2, 3)), rtol=0, atol=10 * atol)
 
@@ -72,7 +72,7 @@ def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_
     assert straight.smallest_eigenvalue is not None
     assert straight.smallest_eigenvalue < 0.0
     assert (bent.converged, bent.stable) == (True, True)
-    x, y, z = bent.tip().position[0]
+    x, y, z = bent.tip().position
     assert_allclose([np.hypot(x, y), z], column_tip(ratio), rtol=0, atol=1e-6)
     assert ("neutral" in bent.message) is (strain == "kirchhoff")
     assert "settle" in bent.message
@@ -89,7 +89,7 @@ def test_standing_column_about_its_critical_weight(weight: float, stable: bool) 
 def test_standing_column_beyond_its_weight_settles() -> None:
     solution = solve(standing("planar", 9.0), stable=True)
     assert (solution.converged, solution.stable) == (True, True)
-    assert abs(solution.tip().position[0, 0]) > 0.3
+    assert abs(solution.tip().position[0]) > 0.3
     assert_integrates(solution, 1e-5)
 
 
@@ -115,7 +115,7 @@ def test_solve_of_a_model_settles_only_if_asked() -> None:
     assert solve(model).stable is False
     bent = solve(model, stable=True)
     assert bent.stable is True
-    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), column_tip(2.0), rtol=0, atol=1e-7)
+    assert_allclose(np.abs(bent.tip().position[[0, 2]]), column_tip(2.0), rtol=0, atol=1e-7)
     assert solve(model, {"push.force": [0.1, 0, 0]}, stable=True).message == Outcome.CONVERGED.value
 
 
@@ -146,7 +146,7 @@ def test_column_of_a_law_that_stiffens_settles_where_shooting_ends() -> None:
     assert (straight.converged, straight.stable) == (True, False)
     assert (bent.converged, bent.stable) == (True, True)
     x, z = buckled_tip(1.2 * CRITICAL, lambda curvature: 1.0 + 0.6 * curvature**2)
-    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), [x, z], rtol=0, atol=1e-5)
+    assert_allclose(np.abs(bent.tip().position[[0, 2]]), [x, z], rtol=0, atol=1e-5)
     assert x < 0.8 * column_tip(1.2)[0]
 
 
@@ -326,5 +326,5 @@ def test_a_bent_rod_that_is_drawn_nearly_straight_relaxes() -> None:
     solution = solve(build(wanted, discretise(wanted, 7, 18)), stable=True)
     assert solution.converged
     assert solution.stable
-    distance = np.linalg.norm(solution.tip().position[0] - drawn["supports"][0]["position"])
+    distance = np.linalg.norm(solution.tip().position - drawn["supports"][0]["position"])
     assert_allclose(distance, 0.0, rtol=0, atol=1e-10)

@@ -72,7 +72,7 @@ def verdict(tables: dict[str, Any]) -> Verdict:
 
 def _judged(tables: dict[str, Any], solution: Solution, written: Any, seconds: float) -> Verdict:
     found, length = evaluate(tables, solution), tables["rods"][0]["length"]
-    gap = distance_between(found.position, solution.tip().position[0]) / length
+    gap = distance_between(found.position, solution.tip().position) / length
     shape = _estimate(solution)
     faults = []
     if not _finite(written):

@@ -86,19 +86,19 @@ def measured(model: Model) -> tuple[dict[str, FloatArray], list[Solution]]:
         solution = solve(model, values, parameters={**TRUTH, "rod.base.quaternion": turned}, raise_on_failure=True)
         solutions.append(solution)
         X = 0.45 + 0.1 * case
-        section = solution.pose([X])
-        pose = solution.pose([0.6])
+        section = solution.pose(X)
+        pose = solution.pose(0.6)
         wrench = solution.base_wrench()
         # Rotated by hand, with another norm and sign of its quaternion.
-        strain = solution.strain([0.3])[0]
+        strain = solution.strain(0.3)
         fibre = strain[3:] + np.cross(strain[:3], [*FIBRE, 0.0])
         unloaded = np.array([0.0, 0.0, 1.0]) + np.cross([TRUTH["rod.intrinsic.curvature.x"], 0.0, 0.0], [*FIBRE, 0.0])
         row = [
             length,
             X,
-            *(section.position[0] + section.rotation[0] @ OFFSET),
-            *pose.position[0],
-            *(-3.0 * pose.quaternion[0]),
+            *(section.position + section.rotation @ OFFSET),
+            *pose.position,
+            *(-3.0 * pose.quaternion),
             solution.actuator("wound")["tension"],
             solution.actuator("pulled")["length"],
             *wrench.force,

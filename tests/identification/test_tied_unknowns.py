@@ -59,7 +59,7 @@ def tips(moduli: tuple[float, float], seed: int) -> dict[str, Any]:
         loads = {f"push_{name}.force": [force, 0.0, 0.0] for name in ("left", "right")}
         solution = solve(model, loads)
         for name in ("left", "right"):
-            noisy = solution.tip(name).position[0] + rng.normal(0.0, SIGMA, 3)
+            noisy = solution.tip(name).position + rng.normal(0.0, SIGMA, 3)
             for axis, value in zip("xyz", noisy, strict=True):
                 columns.setdefault(f"{name}_{axis}", []).append(float(value))
     return {"tips": columns}

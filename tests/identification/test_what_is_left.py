@@ -52,7 +52,7 @@ def tips(seed: int = 1) -> dict[str, FloatArray]:
     """Tips of the strip under five moments, with noise."""
     model = built().at()
     solutions = [solve(model, {"push.moment": [0.0, moment, 0.0]}) for moment in MOMENTS]
-    positions = np.array([solution.pose([1.0]).position[0] for solution in solutions])
+    positions = np.array([solution.pose(1.0).position for solution in solutions])
     positions += 2e-4 * np.random.default_rng(seed).standard_normal(positions.shape)
     return {"M": MOMENTS, "x": positions[:, 0], "z": positions[:, 2]}
 

@@ -33,7 +33,7 @@ def arrows(solution: Solution) -> list[Arrow]:
 
     def body_pose(name: str) -> Poses:
         pose = solution.body(name)
-        return pose.position.T, pose.rotation
+        return pose.position[:, None], pose.rotation[None]
 
     return LoadArrows(solution.model.discrete, ca.DM(solution.inputs), rod_poses, body_pose).all()
 
@@ -41,13 +41,13 @@ def arrows(solution: Solution) -> list[Arrow]:
 def test_point_loads_are_drawn_at_their_sections() -> None:
     solution = solve(build(scene(push(moment=[0.1, 0.0, 0.2], frame="body"), HOOK, accuracy=FEW)))
     force, moment, hook = arrows(solution)
-    tip, middle = solution.tip(), solution.pose(np.array([0.4]))
+    tip, middle = solution.tip(), solution.pose(0.4)
     assert [force.sort, moment.sort, hook.sort] == ["point", "moment", "point"]
     assert [force.label, moment.label, hook.label] == ["push: 1.1 N", "push: 0.224 N m", "hook: 0.7 N"]
-    assert_allclose(force.start, tip.position[0], rtol=0, atol=1e-12)
-    assert_allclose(force.vector, tip.rotation[0] @ [0.9, 0.5, -0.4], rtol=0, atol=1e-12)
-    assert_allclose(moment.vector, tip.rotation[0] @ [0.1, 0.0, 0.2], rtol=0, atol=1e-12)
-    assert_allclose(hook.start, middle.position[0], rtol=0, atol=1e-12)
+    assert_allclose(force.start, tip.position, rtol=0, atol=1e-12)
+    assert_allclose(force.vector, tip.rotation @ [0.9, 0.5, -0.4], rtol=0, atol=1e-12)
+    assert_allclose(moment.vector, tip.rotation @ [0.1, 0.0, 0.2], rtol=0, atol=1e-12)
+    assert_allclose(hook.start, middle.position, rtol=0, atol=1e-12)
     assert_allclose(hook.vector, [0.3, -0.6, 0.2], rtol=0, atol=0)
 
 
@@ -90,9 +90,9 @@ def test_weight_of_rods_and_bodies() -> None:
         "pull: 1 N",
     ]
     assert len(found) == 18
-    assert_allclose(found[16].start, body.position[0] + body.rotation[0] @ [0.15, 0, 0.02], rtol=0, atol=1e-12)
+    assert_allclose(found[16].start, body.position + body.rotation @ [0.15, 0, 0.02], rtol=0, atol=1e-12)
     assert_allclose(found[16].vector, [0.15, -0.1, -1.0], rtol=0, atol=1e-15)
-    assert_allclose(found[17].start, body.position[0] + body.rotation[0] @ [0, 0, 0.1], rtol=0, atol=1e-12)
+    assert_allclose(found[17].start, body.position + body.rotation @ [0, 0, 0.1], rtol=0, atol=1e-12)
 
 
 def test_loads_that_depend_on_poses_are_drawn_as_they_are_where_the_rod_is() -> None:
@@ -103,7 +103,7 @@ def test_loads_that_depend_on_poses_are_drawn_as_they_are_where_the_rod_is() -> 
     assert solution.converged
     tip = solution.tip()
     force, moment, *along = arrows(solution)
-    assert_allclose(force.vector, 2.0 * (np.array([0.5, 0.1, 0.6]) - tip.position[0]), rtol=0, atol=1e-12)
-    assert_allclose(moment.vector, np.cross(tip.rotation[0] @ [0.0, 0.1, 0.2], [1.0, 0.0, 0.5]), rtol=0, atol=1e-12)
+    assert_allclose(force.vector, 2.0 * (np.array([0.5, 0.1, 0.6]) - tip.position), rtol=0, atol=1e-12)
+    assert_allclose(moment.vector, np.cross(tip.rotation @ [0.0, 0.1, 0.2], [1.0, 0.0, 0.5]), rtol=0, atol=1e-12)
     moved = solution.pose(DRAWN_SECTIONS).position - np.outer(DRAWN_SECTIONS, [0, 0, 0.8])
     assert_allclose([arrow.vector for arrow in along], -0.5 * moved, rtol=0, atol=1e-12)

@@ -73,9 +73,9 @@ def test_reference_cases(name: str) -> None:
     expected = json.loads((EFFECTS / f"{name}.json").read_text())["expected"]
     found = solve(read_scene(EFFECTS / f"{name}.toml"))
     assert found.converged
-    assert_allclose(found.tip().position[0], expected["tip"]["position"], rtol=0, atol=1e-7 * LENGTHS[name])
+    assert_allclose(found.tip().position, expected["tip"]["position"], rtol=0, atol=1e-7 * LENGTHS[name])
     if "rotation" in expected["tip"]:
-        assert_allclose(found.tip().rotation[0], expected["tip"]["rotation"], rtol=0, atol=2e-7)
+        assert_allclose(found.tip().rotation, expected["tip"]["rotation"], rtol=0, atol=2e-7)
     if "base_wrench" in expected:
         assert_allclose(found.base_wrench().force, expected["base_wrench"]["force"], rtol=0, atol=1e-6)
         assert_allclose(found.base_wrench().moment, expected["base_wrench"]["moment"], rtol=0, atol=1e-6)
@@ -132,7 +132,7 @@ def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
     assert all(path.converged for path in ends), [path.message for path in ends]
     assert_allclose(to_middle.tip().position[-1], pulled.tip().position[-1], rtol=0, atol=1e-9)
     assert_allclose(from_middle.tip().position[-1], let_out.tip().position[-1], rtol=0, atol=1e-9)
-    assert_allclose(to_middle.tip().position[0], from_middle.tip().position[0], rtol=0, atol=1e-9)
+    assert_allclose(to_middle.tip().position, from_middle.tip().position, rtol=0, atol=1e-9)
     assert np.linalg.norm(pulled.tip().position[-1] - let_out.tip().position[-1]) > 1e-4
 
 
@@ -142,7 +142,7 @@ def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.Mo
     # What is looked for alone is free.
     listed = SCENE[SCENE.index("inputs") : SCENE.index("accuracy")]
     alone = SCENE.replace(listed, 'inputs = ["magnet.dipole.position"]\n')
-    wanted = moved.tip().position[0].tolist()
+    wanted = moved.tip().position.tolist()
     target = f'[[targets]]\nkind = "position"\nrod = "finger"\nposition = {wanted}\n'
     bound = '[[bounds]]\ninput = "magnet.dipole.position"\nlower = [0.08, 0.0, 0.22]\nupper = [0.2, 0.2, 0.4]\n'
     (folder / "wanted.toml").write_text(alone + target + bound)
@@ -161,7 +161,7 @@ def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) ->
     found = library.solve()
     assert found.converged
     position = library.tip["finger"](found.x, library.defaults)[0].full()[:, 0]
-    assert_allclose(position, solution.tip().position[0], rtol=0, atol=1e-9)
+    assert_allclose(position, solution.tip().position, rtol=0, atol=1e-9)
     (folder / "grid.toml").write_text("water.velocity.x = [0.0, 0.2]\ncable.pull = [-1.0, 0.0, 1.0]\n")
     assert cosserat(monkeypatch, "sweep", "finger.toml", "--over", "grid.toml", "--output", "rows.csv") == 0
     rows = list(csv.DictReader((folder / "rows.csv").read_text().splitlines()))

@@ -128,7 +128,7 @@ def test_force_and_moment_of_a_dipole_vs_differences_of_its_energy(name: str) ->
     solution = solve(build(scene(with_tip_magnet(**given), accuracy=FEW)))
     assert solution.converged
     tip = solution.tip()
-    place, moment = tip.position[0], tip.rotation[0] @ [0.3, -0.2, 0.8]
+    place, moment = tip.position, tip.rotation @ [0.3, -0.2, 0.8]
     step = 2e-6
     force = [
         moment @ (field_at(place + step * unit, given) - field_at(place - step * unit, given)) / (2 * step)

@@ -25,7 +25,7 @@ def test_shape_and_frequencies_have_the_second_order(case: str) -> None:
     of_frequency = []
     for links in (8, 16):
         chain = Chain(scene, links)
-        gaps = [np.linalg.norm(chain.tip(rod.name) - solution.tip(rod.name).position[0]) for rod in scene.rods]
+        gaps = [np.linalg.norm(chain.tip(rod.name) - solution.tip(rod.name).position) for rod in scene.rods]
         of_tip.append(max(gaps) / 0.3)
         of_frequency.append(np.abs(chain.frequencies(2) / expected - 1.0).max())
     assert of_tip[1] < 1e-2, of_tip
@@ -48,7 +48,7 @@ quaternion = [1, 0, 0, 0]
     scene = parse_scene(text)
     _, data = settled(scene, 16, 1.0)
     assert_allclose(data.site("finger/tip").xpos, [0.12, 0.0, 0.26], rtol=0, atol=2e-4)
-    middle = solve(build(scene)).pose(0.5).position[0]
+    middle = solve(build(scene)).pose(0.5).position
     assert_allclose(data.body("finger/8").xpos, middle, rtol=0, atol=1e-3)
 
     text = (
@@ -76,7 +76,7 @@ offset = [-8e-3, 0.0]
     # The second is slack, and does not push.
     assert_allclose(data.ten_length[1], solution.actuator("west")["length"], rtol=0, atol=4e-4)
     assert data.ten_length[1] < 0.3115 and data.actuator_force[1] == 0.0
-    assert_allclose(data.site("finger/tip").xpos, solution.tip().position[0], rtol=0, atol=3e-3)
+    assert_allclose(data.site("finger/tip").xpos, solution.tip().position, rtol=0, atol=3e-3)
 
 
 def test_rods_stay_out_of_the_obstacles_that_name_them() -> None:

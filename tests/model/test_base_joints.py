@@ -65,7 +65,7 @@ def test_chain_of_two_hangs_straight_and_each_joint_bears_what_hangs_from_it() -
     solution = solve(build(TWO_LINKS))
     assert solution.converged and solution.stable
     weight = 1100.0 * np.pi * 5e-3**2 * LENGTH * GRAVITY
-    assert_allclose(solution.tip("b").position[0], [0, 0, 0], rtol=0, atol=1e-9)
+    assert_allclose(solution.tip("b").position, [0, 0, 0], rtol=0, atol=1e-9)
     assert_allclose(solution.base_wrench("a").force, [0, 0, 2 * weight], rtol=0, atol=1e-9)
     assert_allclose(solution.base_wrench("b").force, [0, 0, weight], rtol=0, atol=1e-9)
     # Inside the rod the hinge is no load: what it bears passes the first section.
@@ -108,7 +108,7 @@ def test_two_sections_that_are_no_bases_meet() -> None:
 def test_base_that_moves_as_an_input_takes_its_hinge_along() -> None:
     model = build(TWO_LINKS)
     moved = solve(model, {"a.base.position": [0.1, 0.2, 1.3]})
-    assert_allclose(moved.tip("b").position[0], [0.1, 0.2, 0.3], rtol=0, atol=1e-9)
+    assert_allclose(moved.tip("b").position, [0.1, 0.2, 0.3], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -91,8 +91,8 @@ def test_figure_shows_the_rims() -> None:
     solution = solve(build(scene(ROW, loads=[WEIGHT])))
     (first,) = [line for line in plot_solution(solution).axes[0].get_lines() if line.get_label() == "spacers"]
     rim = np.array(first.get_data_3d()).T
-    centre = solution.pose(0.3).position[0]
-    tangent = solution.pose(0.3).rotation[0][:, 2]
+    centre = solution.pose(0.3).position
+    tangent = solution.pose(0.3).rotation[:, 2]
     assert_allclose(np.linalg.norm(rim - centre, axis=1), np.hypot(0.2, 0.05), rtol=1e-12, atol=0)
     assert_allclose(np.abs((rim - centre) @ tangent), 0.05, rtol=0, atol=1e-12)
 

@@ -67,7 +67,7 @@ def test_spring_at_a_slide_under_a_force() -> None:
     state = pulled.joint("slide")
     assert_allclose([state["displacement"], state["force"]], [0.01 + 0.3 / 40.0, -0.3], rtol=0, atol=1e-10)
     # The ends of the rod move as the slide does.
-    assert_allclose(pulled.tip().position[0], [LENGTH + state["displacement"], 0, 0], rtol=0, atol=1e-9)
+    assert_allclose(pulled.tip().position, [LENGTH + state["displacement"], 0, 0], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("angle", [0.7, 20.0])

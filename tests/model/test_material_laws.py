@@ -141,7 +141,7 @@ def test_loads_that_go_round_do_no_work(name: str) -> None:
     for force in forces:
         solution = solve(model, {"push.force": force}, start=start, estimate_error=False, raise_on_failure=True)
         start = solution.x
-        tips.append(solution.tip().position[0])
+        tips.append(solution.tip().position)
     work = -2 * np.pi * np.mean(tips * rates, axis=0)
     # Of curves with jumps in the slope of their stiffness the mean over the points converges slowly.
     has_kinks = name in ("table", "table of axes", "superelastic")
@@ -170,7 +170,7 @@ def test_pure_stretch_vs_closed_form(name: str, section: dict[str, Any]) -> None
     for stretch in (0.7, 1.8):
         force = nominal_stress(name, stretch) * areas[section["shape"]]
         solution = solved(loaded(rod(LAWS[name], section, ["extension"]), modes=1, force=[0, 0, force]))
-        assert_allclose(solution.tip().position[0, 2], stretch * LENGTH, rtol=1e-10, atol=0)
+        assert_allclose(solution.tip().position[2], stretch * LENGTH, rtol=1e-10, atol=0)
 
 
 @pytest.mark.parametrize("force", [-20.0, 60.0])
@@ -264,7 +264,7 @@ def test_cantilever_vs_shooting(law: str) -> None:
     scene = scene.model_copy(update={"accuracy": type(scene.accuracy)(tolerance=1e-7)})
     solution = solve(scene)
     assert solution.converged, solution.message
-    error = np.hypot(*(solution.tip().position[0, [0, 2]] - tip)) / LENGTH
+    error = np.hypot(*(solution.tip().position[[0, 2]] - tip)) / LENGTH
     assert error < 3e-7
     assert solution.within_tolerance
 
@@ -286,14 +286,14 @@ def test_more_modes_converge_as_for_linear_rods() -> None:
 
 def test_bending_of_round_sections_is_the_same_in_every_direction() -> None:
     material = {"law": "table", "table": {"bending": TABLE}}
-    straight = solved(loaded(rod(material, CIRCLE, "kirchhoff"), nodes=20, force=[0.025, 0, 0])).tip().position[0]
+    straight = solved(loaded(rod(material, CIRCLE, "kirchhoff"), nodes=20, force=[0.025, 0, 0])).tip().position
     angle = 0.7
     force = [0.025 * np.cos(angle), 0.025 * np.sin(angle), 0]
-    turned = solved(loaded(rod(material, CIRCLE, "kirchhoff"), nodes=20, force=force)).tip().position[0]
+    turned = solved(loaded(rod(material, CIRCLE, "kirchhoff"), nodes=20, force=force)).tip().position
     assert_allclose(np.hypot(*turned[:2]), straight[0], rtol=1e-9, atol=0)
     assert_allclose(np.arctan2(turned[1], turned[0]), angle, rtol=1e-9, atol=0)
     one_axis = {"law": "table", "table": {"bending_y": TABLE}}
-    planar = solved(loaded(rod(one_axis, CIRCLE, "planar"), nodes=20, force=[0.025, 0, 0])).tip().position[0]
+    planar = solved(loaded(rod(one_axis, CIRCLE, "planar"), nodes=20, force=[0.025, 0, 0])).tip().position
     assert_allclose(straight, planar, rtol=1e-9, atol=1e-12)
 
 
@@ -372,7 +372,7 @@ def test_tapered_rod_vs_pieces() -> None:
         return brentq(lambda value: nominal_stress("neo_hookean", value) * area - force, 1.0, 5.0)
 
     length = LENGTH * quad(stretch, 0.0, 1.0, epsrel=1e-11)[0]
-    assert_allclose(solution.tip().position[0, 2], length, rtol=1e-7, atol=0)
+    assert_allclose(solution.tip().position[2], length, rtol=1e-7, atol=0)
 
 
 # Limits of laws
@@ -431,9 +431,7 @@ def test_rubber_stretches_as_treloar_measured() -> None:
         found = []
         for stress in stresses:
             force = stress * per_area * np.pi * RADIUS**2
-            found.append(
-                solve(model, {"push.force": [0, 0, force]}, raise_on_failure=True).tip().position[0, 2] / LENGTH
-            )
+            found.append(solve(model, {"push.force": [0, 0, force]}, raise_on_failure=True).tip().position[2] / LENGTH)
         errors[law["law"]] = np.abs(np.array(found) / stretches - 1.0)
     assert errors["ogden"].max() < 0.09
     assert np.sqrt(np.mean(errors["ogden"] ** 2)) < 0.045

@@ -179,11 +179,11 @@ def test_shape_function_vs_numeric_interpolation_and_nodes(load: str) -> None:
     for X in [*nodes[:: len(nodes) // 5], 0.123, 0.4, 0.77, 1.0]:
         position, quaternion = (v.full()[:, 0] for v in model.shape["rod"](solution.x, solution.inputs, X))
         expected = solution.pose(X)
-        assert_allclose(position, expected.position[0], rtol=0, atol=1e-12)
-        assert_allclose(quaternion, expected.quaternion[0], rtol=0, atol=1e-12)
+        assert_allclose(position, expected.position, rtol=0, atol=1e-12)
+        assert_allclose(quaternion, expected.quaternion, rtol=0, atol=1e-12)
     tip = model.tip["rod"](solution.x, solution.inputs)
-    assert_allclose(tip[0].full()[:, 0], solution.tip().position[0], rtol=0, atol=1e-12)
-    assert_allclose(tip[2].full(), solution.tip().rotation[0], rtol=0, atol=1e-12)
+    assert_allclose(tip[0].full()[:, 0], solution.tip().position, rtol=0, atol=1e-12)
+    assert_allclose(tip[2].full(), solution.tip().rotation, rtol=0, atol=1e-12)
 
 
 def test_energy_gradient_is_the_elastic_part_of_the_residual() -> None:
@@ -219,7 +219,7 @@ def test_work_of_the_push_is_what_the_rod_stores() -> None:
     shares = np.linspace(0, 1, 9)
     force = np.array(push()["force"])
     solutions = [solve(model, {"push.force": share * force}) for share in shares]
-    lengths = np.array([force @ s.tip().position[0] for s in solutions])
+    lengths = np.array([force @ s.tip().position for s in solutions])
     stored = np.array([float(model.energy(s.x, s.inputs)) for s in solutions])
     # Complementary work: ∫ u dF = F u − energy, smooth in the share.
     weights = np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 24
@@ -332,4 +332,4 @@ def test_base_given_by_tangent_vs_by_quaternion() -> None:
     )
     assert_allclose(one.tip().position, other.tip().position, rtol=0, atol=1e-12)
     straight = solve(coarse(scene(rods=[rod(base={"tangent": tangent})])))
-    assert_allclose(straight.tip().position[0], 0.8 * np.array(tangent) / np.linalg.norm(tangent), rtol=0, atol=1e-12)
+    assert_allclose(straight.tip().position, 0.8 * np.array(tangent) / np.linalg.norm(tangent), rtol=0, atol=1e-12)

@@ -82,12 +82,12 @@ def test_tendons_vs_distributed_loads(course: str) -> None:
     cables = MANY if course == "several" else tendon(COURSES[course])
     text = rod() + PRECURVED + LOADED + cables
     solution, reference = solved(text, 14), TendonRod(tomllib.loads(text))
-    strain = solution.strain(0.0)[0]
+    strain = solution.strain(0.0)
     start = np.concatenate([strain[3:], strain[:3]])
     end = reference.shoot(start, 1.0)
     assert_allclose(reference.miss(end, 1.0), 0.0, rtol=0, atol=1e-6)
-    assert_allclose(solution.tip().position[0], end[:3], rtol=0, atol=2e-8)
-    assert_allclose(solution.tip().rotation[0], end[3:12].reshape(3, 3), rtol=0, atol=2e-7)
+    assert_allclose(solution.tip().position, end[:3], rtol=0, atol=2e-8)
+    assert_allclose(solution.tip().rotation, end[3:12].reshape(3, 3), rtol=0, atol=2e-7)
 
 
 @pytest.mark.slow
@@ -95,8 +95,8 @@ def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
     text = rod() + LOADED + MANY
     position, rotation = TendonRod(tomllib.loads(text)).solve()
     solution = solve(parse_scene(text))
-    assert_allclose(solution.tip().position[0], position, rtol=0, atol=0.2e-9)
-    assert_allclose(solution.tip().rotation[0], rotation, rtol=0, atol=2e-9)
+    assert_allclose(solution.tip().position, position, rtol=0, atol=0.2e-9)
+    assert_allclose(solution.tip().rotation, rotation, rtol=0, atol=2e-9)
 
 
 TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]
@@ -111,8 +111,8 @@ def test_reference_cases_of_tendon_robots(path: Path) -> None:
     tolerance = case.get("position_tolerance_relative_to_length", scene.accuracy.tolerance)
     length = scene.rods[0].length
     assert solution.converged
-    assert_allclose(solution.tip().position[0], wanted["tip"]["position"], rtol=0, atol=tolerance * length)
-    assert_allclose(solution.tip().rotation[0], wanted["tip"]["rotation"], rtol=0, atol=tolerance)
+    assert_allclose(solution.tip().position, wanted["tip"]["position"], rtol=0, atol=tolerance * length)
+    assert_allclose(solution.tip().rotation, wanted["tip"]["rotation"], rtol=0, atol=tolerance)
     if "base_wrench" in wanted:
         assert_allclose(solution.base_wrench().force, wanted["base_wrench"]["force"], rtol=0, atol=tolerance)
 
@@ -124,7 +124,7 @@ def test_parallel_tendon_bends_to_a_circle() -> None:
     radius = 1 / curvature
     angle = 0.2 * curvature
     expected = [radius * (1 - np.cos(angle)), 0.0, radius * np.sin(angle)]
-    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-12)
+    assert_allclose(solution.tip().position, expected, rtol=0, atol=1e-12)
     assert_allclose(solution.actuator("cable")["length"], 0.2 * (1 - 0.006 * curvature), rtol=1e-13, atol=0)
 
 
@@ -146,7 +146,7 @@ def test_chamber_along_a_part_bends_a_part() -> None:
     angle = 0.1 * curvature
     x, z = (1 - np.cos(angle)) / curvature, np.sin(angle) / curvature
     expected = [x + 0.05 * np.sin(angle), 0.0, 0.05 + z + 0.05 * np.cos(angle)]
-    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-12)
+    assert_allclose(solution.tip().position, expected, rtol=0, atol=1e-12)
 
 
 def test_loaded_chamber_vs_intrinsic_strain() -> None:
@@ -286,7 +286,7 @@ def test_derivative_of_length_vs_automatic() -> None:
 def test_convergence_is_geometric_even_across_anchors(course: str) -> None:
     text = rod('["bending_x", "bending_y", "torsion", "extension"]') + LOADED + tendon(COURSES[course])
     tips = [
-        solve(build(parse_scene(text, (f"accuracy.modes={m}", "accuracy.nodes=16")))).tip().position[0]
+        solve(build(parse_scene(text, (f"accuracy.modes={m}", "accuracy.nodes=16")))).tip().position
         for m in (2, 4, 6, 9)
     ]
     errors = [np.abs(tip - tips[-1]).max() for tip in tips[:-1]]

@@ -26,8 +26,8 @@ def state(motion: Motion, index: int) -> Solution:
 def test_tips_and_sections_vs_solutions(platform: Motion, rod: str, index: int) -> None:
     solution = state(platform, index)
     tip = platform.tip(rod)
-    assert_allclose(tip.position[index], solution.tip(rod).position[0], rtol=0, atol=1e-13)
-    assert_allclose(tip.quaternion[index], solution.tip(rod).quaternion[0], rtol=0, atol=1e-13)
+    assert_allclose(tip.position[index], solution.tip(rod).position, rtol=0, atol=1e-13)
+    assert_allclose(tip.quaternion[index], solution.tip(rod).quaternion, rtol=0, atol=1e-13)
 
     X = [0.0, 0.31, 0.77, 1.0]
     sections = platform.section(rod, X)
@@ -53,8 +53,8 @@ def test_sections_of_a_rod_in_elements_end_at_its_tip() -> None:
 def test_bodies_and_actuators_vs_solutions(platform: Motion, index: int) -> None:
     solution = state(platform, index)
     body = platform.body("platform")
-    assert_allclose(body.position[index], solution.body("platform").position[0], rtol=0, atol=1e-13)
-    assert_allclose(body.quaternion[index], solution.body("platform").quaternion[0], rtol=0, atol=1e-13)
+    assert_allclose(body.position[index], solution.body("platform").position, rtol=0, atol=1e-13)
+    assert_allclose(body.quaternion[index], solution.body("platform").quaternion, rtol=0, atol=1e-13)
     cable = platform.actuator("cable")
     expected = solution.actuator("cable")
     assert_allclose(cable.effort[index], expected["tension"], rtol=1e-13, atol=0)

@@ -42,7 +42,7 @@ def test_rods_and_bodies_are_drawn_where_they_are(scene: Callable[[], Scene]) ->
         assert_allclose(drawn["rod", name], np.hstack([pose.position, pose.quaternion]), rtol=0, atol=1e-14)
     for body in solution.model.scene.bodies:
         pose = solution.body(body.name)
-        assert_allclose(drawn["body", body.name], np.hstack([pose.position, pose.quaternion]), rtol=0, atol=1e-14)
+        assert_allclose(drawn["body", body.name][0], np.hstack([pose.position, pose.quaternion]), rtol=0, atol=1e-14)
 
 
 def test_tendons_are_drawn_along_their_spans() -> None:

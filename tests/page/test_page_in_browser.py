@@ -66,7 +66,7 @@ def test_it_is_one_small_file_with_the_title_of_the_scene(file: Path, page: Any)
 
 
 def test_it_opens_at_the_scene_s_own_equilibrium(page: Any, solution: Solution) -> None:
-    assert_allclose(page.evaluate("window.robot.tip()"), solution.tip().position[0], rtol=0, atol=1e-9)
+    assert_allclose(page.evaluate("window.robot.tip()"), solution.tip().position, rtol=0, atol=1e-9)
     at_rest(page)
     assert page.evaluate("window.robot.stable") is True
     assert "In equilibrium, stable" in page.inner_text("#status")
@@ -85,8 +85,8 @@ def test_a_slider_moves_the_tip_to_where_solve_says(page: Any, solution: Solutio
     slider.evaluate("(range) => { range.value = 2.5; range.dispatchEvent(new Event('input')); }")
     page.wait_for_function("() => window.robot.inputs['push.force.x'] === 2.5")
     inputs = solution.model.pack({"push.force": [2.5, 0.0, -0.2]})
-    expected = solve(solution.model, inputs).tip().position[0]
-    assert abs(expected - solution.tip().position[0]).max() > 0.1
+    expected = solve(solution.model, inputs).tip().position
+    assert abs(expected - solution.tip().position).max() > 0.1
     assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
     assert page.get_by_label("push.force x in N, as a number").input_value() == "2.5"
 
@@ -95,7 +95,7 @@ def test_a_script_moves_inputs_by_name(page: Any, solution: Solution) -> None:
     page.evaluate("window.robot.setInput('front.tension', 2.4)")
     page.evaluate("window.robot.setInput('push.force', [0.1, 0.2, 0.3])")
     inputs = solution.model.pack({"front.tension": 2.4, "push.force": [0.1, 0.2, 0.3]})
-    expected = solve(solution.model, inputs).tip().position[0]
+    expected = solve(solution.model, inputs).tip().position
     assert_allclose(page.evaluate("window.robot.tip('rod')"), expected, rtol=0, atol=1e-8)
     page.evaluate("window.robot.reset()")
     assert page.evaluate("window.robot.inputs['front.tension']") == 1.5
@@ -171,7 +171,7 @@ def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None
     words = page.locator(".slider output").all_inner_texts()
     step = 1e-4
     ends = [solve(solution.model, solution.model.pack({"front.tension": 1.5 + sign * step})) for sign in (1, -1)]
-    velocity = (ends[0].tip().position - ends[1].tip().position)[0] / (2 * step)
+    velocity = (ends[0].tip().position - ends[1].tip().position) / (2 * step)
     size = (velocity @ velocity) ** 0.5
     assert words[solution.model.inputs.slices["front.tension"].start] == f"moves it {1000 * size:.3g} mm per N"
     page.get_by_label("derivatives").uncheck()
@@ -204,7 +204,7 @@ def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
     assert inputs["front.tension"] == 1.5
     force = [inputs[f"push.force.{axis}"] for axis in "xyz"]
     assert max(abs(value - old) for value, old in zip(force, [0.3, 0.0, -0.2], strict=True)) > 0.05
-    expected = solve(solution.model, {"push.force": force}).tip().position[0]
+    expected = solve(solution.model, {"push.force": force}).tip().position
     assert_allclose(tip, expected, rtol=0, atol=1e-8)
 
 

@@ -109,12 +109,12 @@ def test_points_are_equilibria_that_hold(lowered: ContactPath) -> None:
         assert solution.converged, solution.message
         assert solution.stable
         assert_allclose(solution.smallest_eigenvalue, lowered.smallest_eigenvalue[index], rtol=1e-6, atol=0)
-        assert_allclose(solution.tip().position[0], lowered.tip().position[index], rtol=0, atol=1e-12)
+        assert_allclose(solution.tip().position, lowered.tip().position[index], rtol=0, atol=1e-12)
         assert all(min(contact.ends) > -1e-6 for contact in solution.contacts)
         z = solution.pose(np.linspace(0.0, 1.0, 501)).position[:, 2]
         assert z.min() > -HEIGHT - 1e-8
     end = solve(lowered.model)
-    assert_allclose(end.tip().position[0], lowered.tip().position[-1], rtol=0, atol=1e-10)
+    assert_allclose(end.tip().position, lowered.tip().position[-1], rtol=0, atol=1e-10)
     assert_allclose(end.contacts[0].start, lowered.contacts(-1)[0].start, rtol=0, atol=1e-9)
 
 

@@ -135,12 +135,12 @@ def test_a_shape_has_the_sizes_of_the_scene() -> None:
     )
     disk = read.points("disks", 0)[-2 * SIDES :]
     tip = solution.tip()
-    along = (disk - tip.position[0]) @ tip.rotation[0]
+    along = (disk - tip.position) @ tip.rotation
     assert_allclose(np.linalg.norm(along[:, :2], axis=1), 8e-3, rtol=0, atol=1e-7)
     assert_allclose(np.abs(along[:, 2]), 1e-3, rtol=0, atol=1e-7)
     cable = read.points("cable", 0).reshape(-1, SIDES, 3).mean(axis=1)
-    assert_allclose(cable[-1], tip.position[0] + 1.5e-3 * tip.rotation[0][:, 0], rtol=0, atol=1e-7)
-    ball = read.points("tip", 0) - solution.body("tip").position[0]
+    assert_allclose(cable[-1], tip.position + 1.5e-3 * tip.rotation[:, 0], rtol=0, atol=1e-7)
+    ball = read.points("tip", 0) - solution.body("tip").position
     assert_allclose(np.linalg.norm(ball, axis=1), 5e-3, rtol=0, atol=1e-7)
     assert_allclose(read.points("floor", 0)[:, 2], -0.1, rtol=0, atol=1e-7)
 

@@ -146,7 +146,7 @@ def miss(scene: Scene, solution: Solution) -> Miss:
     truth = _Integrator(scene, tensions).equilibrium(solution)
     length = scene.rods[0].length
     tip = solution.tip()
-    error = pose_error((tip.position[0], tip.rotation[0]), (truth.position, truth.rotation), length)
+    error = pose_error((tip.position, tip.rotation), (truth.position, truth.rotation), length)
     cables = [abs(float(solution.actuator(name)["length"]) - L) / length for name, L in truth.lengths.items()]
     return Miss(error, max(cables, default=0.0))
 

@@ -72,7 +72,7 @@ def path() -> Any:
 
 @cache
 def inverse_of_a_tip() -> Any:
-    target = {"kind": "position", "rod": "rod", "position": solution().tip().position[0].tolist()}
+    target = {"kind": "position", "rod": "rod", "position": solution().tip().position.tolist()}
     aimed = scene(push(force=[0.7, 0.4, -0.3]), inputs=["push.force"], targets=[target])
     return inverse(build(aimed, discretise(aimed, 3, 6)), estimate_error=False)
 

@@ -43,7 +43,7 @@ def test_rows_hold_their_contacts(tmp_path: Path) -> None:
         (contact,) = alone.contacts
         found = [swept[f"rod.bar.{word}"][row] for word in ("from", "to", "force.x", "force.y", "force.z")]
         assert_allclose(found, [contact.start, contact.end, *contact.force], rtol=0, atol=1e-9)
-        assert_allclose(swept.positions()[row], alone.tip().position[0], rtol=0, atol=1e-10)
+        assert_allclose(swept.positions()[row], alone.tip().position, rtol=0, atol=1e-10)
         assert_allclose(swept["smallest_eigenvalue"][row], alone.smallest_eigenvalue, rtol=1e-7, atol=0)
     # The file says the same, with empty cells where nothing touches.
     assert_allclose(read_sweep(file).values, swept.values, rtol=0, atol=0, equal_nan=True)

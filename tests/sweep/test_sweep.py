@@ -101,10 +101,10 @@ def test_everything_of_an_assembly_vs_python() -> None:
         force = [table["load.force.x"][row], 0.0, -0.3]
         expected = solve(given, {"load.force": force, "pull.tension": table["pull.tension"][row]})
         for name in ("left", "right"):
-            assert_allclose(found.positions(name)[row], expected.tip(name).position[0], rtol=0, atol=1e-9)
-        assert_allclose(found.positions("hand")[row], expected.body("hand").position[0], rtol=0, atol=1e-9)
+            assert_allclose(found.positions(name)[row], expected.tip(name).position, rtol=0, atol=1e-9)
+        assert_allclose(found.positions("hand")[row], expected.body("hand").position, rtol=0, atol=1e-9)
         quaternion = [found[f"hand.{axis}"][row] for axis in ("qw", "qx", "qy", "qz")]
-        assert_allclose(quaternion, expected.body("hand").quaternion[0], rtol=0, atol=1e-9)
+        assert_allclose(quaternion, expected.body("hand").quaternion, rtol=0, atol=1e-9)
         assert_allclose(found["pull.length"][row], expected.actuator("pull")["length"], rtol=0, atol=1e-9)
         assert_allclose(found["gas.pressure"][row], 500.0, rtol=0, atol=1e-9)
         assert_allclose(found["gas.volume"][row], expected.actuator("gas")["volume"], rtol=0, atol=1e-12)
@@ -149,7 +149,7 @@ def test_the_discretisation_is_chosen_for_all_rows() -> None:
     assert {0, 49} <= set(chosen["rows"])
     exact = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod("planar")], accuracy={"tolerance": 1e-8})
     for row in (3, 17):
-        expected = solve(exact, {"push.force": [table["push.force.x"][row], 0.0, 0.0]}).tip().position[0]
+        expected = solve(exact, {"push.force": [table["push.force.x"][row], 0.0, 0.0]}).tip().position
         # The tolerance is relative to the length, 0.8 m.
         assert_allclose(found.positions()[row], expected, rtol=0, atol=1e-4 * 0.8)
 

@@ -204,8 +204,8 @@ def test_one_tube_is_a_rod(load: str, curvature: float) -> None:
     assert found.converged
     assert rod.converged
     tip = rod.tip("tube")
-    assert_allclose(found.tip().position, tip.position[0], rtol=0, atol=1e-8)
-    assert_allclose(found.tip().rotation, tip.rotation[0], rtol=0, atol=1e-7)
+    assert_allclose(found.tip().position, tip.position, rtol=0, atol=1e-8)
+    assert_allclose(found.tip().rotation, tip.rotation, rtol=0, atol=1e-7)
     assert found.stable == rod.stable
 
 
@@ -220,8 +220,8 @@ def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
     found = solve(parse_scene(ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0") + load))
     rod = solve(parse_scene(ROD.replace("CURVATURE", "9.0") + load))
     assert found.converged
-    assert_allclose(found.tip().position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
-    assert_allclose(found.tip().rotation, rod.tip("tube").rotation[0], rtol=0, atol=1e-7)
+    assert_allclose(found.tip().position, rod.tip("tube").position, rtol=0, atol=1e-8)
+    assert_allclose(found.tip().rotation, rod.tip("tube").rotation, rtol=0, atol=1e-7)
     assert found.stable == rod.stable
     # The place moves with the tube; the derivatives know it.
     for index in range(found.inputs.size):
@@ -293,7 +293,7 @@ def test_aligned_tubes_are_a_rod_of_their_summed_stiffness() -> None:
     found = solve(parse_scene(tubes + "[[tubes]]" + other + load))
     summed = ROD.replace("CURVATURE", "9.0").replace("0.05,", "0.15,").replace("0.04 }", "0.12 }")
     rod = solve(parse_scene(summed + load))
-    assert_allclose(found.tip("tube").position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
+    assert_allclose(found.tip("tube").position, rod.tip("tube").position, rtol=0, atol=1e-8)
     assert_allclose(found.angles[0], found.angles[1], rtol=0, atol=1e-10)
 
 

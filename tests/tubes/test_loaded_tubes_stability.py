@@ -206,7 +206,7 @@ def test_a_load_is_followed() -> None:
     assert path.stable is not None
     assert path.stable.all()
     end = solve(scene, {"push.force.z": -0.5})
-    assert_allclose(path.tip()[-1], end.tip().position, rtol=0, atol=1e-3 * 0.2)
+    assert_allclose(path.tip().position[-1], end.tip().position, rtol=0, atol=1e-3 * 0.2)
 
 
 @pytest.mark.slow

@@ -333,7 +333,7 @@ def test_path_over_a_translation_passes_where_the_order_changes() -> None:
     assert path.stable.all()
     assert not path.events
     end = solve(scene, {"inner.translation": 0.05})
-    assert_allclose(path.tip("inner")[-1], end.tip("inner").position, rtol=0, atol=1e-8)
+    assert_allclose(path.tip("inner").position[-1], end.tip("inner").position, rtol=0, atol=1e-8)
 
 
 def test_one_tube() -> None:
@@ -448,7 +448,7 @@ def test_files_hold_what_python_says(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "p.json").read_text()) == path.to_dict()
     rows = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, dtype=None, encoding=None)
     assert_allclose(rows["innerrotation"], path.values, rtol=0, atol=0)
-    assert_allclose(rows["innertipz"], path.tip("inner")[:, 2], rtol=0, atol=0)
+    assert_allclose(rows["innertipz"], path.tip("inner").position[:, 2], rtol=0, atol=0)
     assert cosserat("check", "tubes.toml", cwd=tmp_path).returncode == 0
 
 

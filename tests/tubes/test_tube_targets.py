@@ -61,7 +61,7 @@ def test_a_tip_has_the_pose_that_is_wanted() -> None:
     assert found.met, found.solution.message
     tip = found.solution.tip("inner")
     assert_allclose(tip.position, wanted.position, rtol=0, atol=1e-7)
-    assert_allclose(rotation_angles(wanted.quaternion[None], tip.quaternion[None]), 0.0, rtol=0, atol=1e-6)
+    assert_allclose(rotation_angles(wanted.quaternion, tip.quaternion), 0.0, rtol=0, atol=1e-6)
     # The pose of three numbers too many says which inputs it is of.
     for key, value in ELSEWHERE.items():
         assert_allclose(found.values[key], value, rtol=0, atol=1e-5)

@@ -59,7 +59,7 @@ def test_a_slider_moves_the_tip_to_where_solve_says(page: Any, server: RobotServ
     slider = page.get_by_label("front.tension, N", exact=True)
     slider.evaluate("(range) => { range.value = 5.5; range.dispatchEvent(new Event('input')); }")
     page.wait_for_function("() => window.robot.inputs['front.tension'] === 5.5")
-    expected = solve(model, {"front.tension": 5.5}).tip().position[0]
+    expected = solve(model, {"front.tension": 5.5}).tip().position
     assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
     page.wait_for_function("() => window.robot.stable === true", timeout=PATIENCE)
     assert "In equilibrium, stable" in page.inner_text("#status")

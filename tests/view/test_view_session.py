@@ -59,7 +59,7 @@ def test_moving_finds_what_solve_finds(session: ViewSession) -> None:
         answer = session.move(inputs.tolist())
         assert answer["found"]
         assert answer["label"] == "converged"
-        assert_allclose(tip(answer), solve(model, {"push.force": force}).tip().position[0], rtol=0, atol=1e-8)
+        assert_allclose(tip(answer), solve(model, {"push.force": force}).tip().position, rtol=0, atol=1e-8)
 
 
 def test_moving_stays_on_the_branch_and_starting_anew_does_not(session: ViewSession) -> None:
@@ -90,7 +90,7 @@ def test_derivatives_are_those_of_the_solution(session: ViewSession) -> None:
     found = np.array(session.derivatives()).reshape(-1, 7)
     assert len(found) == model.inputs.size
     step = 1e-4
-    ends = [solve(model, {"front.tension": 3.0 + sign * step}).tip().position[0] for sign in (1, -1)]
+    ends = [solve(model, {"front.tension": 3.0 + sign * step}).tip().position for sign in (1, -1)]
     assert_allclose(found[3, :3], (ends[0] - ends[1]) / (2 * step), rtol=1e-6, atol=1e-9)
 
 
@@ -99,9 +99,9 @@ def test_stability_is_that_of_the_solution(session: ViewSession) -> None:
 
 
 def test_reaching_a_point_finds_the_inputs(session: ViewSession) -> None:
-    start = session.first.tip().position[0]
+    start = session.first.tip().position
     # A tendon alone reaches what it reaches: a point of its own path, and not one beside it.
-    on_path = solve(session.first.model, {"front.tension": 4.0}).tip().position[0]
+    on_path = solve(session.first.model, {"front.tension": 4.0}).tip().position
     answer = session.reach({"rod": "rod"}, on_path.tolist())
     assert answer["met"]
     assert "The targets are met" in answer["text"]
@@ -117,7 +117,7 @@ def test_reaching_a_point_finds_the_inputs(session: ViewSession) -> None:
 def test_a_point_is_not_met_where_the_robot_ends_elsewhere(
     session: ViewSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    point = solve(session.first.model, {"front.tension": 5.0}).tip().position[0].tolist()
+    point = solve(session.first.model, {"front.tension": 5.0}).tip().position.tolist()
     assert session.reach({"rod": "rod"}, point)["met"]
     at_first = session.library.solve(session.first.inputs)
     monkeypatch.setattr(type(session.library), "follow", lambda *_: at_first)
@@ -138,7 +138,7 @@ def test_modes_swing_about_the_equilibrium(session: ViewSession) -> None:
     pictures = frames(answer["modes"][0]["frames"]).reshape(PERIOD_FRAMES, -1)
     ends = pictures[:, TIP]
     # Damping puts the sections a little out of step: not all pass the equilibrium at once.
-    assert_allclose(ends[0], session.first.tip().position[0], rtol=0, atol=1e-4)
+    assert_allclose(ends[0], session.first.tip().position, rtol=0, atol=1e-4)
     # To both sides, by about the share of the length that is drawn.
     quarter, three_quarters = ends[PERIOD_FRAMES // 4] - ends[0], ends[3 * PERIOD_FRAMES // 4] - ends[0]
     assert quarter @ three_quarters < 0
@@ -151,7 +151,7 @@ def test_the_motion_is_that_of_the_scene(session: ViewSession) -> None:
     assert answer["times"][-1] == 0.4
     pictures = frames(answer["frames"]).reshape(len(answer["times"]), -1)
     # It starts at rest in the equilibrium of the scene's own inputs, and nothing moves them.
-    assert_allclose(pictures[:, TIP], np.tile(session.first.tip().position[0], (len(pictures), 1)), rtol=0, atol=1e-3)
+    assert_allclose(pictures[:, TIP], np.tile(session.first.tip().position, (len(pictures), 1)), rtol=0, atol=1e-3)
 
 
 def test_without_mass_there_is_a_refusal() -> None:
@@ -197,7 +197,7 @@ def test_the_robot_is_refined_where_the_hand_rests(planar: ViewSession) -> None:
     rough = tip(planar.reset(inputs))
     refined = planar.refined(inputs)
     assert refined["within"] is True
-    exact = solve(unfixed(planar.first.model.scene, 1e-6), {"push.force": inputs}).tip().position[0]
+    exact = solve(unfixed(planar.first.model.scene, 1e-6), {"push.force": inputs}).tip().position
     assert_allclose(tip(refined), exact, rtol=0, atol=1e-4 * planar.first.model.scene.rods[0].length)
     assert np.linalg.norm(rough - exact) > 1e-3
 

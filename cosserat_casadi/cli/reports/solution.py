@@ -111,14 +111,14 @@ def _rod_table(solution: Solution) -> Table:
     for name in solution.model.discrete.rods:
         tip = solution.tip(name)
         base_wrench = solution.base_wrench(name)
-        table.add_row(escape(name), "tip position, m", *digits(tip.position[0]))
-        table.add_row("", "tip tangent", *digits(tip.rotation[0][:, 2]))
+        table.add_row(escape(name), "tip position, m", *digits(tip.position))
+        table.add_row("", "tip tangent", *digits(tip.rotation[:, 2]))
         table.add_row("", "clamp force, N", *digits(base_wrench.force))
         table.add_row("", "clamp moment, N m", *digits(base_wrench.moment), end_section=True)
     for name in solution.model.body:
         pose = solution.body(name)
-        table.add_row(escape(name), "body position, m", *digits(pose.position[0]))
-        table.add_row("", "body z axis", *digits(pose.rotation[0][:, 2]), end_section=True)
+        table.add_row(escape(name), "body position, m", *digits(pose.position))
+        table.add_row("", "body z axis", *digits(pose.rotation[:, 2]), end_section=True)
     return table
 
 

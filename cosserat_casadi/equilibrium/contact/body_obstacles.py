@@ -10,8 +10,8 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 def in_axes_of(body: SolvedPoses, positions: FloatArray) -> FloatArray:
-    """World positions, shape (k, 3) in m, in the axes of a body in its one pose."""
-    return np.asarray((positions - body.position[0]) @ body.rotation[0])
+    """World positions, shape (k, 3) in m, in the axes of a body."""
+    return np.asarray((positions - body.position) @ body.rotation)
 
 
 def seen_positions(solution: Solution, obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
@@ -25,11 +25,11 @@ def seen_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directi
     """World directions, shape (k, 3), in the axes that an obstacle is given in."""
     if obstacle.body is None:
         return directions
-    return np.asarray(directions @ solution.body(obstacle.body).rotation[0])
+    return np.asarray(directions @ solution.body(obstacle.body).rotation)
 
 
 def world_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directions: FloatArray) -> FloatArray:
     """Directions in the axes that an obstacle is given in, shape (k, 3), in those of the world."""
     if obstacle.body is None:
         return directions
-    return np.asarray(directions @ solution.body(obstacle.body).rotation[0].T)
+    return np.asarray(directions @ solution.body(obstacle.body).rotation.T)

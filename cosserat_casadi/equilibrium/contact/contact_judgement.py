@@ -154,15 +154,14 @@ def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
 
 def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
     """Second derivative of the gap with X at a point of contact, over the length."""
-    X = np.array([touch.start])
-    pose = found.solution.pose(X, touch.owner)
-    strain = found.solution.strain(X, touch.owner)[0]
+    pose = found.solution.pose(touch.start, touch.owner)
+    strain = found.solution.strain(touch.start, touch.owner)
     length = found.placed.model.discrete.rods[touch.owner].properties.length
-    tangent = length * pose.rotation[0] @ strain[3:]
+    tangent = length * pose.rotation @ strain[3:]
     # The rate of the extension is along the tangent, on which the normal stands.
-    bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])
+    bend = length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
     obstacle = found.placed.obstacle(touch.obstacle)
-    (position,) = seen_positions(found.solution, obstacle, pose.position)
+    (position,) = seen_positions(found.solution, obstacle, pose.position[None])
     first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
     distance = distance_along(obstacle, position, first, second)
     return distance.bend / length

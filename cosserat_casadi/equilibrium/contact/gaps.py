@@ -80,7 +80,7 @@ def section_gaps(
 def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
     """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
     length = solution.model.discrete.body_frame(body.name).length
-    (gap,) = ball_gaps(obstacle, ball_radius(body), solution.body(body.name).position)
+    (gap,) = ball_gaps(obstacle, ball_radius(body), solution.body(body.name).position[None])
     return float(gap) / length
 
 
@@ -97,7 +97,7 @@ def ball_radius(body: scenes.Body) -> float:
 
 def body_normal(solution: Solution, body: str, obstacle: scenes.ObstacleRecord) -> FloatArray:
     """Normal of an obstacle at a body, shape (3,)."""
-    _, gradient, _ = surface(obstacle)(solution.body(body).position[0])
+    _, gradient, _ = surface(obstacle)(solution.body(body).position)
     return np.asarray(gradient.full()[:, 0])
 
 
@@ -129,7 +129,7 @@ def touching_points(solution: Solution, contact: Contact, along: int) -> FloatAr
         (body,) = [body for body in solution.model.scene.bodies if body.name == contact.owner]
         obstacle = obstacle_of(solution.model.scene, contact.obstacle)
         normal = body_normal(solution, body.name, obstacle)
-        return np.asarray(solution.body(body.name).position - ball_radius(body) * normal)
+        return np.asarray(solution.body(body.name).position[None] - ball_radius(body) * normal)
     count = along if contact.start < contact.end else 1
     X = np.linspace(contact.start, contact.end, count)
     return solution.pose(X, contact.owner).position

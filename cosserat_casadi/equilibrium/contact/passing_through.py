@@ -69,7 +69,7 @@ class LookedAt:
         if obstacle.body is None:
             return in_world
         position, quaternion, rotation = (part.full() for part in self.model.body[obstacle.body](x, inputs))
-        return in_axes_of(SolvedPoses(position.T, rotation[None], quaternion.T), in_world)
+        return in_axes_of(SolvedPoses(position[:, 0], rotation, quaternion[:, 0]), in_world)
 
     @cached_property
     def _interpolation(self) -> FloatArray:
@@ -106,7 +106,7 @@ def ball_is_inside_between(
     end: FloatArray,
     deepest: float = DEEP,
 ) -> bool:
-    """Whether a ball is inside an obstacle on the straight way from one position to another, shape (1, 3) each, m.
+    """Whether a ball is inside an obstacle on the straight way from one position to another, shape (3,) each, m.
 
     Args:
         obstacle: the obstacle.
@@ -118,7 +118,7 @@ def ball_is_inside_between(
     """
     admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
     # A stretch without length.
-    ends = (np.repeat(start, 2, axis=0), np.repeat(end, 2, axis=0))
+    ends = (np.tile(start, (2, 1)), np.tile(end, (2, 1)))
     return _sinks(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
 
 
