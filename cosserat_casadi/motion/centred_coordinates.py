@@ -30,12 +30,11 @@ ORDERS = 3
 
 
 def can_be_centred(model: Model) -> bool:
-    """Whether a scene is one free rod without exact contact, without slack cables, and of a length that is no input.
+    """Whether a scene is one free rod without slack cables, and of a length that is no input.
 
-    Guards of contacts and cables read the steps in the unknowns of the model, and a length that is an input would enter
-    the frame with its rates.
+    Tensions of cables are unknowns of the model, and a length that is an input would enter the frame with its rates.
     """
-    if not flies_alone(model) or model.scene.touches_exactly or OneSided(model).pairs:
+    if not flies_alone(model) or OneSided(model).pairs:
         return False
     (name,) = model.discrete.rods
     return model.discrete.layout.of_rod(name, "length") is None
@@ -44,6 +43,8 @@ def can_be_centred(model: Model) -> bool:
 class CentredCoordinates:
     """The map x = φ(y): y is x but for the entries of the base, which are those of the centred frame.
 
+    Forces of contacts, which stand behind the unknowns of the model while something touches, are the same in both.
+
     Args:
         model: of one rod that flies free, see :func:`can_be_centred`.
     """
@@ -51,6 +52,7 @@ class CentredCoordinates:
     def __init__(self, model: Model) -> None:
         ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
         self._pose = np.arange(entries.start, entries.stop)
+        self._size = model.size
         self._strains = np.delete(np.arange(model.size), self._pose)
         functions = _Functions(model)
         self._base = RepeatedCall(functions.base.expand())
@@ -60,7 +62,8 @@ class CentredCoordinates:
 
     def to_model(self, instant: Instant) -> Instant:
         """A state in the unknowns of the model, from one in these coordinates."""
-        base = self._base(instant.x, instant.v, instant.a).reshape(ORDERS, POSE_SIZE)
+        own = self._own(instant)
+        base = self._base(own.x, own.v, own.a).reshape(ORDERS, POSE_SIZE)
         parts = [instant.x.copy(), instant.v.copy(), instant.a.copy()]
         for part, of_base in zip(parts, base, strict=True):
             part[self._pose] = of_base
@@ -74,15 +77,18 @@ class CentredCoordinates:
         return x
 
     def from_model(self, instant: Instant) -> Instant:
-        """Positions and velocities in these coordinates, from those of the model; accelerations are zero."""
-        still = np.zeros(len(instant.x))
-        x = instant.x.copy()
-        x[self._pose] = self._centred(instant.x)
+        """A state in these coordinates, from one in the unknowns of the model."""
+        x, v, a = instant.x.copy(), instant.v.copy(), instant.a.copy()
+        x[self._pose] = self._centred(x[: self._size])
+        still = np.zeros_like(v)
         derivative, _, _ = self._jet(Instant(instant.time, x, still, still))
-        by_strains = derivative[:, self._strains] @ instant.v[self._strains]
-        v = instant.v.copy()
-        v[self._pose] = np.linalg.solve(derivative[:, self._pose], instant.v[self._pose] - by_strains)
-        return Instant(instant.time, x, v, still)
+        by_base = derivative[:, self._pose]
+        by_strains = derivative[:, self._strains]
+        v[self._pose] = np.linalg.solve(by_base, instant.v[self._pose] - by_strains @ v[self._strains])
+        _, rate, _ = self._jet(Instant(instant.time, x, v, still))
+        turning = rate @ v[: self._size]
+        a[self._pose] = np.linalg.solve(by_base, instant.a[self._pose] - by_strains @ a[self._strains] - turning)
+        return Instant(instant.time, x, v, a)
 
     def equations(self, plain: MotionEquations) -> MotionEquations:
         """The equations of motion in these coordinates, row by row the same.
@@ -90,7 +96,7 @@ class CentredCoordinates:
         With Φ = ∂φ/∂y their derivatives are K Φ + C Φ̇ + M Φ̈, C Φ + 2 M Φ̇ and M Φ.
 
         Args:
-            plain: those of the model.
+            plain: in the unknowns of the model.
         """
 
         def residual(t: float, y: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
@@ -103,28 +109,31 @@ class CentredCoordinates:
             instant = Instant(t, y, v, a)
             at = self.to_model(instant)
             stiffness, damping, mass = plain.jacobians(t, at.x, at.v, at.a)
-            jet = self._jet(instant)
-            _, rate, acceleration = jet
-            # Φ̇ and Φ̈ have rows of the base alone.
-            by_rate = damping[:, self._pose] @ rate + mass[:, self._pose] @ acceleration
-            return (
-                self._along(stiffness, jet) + by_rate,
-                self._along(damping, jet) + 2.0 * mass[:, self._pose] @ rate,
-                self._along(mass, jet),
-            )
+            value, rate, acceleration = self._jet(instant)
+            by_stiffness, by_damping, by_mass = (matrix[:, self._pose] for matrix in (stiffness, damping, mass))
+            for matrix in (stiffness, damping, mass):
+                matrix[:, self._pose] = 0.0
+            own = slice(0, self._size)
+            # Φ is the identity but for the rows of the base, and Φ̇ and Φ̈ have rows of the base alone.
+            stiffness[:, own] += by_stiffness @ value + by_damping @ rate + by_mass @ acceleration
+            damping[:, own] += by_damping @ value + 2.0 * by_mass @ rate
+            mass[:, own] += by_mass @ value
+            return stiffness, damping, mass
 
-        return replace(plain, residual=residual, jacobians=jacobians)
+        return replace(plain, residual=residual, jacobians=jacobians, rates_of_last=None)
+
+    def _own(self, instant: Instant) -> Instant:
+        """A state without the forces of contacts."""
+        if len(instant.x) == self._size:
+            return instant
+        own = slice(0, self._size)
+        return Instant(instant.time, instant.x[own], instant.v[own], instant.a[own])
 
     def _jet(self, instant: Instant) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Rows of the base in Φ, Φ̇ and Φ̈, shape (7, size) each."""
-        value, rate, acceleration = self._derivatives(instant.x, instant.v, instant.a)
+        own = self._own(instant)
+        value, rate, acceleration = self._derivatives(own.x, own.v, own.a)
         return value.full(), rate.full(), acceleration.full()
-
-    def _along(self, matrix: FloatArray, jet: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
-        """A matrix times Φ, which is the identity but for the rows of the base."""
-        product = matrix.copy()
-        product[:, self._pose] = 0.0
-        return product + matrix[:, self._pose] @ jet[0]
 
 
 class _Functions:

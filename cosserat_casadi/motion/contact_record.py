@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -82,17 +82,19 @@ class ContactRecord:
     Attributes:
         model: the model, built for a motion.
         stretches: of the motion, one after the other.
+        to_model: a state in the unknowns of the model, with forces of contact behind them, from one of the steps.
     """
 
     model: Model
     stretches: Sequence[Stretch]
+    to_model: Callable[[Instant], Instant]
 
     def at(self, number: int, instant: Instant) -> tuple[MotionContact, ...]:
         """The contacts at an instant of a step.
 
         Args:
             number: of the step, counted from the start of the motion; none where there are no steps.
-            instant: with forces of contact.
+            instant: in the unknowns of the model, with forces of contact.
         """
         if not self._begins:
             return ()
@@ -122,10 +124,11 @@ class ContactRecord:
             inputs = stretch.piece.at(instant.time)
             if not touches or not np.any(inputs.rate):
                 continue
-            x = instant.x[:size]
+            unknowns = self.to_model(instant).x
+            x = unknowns[:size]
             follower = Follower(self._facings, touches)
             _, gaps = follower.gaps(x, inputs.value)
-            for facing, gap, force in zip(follower.facings, gaps, instant.x[size:], strict=True):
+            for facing, gap, force in zip(follower.facings, gaps, unknowns[size:], strict=True):
                 powers[number] -= (
                     force * facing.energy_unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
                 )
@@ -151,7 +154,8 @@ class ContactRecord:
         for stretch in self.stretches:
             follower = Follower(self._facings, stretch.touches)
             for step in stretch.steps:
-                followed = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
+                start = self.to_model(step.start)
+                followed = follower.follow(start.x[:size], stretch.piece.at(start.time).value)
                 both = zip(stretch.touches, followed.places, strict=True)
                 touches = [touch._replace(place=place) for touch, place in both]
                 begins.append((stretch, tuple(touches)))

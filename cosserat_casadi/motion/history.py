@@ -200,16 +200,11 @@ class History:
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
-        leg, instant = self.with_forces(time)
-        return leg, self.of_model(instant)
-
-    def with_forces(self, time: float) -> tuple[Leg, Instant]:
-        """The same with the forces of contacts behind the unknowns of the model."""
         if not self.steps:
             leg = self.legs[0]
-            return leg, leg.start.instant
+            return leg, self.of_model(leg.start.instant)
         leg, step = self.steps[self.number_at(time)]
-        return leg, step.at(time)
+        return leg, self.of_model(step.at(time))
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """The contacts at a time that was reached; none in a scene without exact contact."""
@@ -219,7 +214,7 @@ class History:
         _, step = self.steps[number]
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
-        return self.contacts.at(number, instant)
+        return self.contacts.at(number, self.beside_forces(instant))
 
     @property
     def events(self) -> tuple[ContactEvent, ...]:
@@ -228,12 +223,15 @@ class History:
 
     def of_model(self, instant: Instant) -> Instant:
         """A state of a step in the unknowns of the model, without the forces of contacts."""
-        if self.coordinates is not None:
-            return self.coordinates.to_model(instant)
+        instant = self.beside_forces(instant)
         size = self.model.size
         if len(instant.x) == size:
             return instant
         return Instant(instant.time, instant.x[:size], instant.v[:size], instant.a[:size])
+
+    def beside_forces(self, instant: Instant) -> Instant:
+        """A state of a step in the unknowns of the model, with the forces of contacts behind them."""
+        return instant if self.coordinates is None else self.coordinates.to_model(instant)
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
@@ -264,9 +262,8 @@ class History:
 
     def _positions_of_model(self, positions: FloatArray) -> FloatArray:
         """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
-        if self.coordinates is None:
-            return positions[:, : self.model.size]
-        return self.coordinates.positions_of_model(positions)
+        own = positions[:, : self.model.size]
+        return own if self.coordinates is None else self.coordinates.positions_of_model(own)
 
     @cached_property
     def paths_until(self) -> dict[float, Any]:
@@ -283,7 +280,7 @@ class History:
             phases = leg.restart.phases
             assert isinstance(phases, ContactPhase), "where rods touch exactly no cable goes slack"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
-        return ContactRecord(self.model, stretches)
+        return ContactRecord(self.model, stretches, self.beside_forces)
 
     @cached_property
     def _closing(self) -> Closing:
@@ -305,6 +302,25 @@ class FreeFlight:
 
     coordinates: CentredCoordinates | None
     keeper: MomentumKeeper | None
+
+    def to_model(self, instant: Instant) -> Instant:
+        """A state in the unknowns of the model, from one of the steps."""
+        return instant if self.coordinates is None else self.coordinates.to_model(instant)
+
+    def to_steps(self, instant: Instant) -> Instant:
+        """A state as the steps have it, from one in the unknowns of the model."""
+        return instant if self.coordinates is None else self.coordinates.from_model(instant)
+
+    def restart_of_steps(self, restart: Restart[Phases]) -> Restart[Phases]:
+        """A restart whose state is as the steps have it, from one in the unknowns of the model."""
+        return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
+
+    def in_steps(self, equations: MotionEquations, guards: Guards | None) -> tuple[MotionEquations, Guards | None]:
+        """Equations and guards as the steps have them, from those in the unknowns of the model."""
+        if self.coordinates is None:
+            return equations, guards
+        seen = None if guards is None else lambda instant: guards(self.to_model(instant))
+        return self.coordinates.equations(equations), seen
 
 
 def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
@@ -388,9 +404,7 @@ def _switched(
     """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
     coordinates, keeper = flight.coordinates, flight.keeper
     legs: list[Leg] = []
-    at = Instant(pieces[0].start, x, v, np.zeros(model.size))
-    if coordinates is not None:
-        at = coordinates.from_model(at)
+    at = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
     asked = settings
     guard: int | None = None
     memory: CarriedStep | None = None
@@ -404,8 +418,6 @@ def _switched(
         if resume is not None and not legs:
             settings = replace(settings, first=min(resume.first, piece.end - piece.start))
         plain = equations_of(model, piece, p, kernels)
-        if coordinates is not None:
-            plain = coordinates.equations(plain)
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
@@ -414,13 +426,14 @@ def _switched(
                 restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases)
             else:
                 memory = None
-                restart = switching.restarted(plain, piece, at, phases, guard, interval)
+                restart = switching.restarted(plain, piece, flight.to_model(at), phases, guard, interval)
+                restart = flight.restart_of_steps(restart)
             phases = restart.phases
             if not legs and resume is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if coordinates is None else {}
                 _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest)
-            equations, guards = switching.arranged(plain, piece, phases)
+            equations, guards = flight.in_steps(*switching.arranged(plain, piece, phases))
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
             free = keeper is not None and equations.size == model.size

@@ -8,17 +8,20 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, scene_from_dict
+from cosserat_casadi import Model, build, read_scene, scene_from_dict
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion import history
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_guards import ContactPhase
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.pose_series import section_poses
 from cosserat_casadi.motion.simulate import Simulator, moving_inputs, started
 from cosserat_casadi.motion.tip_paths import path_distance
-from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from tests import moving_scenes
 from tests.motion import transients
 
@@ -76,6 +79,19 @@ def test_way_to_the_model_and_back(flying: Model, coordinates: CentredCoordinate
     back = coordinates.from_model(coordinates.to_model(motion))
     assert_allclose(back.x, motion.x, rtol=0, atol=1e-13)
     assert_allclose(back.v, motion.v, rtol=0, atol=1e-12)
+    assert_allclose(back.a, motion.a, rtol=0, atol=1e-11)
+
+
+def test_forces_of_contacts_are_the_same_in_both(flying: Model, coordinates: CentredCoordinates) -> None:
+    motion = some_motion(flying.size, 6)
+    pressed = Instant(motion.time, *(np.append(part, [3.0, 4.0]) for part in (motion.x, motion.v, motion.a)))
+    at = coordinates.to_model(pressed)
+    free = coordinates.to_model(motion)
+    for both, alone in zip((at.x, at.v, at.a), (free.x, free.v, free.a), strict=True):
+        assert_allclose(both, np.append(alone, [3.0, 4.0]), rtol=0, atol=0)
+    back = coordinates.from_model(at)
+    for found, expected in zip((back.x, back.v, back.a), (pressed.x, pressed.v, pressed.a), strict=True):
+        assert_allclose(found, expected, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner", ["extension"], ["torsion"]], ids=str)
@@ -83,16 +99,32 @@ def test_jacobians_vs_differences(strain: str | list[str]) -> None:
     free = moving_scenes.rod(strain=strain, base={"free": True})
     model = build(scene_from_dict(moving_scenes.scene(free, loads=[moving_scenes.PUSH])), moving=True)
     piece = moving_inputs(model).pieces(4.0)[0]
-    equations = CentredCoordinates(model).equations(equations_of(model, piece))
-    motion = some_motion(model.size, 3)
-    direction = np.random.default_rng(4).normal(size=model.size)
+    differ_by_jacobians(CentredCoordinates(model).equations(equations_of(model, piece)))
+
+
+def test_jacobians_of_a_rod_that_touches_vs_differences() -> None:
+    model = build(read_scene("examples/rod_hits_floor.toml").with_motion_inputs(), moving=True)
+    piece = moving_inputs(model).pieces(0.4)[0]
+    contacts = ExactContacts(model)
+    touches = (MovingContact(0, 0.0, slides=False), MovingContact(0, 0.7, slides=False))
+    phase = ContactPhase(touches, follower=Follower(contacts.facings, touches))
+    equations, _ = contacts.arranged(equations_of(model, piece), piece, phase)
+    differ_by_jacobians(CentredCoordinates(model).equations(equations))
+
+
+def differ_by_jacobians(equations: MotionEquations) -> None:
+    """Differences of equations along a direction are those of their Jacobians."""
+    motion = some_motion(equations.size, 3)
+    direction = np.random.default_rng(4).normal(size=equations.size)
+    # Forces have neither rates nor accelerations.
+    along_rates = np.where(equations.differential, direction, 0.0)
     jacobians = equations.jacobians(motion.time, motion.x, motion.v, motion.a)
     parts = [motion.x, motion.v, motion.a]
     for number, matrix in enumerate(jacobians):
         sides = []
         for sign in (1.0, -1.0):
             moved = list(parts)
-            moved[number] = parts[number] + sign * STEP * direction
+            moved[number] = parts[number] + sign * STEP * (along_rates if number else direction)
             sides.append(equations.residual(motion.time, *moved))
         expected = (sides[0] - sides[1]) / (2.0 * STEP)
         assert_allclose(matrix @ direction, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
@@ -181,7 +213,8 @@ def test_motion_is_that_in_coordinates_of_the_base_in_fewer_steps(monkeypatch: p
     simulator = Simulator(model, simulation, started(model, simulation, None))
     centred = simulator.controlled(1e-3)
     monkeypatch.setattr(history, "can_be_centred", lambda model: False)
-    of_base = simulator.controlled(1e-3)
+    # A simulator keeps the coordinates that it began with.
+    of_base = Simulator(model, simulation, simulator.start).controlled(1e-3)
     assert centred.completed
     assert of_base.completed
     assert path_distance(simulator.paths(centred), simulator.paths(of_base)) < 1e-3
