@@ -1,9 +1,9 @@
 """The coordinate that a joint leaves free: the angle of a hinge, the displacement of a slide.
 
-Where something acts along it, a spring, a damper, a motor or a drive, the joint holds its section in all directions at
-a pose that the coordinate moves. A drive prescribes the coordinate. Else it is an unknown q, whose equation is
-λ + V'(q) = 0 with the multiplier λ along the free direction, V the energy of spring and motor. As an unknown it counts
-turns: no function of the poses alone tells an angle from the same angle a turn further.
+Where something acts along it, a spring, a damper, friction, a motor or a drive, the joint holds its section in all
+directions at a pose that the coordinate moves. A drive prescribes the coordinate. Else it is an unknown q, whose
+equation is λ + V'(q) = 0 with the multiplier λ along the free direction, V the energy of spring and motor. As an
+unknown it counts turns: no function of the poses alone tells an angle from the same angle a turn further.
 
 A stop is the pair 0 ≤ ρ ⟂ g ≥ 0 of its push ρ, an unknown that adds to that equation, and the way g to it.
 """
@@ -47,19 +47,45 @@ def moves_in_plane(coordinate: Coordinate, normal: FloatArray) -> bool:
 
 @dataclass(frozen=True)
 class JointEffort:
-    """Spring, damper and motor of a joint, in N m and rad or in N and m.
+    """Spring, damper, friction and motor of a joint, in N m and rad or in N and m.
+
+    Coulomb's friction F opposes the rate u by F u / √(u² + s²): the whole of it to the share ½ (s/u)² above the slip
+    rate s. A joint that sticks creeps, slower than s until it is close to slipping.
 
     Attributes:
         stiffness: by unit of the coordinate.
         rest: coordinate at which the spring is unloaded.
         damping: by unit of its rate.
+        friction: effort of a joint that slips.
+        slip_rate: rate below which a joint that sticks creeps.
         motor: effort of the motor, 1×1.
     """
 
     stiffness: Scalar
     rest: Scalar
     damping: Scalar
+    friction: Scalar
+    slip_rate: Scalar
     motor: Matrix
+
+    @property
+    def resists(self) -> bool:
+        """Whether a damper or friction opposes the rate."""
+        return not (is_zero(self.damping) and is_zero(self.friction))
+
+    def resistance(self, rate: Matrix) -> Matrix:
+        """Effort of damper and friction against a rate, 1×1."""
+        effort = self.damping * rate
+        if not is_zero(self.friction):
+            effort = effort + self.friction * rate / ca.sqrt(rate**2 + self.slip_rate**2)
+        return effort
+
+    def resistance_slope(self, rate: Matrix) -> Matrix:
+        """Derivative of the resistance with the rate, 1×1."""
+        slope = ca.DM(1, 1) + self.damping
+        if not is_zero(self.friction):
+            slope = slope + self.friction * self.slip_rate**2 / (rate**2 + self.slip_rate**2) ** 1.5
+        return slope
 
     def slope(self, value: Matrix) -> Matrix:
         """V'(q), 1×1."""

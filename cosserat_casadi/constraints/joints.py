@@ -62,8 +62,8 @@ class _OnAxis(Joint[AxisRecord]):
         return Coordinate(unit_vector(rotation.T @ np.asarray(record.axis, dtype=float)), self.turns)
 
     def effort(self, record: AxisRecord, motor: Matrix) -> JointEffort:
-        """Spring and damper of the record."""
-        return JointEffort(record.stiffness, record.rest, record.damping, motor)
+        """Spring, damper and friction of the record."""
+        return JointEffort(record.stiffness, record.rest, record.damping, record.friction, record.slip_rate, motor)
 
 
 @final

@@ -407,9 +407,13 @@ class _Robot:
             return []
         axis = sense * frame.rotation.T @ axes.rotation @ np.array(joint.axis, dtype=float)
         attributes |= {"type": "hinge" if joint.kind == "revolute" else "slide", "axis": _numbers(axis)}
-        for key, value in (("stiffness", joint.stiffness), ("springref", joint.rest), ("damping", joint.damping)):
-            if value:
-                attributes[key] = _numbers(value)
+        efforts = {
+            "stiffness": joint.stiffness,
+            "springref": joint.rest,
+            "damping": joint.damping,
+            "frictionloss": joint.friction,
+        }
+        attributes |= {key: _numbers(value) for key, value in efforts.items() if value}
         if joint.has_stops:
             lower = -NO_STOP if joint.lower_stop is None else joint.lower_stop
             upper = NO_STOP if joint.upper_stop is None else joint.upper_stop

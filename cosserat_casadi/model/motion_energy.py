@@ -82,7 +82,7 @@ class MotionEnergy:
 
     @cached_property
     def dissipated_power(self) -> Matrix:
-        """Power that damping of rods, dampers of joints, and damping and friction of contact turn into heat, 1×1, W."""
+        """Power that damping of rods, dampers and friction of joints and of contact turn into heat, 1×1, W."""
         of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
         of_branches = [relaxation.dissipated_power for relaxation in self.system.relaxations.values()]
         for inertia in self.system.inertias.values():
@@ -94,7 +94,7 @@ class MotionEnergy:
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
         ]
         of_contact += [terms.dissipated_power for terms in self.system.pairs if terms.rubs]
-        of_joints = [effort.damping * rate**2 for effort, _, rate in self._free_joints if not is_zero(effort.damping)]
+        of_joints = [effort.resistance(rate) * rate for effort, _, rate in self._free_joints if effort.resists]
         return _sum([*of_rods, *of_branches, *of_joints, *of_contact])
 
     @cached_property

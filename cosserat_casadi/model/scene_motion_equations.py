@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_symbolic, is_zero
+from cosserat_casadi.maths.numbers import as_matrix, is_symbolic
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.floating_frames import FrameName
@@ -23,6 +24,22 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.motion_load import motion_matrices
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.motion_tangent import MotionTangent
+
+
+class _Resisted(NamedTuple):
+    """A joint with a damper or friction.
+
+    Attributes:
+        placed: the joint.
+        entries: of its coordinate.
+        rows: what the resistance adds to the equation of the coordinate, without unit, 1×1.
+        damping: derivative of that with the rate of the entry, s, 1×1.
+    """
+
+    placed: PlacedConstraint
+    entries: slice
+    rows: Matrix
+    damping: Matrix
 
 
 @dataclass(frozen=True)
@@ -52,9 +69,9 @@ class SceneMotionEquations:
         for name, frame_motion in self.system.frame_motions.items():
             number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
             added[number] = frame_motion.norm_rows
-        for placed, entries, damping in self._damped_coordinates:
-            number = list(unknowns.slices).index((BlockKind.COORDINATE, placed.where))
-            added[number] = damping * self._velocity[entries]
+        for resisted in self._resisted_coordinates:
+            number = list(unknowns.slices).index((BlockKind.COORDINATE, resisted.placed.where))
+            added[number] = resisted.rows
         return SceneEquations(self.system).residual + ca.vertcat(*added)
 
     @cached_property
@@ -93,8 +110,8 @@ class SceneMotionEquations:
             damping.add(flows, strains, relaxation.matrices.by_strain_rate)
             damping.add(flows, flows, relaxation.matrices.by_rate)
             mass.add(flows, flows, relaxation.matrices.by_acceleration)
-        for _, entries, coefficient in self._damped_coordinates:
-            damping.add(entries, entries, coefficient)
+        for resisted in self._resisted_coordinates:
+            damping.add(resisted.entries, resisted.entries, resisted.damping)
         by_friction = self._by_friction
         return MotionMatrices(
             stiffness=SceneEquations(self.system).jacobian + stiffness.matrix() + by_friction[0],
@@ -131,16 +148,21 @@ class SceneMotionEquations:
         return motion.v
 
     @property
-    def _damped_coordinates(self) -> list[tuple[PlacedConstraint, slice, Matrix]]:
-        """Joints with a damper, the slices of their coordinates, and the damping, without unit but for s, 1×1."""
+    def _resisted_coordinates(self) -> list[_Resisted]:
+        """Joints with a damper or friction."""
         discrete = self.system.discrete
-        damped = []
+        found = []
         for placed in discrete.free_coordinates:
-            damping = discrete.joint_record(placed).damping
-            if not is_zero(damping):
-                scale = placed.coordinate_scale**2 / placed.constraint.unit
-                damped.append((placed, discrete.coordinate(placed), scale * as_matrix(as_vector([damping]))))
-        return damped
+            effort = self.system.joint_effort(placed)
+            if not effort.resists:
+                continue
+            entries = discrete.coordinate(placed)
+            scale = placed.coordinate_scale
+            rate = scale * self._velocity[entries]
+            rows = scale / placed.constraint.unit * effort.resistance(rate)
+            damping = scale**2 / placed.constraint.unit * effort.resistance_slope(rate)
+            found.append(_Resisted(placed, entries, as_matrix(rows), as_matrix(damping)))
+        return found
 
     @property
     def _rods_with_rates(self) -> list[str]:

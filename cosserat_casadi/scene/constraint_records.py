@@ -383,9 +383,11 @@ class AxisJoint(JointRecord):
         "without unit; any length but zero"
     )
     if TYPE_CHECKING:
-        stiffness: float  # in the units of the kind, as the two that follow
+        stiffness: float  # in the units of the kind, as those that follow
         rest: float
         damping: float
+        friction: float
+        slip_rate: float
         lower_stop: float | None
         upper_stop: float | None
         stop_stiffness: float | None
@@ -397,11 +399,13 @@ class AxisJoint(JointRecord):
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A drive says where the coordinate is: nothing else acts on it. Inputs have a name. Stops leave a range."""
         yield from super().conflicts(given)
-        for key in (cls.effort_key, "stiffness", "rest", "damping", *STOP_KEYS):
+        for key in (cls.effort_key, "stiffness", "rest", "damping", "friction", *STOP_KEYS):
             if cls.coordinate_key in given and key in given:
                 yield Fault((key,), f"stands beside {cls.coordinate_key}", "which is prescribed: leave one of them out")
         if "rest" in given and "stiffness" not in given:
             yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
+        if "slip_rate" in given and "friction" not in given:
+            yield Fault(("slip_rate",), "is of friction, and the joint has none", "give it friction")
         for key in ("restitution", "stop_stiffness"):
             if key in given and not any(stop in given for stop in STOP_KEYS):
                 yield Fault((key,), "is of a stop, and the joint has none", "give lower_stop, upper_stop or both")
@@ -441,7 +445,7 @@ class AxisJoint(JointRecord):
     @property
     def has_coordinate(self) -> bool:
         """Whether something acts along the coordinate."""
-        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping", *STOP_KEYS)
+        acting = (self.coordinate_key, self.effort_key, "stiffness", "damping", "friction", *STOP_KEYS)
         return any(getattr(self, key) is not None and key in self.model_fields_set for key in acting)
 
 
@@ -477,6 +481,10 @@ upper_stop = 0.8           # rad; and lower_stop, stop_stiffness or restitution
     stiffness: NotNegative = Field(0.0, description="moment of a spring by its angle, N m/rad")
     rest: Number = Field(0.0, description="angle at which the spring is unloaded, rad")
     damping: NotNegative = Field(0.0, description="moment by the rate of the angle, in motion, N m s/rad")
+    friction: NotNegative = Field(0.0, description="moment of Coulomb's friction against the rate, in motion, N m")
+    slip_rate: Positive = Field(
+        1e-2, description="with friction: rate, rad/s, below which a hinge that sticks creeps, in motion"
+    )
     lower_stop: Number | None = Field(None, description="least angle, where a stop holds the joint, rad")
     upper_stop: Number | None = Field(None, description="largest angle, where a stop holds the joint, rad")
     stop_stiffness: Positive | None = Field(
@@ -515,6 +523,10 @@ displacement = 0.0         # of a drive, an input; or stiffness, rest, damping a
     stiffness: NotNegative = Field(0.0, description="force of a spring by its displacement, N/m")
     rest: Number = Field(0.0, description="displacement at which the spring is unloaded, m")
     damping: NotNegative = Field(0.0, description="force by the speed of the slide, in motion, N s/m")
+    friction: NotNegative = Field(0.0, description="force of Coulomb's friction against the speed, in motion, N")
+    slip_rate: Positive = Field(
+        1e-3, description="with friction: speed, m/s, below which a slide that sticks creeps, in motion"
+    )
     lower_stop: Number | None = Field(None, description="least displacement, where a stop holds the joint, m")
     upper_stop: Number | None = Field(None, description="largest displacement, where a stop holds the joint, m")
     stop_stiffness: Positive | None = Field(
