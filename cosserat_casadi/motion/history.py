@@ -217,6 +217,11 @@ class History:
         return self.contacts.at(number, self.beside_forces(instant))
 
     @property
+    def lost(self) -> float:
+        """Energy that its impacts took, J."""
+        return sum(leg.lost for leg in self.legs)
+
+    @property
     def events(self) -> tuple[ContactEvent, ...]:
         """Impacts and other changes of contact."""
         return tuple(event for leg in self.legs for event in leg.restart.events)

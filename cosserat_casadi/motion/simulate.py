@@ -497,8 +497,9 @@ def motion_of(
     duration = simulator.simulation.duration
     begun = simulator.begun
     energy, account = energies_of(history, times, moving, None if begun is None else begun.energy)
-    strands = [_strand(history, 0.0)]
-    strands += [_strand(one.history, one.factor) for one in companions if one is not None and one.history.completed]
+    others = [one for one in companions if one is not None and one.history.completed]
+    strands = [_strand(history, 0.0), *(_strand(one.history, one.factor) for one in others)]
+    spread = max((abs(one.history.lost - history.lost) for one in others), default=float("nan"))
     end = Checkpoint(history.end.time, tuple(strands), error, account, _tips(history, history.end.time))
     return Motion(
         model=model,
@@ -518,6 +519,7 @@ def motion_of(
         contacts=tuple(history.touching(float(time)) for time in times),
         events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
         end=end,
+        impacts_spread=spread,
     )
 
 

@@ -179,6 +179,8 @@ class Motion(Result):
         contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
         events: impacts and other changes of contact, and of cables that go slack, in their order.
         end: how far it has come, for a motion that goes on; None where it was not started.
+        impacts_spread: by how much the energy that impacts took is another on the other modes and with the other steps
+            that told the error, J; nan where there were no others.
     """
 
     model: Model
@@ -198,6 +200,7 @@ class Motion(Result):
     contacts: tuple[tuple[MotionContact, ...], ...] = ()
     events: tuple[ContactEvent, ...] = ()
     end: Checkpoint | None = None
+    impacts_spread: float = float("nan")
 
     @property
     def converged(self) -> bool:

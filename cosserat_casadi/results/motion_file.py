@@ -108,6 +108,8 @@ def motion_result(motion: Motion) -> dict[str, Any]:
     elif motion.events:
         data["events"] = _events_entry(motion)
     data["energy"] = asdict(motion.energy)
+    if motion.events:
+        data["energy"]["impacts_spread"] = motion.impacts_spread
     if motion.end is not None:
         data[KEY] = motion.end.to_data()
     return data

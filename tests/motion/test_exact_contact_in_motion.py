@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Scene, build, discretise, parse_scene, read_scene, simulate, solve
+from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -351,3 +352,17 @@ def test_what_fewer_modes_have_moved_is_kept_where_more_have_no_start(monkeypatc
     assert motion.outcome is MotionOutcome.UNRESOLVED
     assert not motion.converged
     assert len(motion.times) == 3
+
+
+def test_energy_of_impacts_is_told_with_its_change_by_modes() -> None:
+    """With fixed modes the error is told by a motion on a few modes more, whose blow takes less."""
+    high = BALL.replace("-0.09", "-0.05")
+    coarse, fine = (rod(high, modes, duration=0.08).replace("1e-4", "1e-2") for modes in (1, 1 + FINER_MODES))
+    few = simulate(parse_scene(coarse))
+    more = simulate(moving(fine))
+    assert [event.kind for event in few.events] == [event.kind for event in more.events] == ["impact"]
+    change = few.energy.impacts[-1] - more.energy.impacts[-1]
+    assert change > 0.1 * few.energy.impacts[-1]
+    # The motion on more modes has steps of another tolerance here.
+    assert_allclose(few.impacts_spread, change, rtol=0.05, atol=0)
+    assert few.to_dict()["energy"]["impacts_spread"] == few.impacts_spread

@@ -69,7 +69,8 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
         changes = [event for event in motion.events if event.kind in kinds]
         hits = [event for event in changes if event.kind == kinds[0]]
         if changes:
-            yield f"{words} {counted(len(hits), 'time')}, which took {sum(event.energy for event in hits):.3g} J"
+            taken = _taken_words(motion, sum(event.energy for event in hits))
+            yield f"{words} {counted(len(hits), 'time')}, which took {taken}"
     if any(all(event.kind not in kinds for kinds in OF_PAIRS.values()) for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
     yield "; ".join(motion.model.resolution_words)
@@ -80,7 +81,15 @@ def _contact_words(motion: Motion) -> str:
     impacts = sum(event.kind == "impact" for event in motion.events)
     lift_offs = sum(event.kind == "lift_off" for event in motion.events)
     taken = sum(event.energy for event in motion.events)
-    return f"{counted(impacts, 'impact')}, which took {taken:.3g} J, {counted(lift_offs, 'lift-off')}"
+    return f"{counted(impacts, 'impact')}, which took {_taken_words(motion, taken)}, {counted(lift_offs, 'lift-off')}"
+
+
+def _taken_words(motion: Motion, taken: float) -> str:
+    """Energy that impacts took, and by how much it changes with modes and steps."""
+    words = f"{taken:.3g} J"
+    if taken and np.isfinite(motion.impacts_spread):
+        words += f" ± {motion.impacts_spread:.2g} J"
+    return words
 
 
 def _step_words(motion: Motion) -> str:
