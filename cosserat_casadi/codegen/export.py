@@ -50,6 +50,7 @@ def export(
     dynamics: bool = False,
     stability: bool = False,
     batches: bool = False,
+    cuda: bool = False,
     load_cases: FloatArray | None = None,
     period: float | None = None,
     estimate_errors: bool = True,
@@ -70,6 +71,7 @@ def export(
         stability: whether it holds the function that says whether an equilibrium is stable.
         batches: whether its function for many load cases solves them four at a time in the vectors of the processor; a
             compiler takes about twice as long.
+        cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
         period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
@@ -86,7 +88,7 @@ def export(
     """
     if isinstance(model, Scene):
         model, error_estimate = _solved(model)
-    asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
+    asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
     if isinstance(model, TubeFunctions):
         options = {f"--{word}": wanted for word, wanted in asked.items()}
         further = {"--over": load_cases is not None, "--period": period is not None}
@@ -170,6 +172,7 @@ def folder_files(
     dynamics: bool = False,
     stability: bool = False,
     batches: bool = False,
+    cuda: bool = False,
     period: float | None = None,
     estimate_errors: bool = True,
 ) -> dict[str, str]:
@@ -184,6 +187,7 @@ def folder_files(
         dynamics: as for :func:`export`.
         stability: as for :func:`export`.
         batches: as for :func:`export`.
+        cuda: as for :func:`export`.
         period: as for :func:`export`.
         estimate_errors: as for :func:`export`.
 
@@ -196,7 +200,7 @@ def folder_files(
     parts = assembled(model, names)
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)
-    generated = kernel_sources(functions, names)
+    generated = kernel_sources(functions, names, on_device=cuda)
     by_hand_within = partial(
         library_sources,
         model,
@@ -209,6 +213,7 @@ def folder_files(
         stability=stability,
         motion=motion,
         rows=_side_by_side(model, names) if batches else None,
+        on_device=cuda,
     )
     by_hand = by_hand_within()
     budget = ALWAYS

@@ -23,7 +23,7 @@ from cosserat_casadi.codegen.program_in_c import program_in_c
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.texts import fill, resource
-from cosserat_casadi.errors import WriteError
+from cosserat_casadi.errors import ExportError, Problem, WriteError
 from cosserat_casadi.maths.calls import chooses
 
 QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
@@ -45,6 +45,13 @@ OF_A_LIBRARY = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) &
 #define CASADI_SYMBOL_EXPORT
 #endif
 """
+
+ON_DEVICE = """#ifdef SOLVER_DEVICE
+#undef CASADI_SYMBOL_EXPORT
+#define CASADI_SYMBOL_EXPORT SOLVER_DEVICE
+#endif
+"""
+"""How kernels are declared where the source of a batch on a GPU includes them."""
 
 HIDDEN = """/* Functions that CasADi's code calls are seen by the library alone. */
 #include <math.h>
@@ -87,9 +94,22 @@ END = """#ifdef __cplusplus
 GENERATOR = {"with_header": True}
 
 
-def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does."""
-    return _files(kernels, stem or f"{names.name}_kernels", "int", QUIET + OF_A_LIBRARY.format(macro=names.macro))
+def kernel_sources(
+    kernels: Sequence[Kernel], names: Names, stem: str | None = None, *, on_device: bool = False
+) -> dict[str, str]:
+    """Source and header of the kernels by file name; they compute in float when the library does.
+
+    Args:
+        kernels: the kernels.
+        names: of the library.
+        stem: of the file names.
+        on_device: whether compilers for GPUs are to take them too.
+
+    Raises:
+        ExportError: they are for a GPU, and one of them is among those that CasADi prints.
+    """
+    prologue = QUIET + OF_A_LIBRARY.format(macro=names.macro) + (ON_DEVICE if on_device else "")
+    return _files(kernels, stem or f"{names.name}_kernels", "int", prologue, on_device=on_device)
 
 
 def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
@@ -116,7 +136,13 @@ def in_c(kernel: Kernel) -> Kernel:
 
 
 def _files(
-    kernels: Sequence[Kernel], stem: str, integer: str, prologue: str, *, described: bool = False
+    kernels: Sequence[Kernel],
+    stem: str,
+    integer: str,
+    prologue: str,
+    *,
+    described: bool = False,
+    on_device: bool = False,
 ) -> dict[str, str]:
     """Source and header, with what the source includes.
 
@@ -126,11 +152,15 @@ def _files(
         integer: type of whole numbers in C.
         prologue: beginning of the source.
         described: whether functions follow that tell ``casadi.external`` of arguments and results.
+        on_device: as for :func:`kernel_sources`.
     """
     written = [in_c(kernel) for kernel in kernels]
     own = [kernel for kernel in written if isinstance(kernel, PrintedKernel)]
     by_casadi = [kernel for kernel in written if isinstance(kernel, ca.Function)]
-    sources = printed_sources(own, stem)
+    if on_device and by_casadi:
+        problem = f"CasADi prints {by_casadi[0].name()}, without the qualifiers of functions for a GPU"
+        raise ExportError(Problem("--cuda", problem, "leave it out"))
+    sources = printed_sources(own, stem, "SOLVER_DEVICE " if on_device else "")
     types = TYPES.format(integer=integer)
     descriptions = "".join(_description(kernel) for kernel in own) if described else ""
     source = f"#include <math.h>\n{types}{BEGIN}{sources.source}{descriptions}{END}"

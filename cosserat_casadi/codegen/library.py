@@ -119,6 +119,8 @@ ROLES = {
     "lanes_linear.c": "linear algebra of four load cases at once; included",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
+    "{name}_batch.cu": "many load cases on a GPU, experimental: compile this alone with `nvcc`",
+    "{name}_batch.h": "its functions",
     "second_variation.c": "eigenvalues over admissible variations, the same in every folder; included",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_derivatives_in_fours.h": "those of them that compute four intervals at once; included",
@@ -144,6 +146,7 @@ def library_sources(
     motion: MotionInC | None = None,
     rows: InLanes | None = None,
     budget: TurnBudget = ALWAYS,
+    on_device: bool = False,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -159,9 +162,10 @@ def library_sources(
         motion: the equations of motion, where the folder has them.
         rows: what solves batches side by side, where the folder has it.
         budget: what a turn of a control loop may take by default.
+        on_device: whether the folder holds batches on a GPU.
     """
     accuracy = accuracy_words(model.scene, error_estimate, verified)
-    words = _words(model, names, parts, generated, accuracy, motion, rows)
+    words = _words(model, names, parts, generated, accuracy, motion, rows, on_device=on_device)
     words |= {
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
@@ -172,6 +176,7 @@ def library_sources(
         "stability": stability,
         "dynamics": motion is not None,
         "rows": rows is not None,
+        "on_device": on_device,
     }
     fours = f"{names.name}_kernels_in_fours.h" in generated
     held["programs"] = any(file in generated for file in PROGRAM)
@@ -191,7 +196,14 @@ def library_sources(
     files = rendered(words, verbatim)
     if motion is not None:
         files[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
+    if on_device:
+        files |= {file: render(f"device_batch.{file.rpartition('.')[2]}.in", words) for file in device_files(name)}
     return {**files, **({} if rows is None else rows.files)}
+
+
+def device_files(name: str) -> tuple[str, str]:
+    """Names of the source and the header of batches on a GPU."""
+    return f"{name}_batch.cu", f"{name}_batch.h"
 
 
 def rendered(words: dict[str, Any], verbatim: Iterable[str], templates: Sequence[str] = TEMPLATES) -> dict[str, str]:
@@ -211,7 +223,7 @@ def rendered(words: dict[str, Any], verbatim: Iterable[str], templates: Sequence
         f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
-        **{file: resource("c", file) for file in verbatim},
+        **{file: resource("c", file, on_device=bool(words.get("on_device"))) for file in verbatim},
     }
 
 
@@ -255,8 +267,10 @@ def _words(
     accuracy: dict[str, str],
     motion: MotionInC | None,
     rows: InLanes | None,
+    *,
+    on_device: bool,
 ) -> dict[str, Any]:
-    sizes = _sizes(model, names, generated)
+    sizes = _sizes(model, names, generated) | {"on_device": on_device}
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = {} if motion is None else motion_words(render, sizes, model, names, motion)
@@ -265,6 +279,10 @@ def _words(
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
+
+    def with_device(template: str, words: dict[str, Any]) -> str:
+        return render(template, {**words, "MACRO": names.macro, "on_device": on_device})
+
     return {
         **sizes,
         **dict.fromkeys(("of_rods", "with_axes"), True),
@@ -288,8 +306,8 @@ def _words(
         **_pose_words(names),
         **linear,
         **in_motion,
-        "prototypes": "".join(function.prototype(render) for function in functions),
-        "functions": "".join(function.wrapper(render) for function in functions),
+        "prototypes": "".join(function.prototype(with_device) for function in functions),
+        "functions": "".join(function.wrapper(with_device) for function in functions),
         "function_rows": "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions),
         **accuracy,
     }
@@ -450,6 +468,7 @@ def _file_rows(
     dynamics: bool,
     rows: bool,
     errors: bool,
+    on_device: bool,
 ) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
     if not fours:
@@ -460,6 +479,8 @@ def _file_rows(
         absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
     if not errors:
         absent |= {*ERROR_FILES}
+    if not on_device:
+        absent |= {*device_files("{name}")}
     if not dynamics:
         absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:

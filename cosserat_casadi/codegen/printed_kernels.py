@@ -13,7 +13,7 @@ import casadi as ca
 from cosserat_casadi.codegen.products import Product, product_routines
 from cosserat_casadi.codegen.texts import fill, resource
 
-PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+PROTOTYPE = """{qualifier}int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define {name}_SZ_ARG {arguments}
 #define {name}_SZ_RES {results}
 #define {name}_SZ_IW 0
@@ -143,11 +143,12 @@ class PrintedKernel:
         """Number of statements."""
         return self.statements
 
-    def prototype(self) -> str:
-        """Its declaration, and the sizes of its arrays."""
+    def prototype(self, qualifier: str = "") -> str:
+        """Its declaration, behind a qualifier, and the sizes of its arrays."""
         arguments = self.signature.n_in()
         results = self.signature.n_out()
-        return PROTOTYPE.format(name=self.name(), arguments=arguments, results=results, reals=self.reals)
+        sizes = {"arguments": arguments, "results": results, "reals": self.reals}
+        return PROTOTYPE.format(name=self.name(), qualifier=qualifier, **sizes)
 
 
 Kernel: TypeAlias = ca.Function | PrintedKernel
@@ -171,8 +172,8 @@ class PrintedSources:
     included: dict[str, str]
 
 
-def printed_sources(kernels: Sequence[PrintedKernel], stem: str) -> PrintedSources:
-    """Kernels in C, for any processor and for the wider vectors of newer ones."""
+def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str = "") -> PrintedSources:
+    """Kernels in C, for any processor and for the wider vectors of newer ones; prototypes behind a qualifier."""
     public = kernels
     kernels = _with_called(kernels)
     callees = _callees(kernels, stem)
@@ -207,7 +208,7 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str) -> PrintedSourc
     if any_program:
         included["program.h"] = resource("c", "program.h")
     source += fill(resource("templates", "kernels_once.c.in"), words)
-    prototypes = "".join(kernel.prototype() for kernel in public)
+    prototypes = "".join(kernel.prototype(qualifier) for kernel in public)
     return PrintedSources(source, "\n".join([*functions, words["once"]]), prototypes, included)
 
 

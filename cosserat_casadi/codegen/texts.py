@@ -14,14 +14,19 @@ SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.
 """Lines of a template without sections in them: ``@{if word}`` or ``@{if not word}``, the lines, ``@{end}``."""
 
 
+DEVICE = re.compile(r"(?:SOLVER|@\{MACRO\})_DEVICE ")
+"""Before functions that a header declares: what a compiler for GPUs has to know of them."""
+
+
 def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in.
+    """A template of this package with its words filled in; for a GPU where the word ``on_device`` is true.
 
     Parts that it includes, ``@{include part}``, and sections whose word is true, or false as they ask, stay.
     """
-    text = resource("templates", template)
+    on_device = bool(words.get("on_device"))
+    text = resource("templates", template, on_device=on_device)
     while INCLUDED.search(text):
-        text = INCLUDED.sub(lambda part: resource("templates", part[1]), text)
+        text = INCLUDED.sub(lambda part: resource("templates", part[1], on_device=on_device), text)
     while SECTION.search(text):
         text = SECTION.sub(lambda found: found[3] if bool(words.get(found[2])) != bool(found[1]) else "", text)
     return fill(text, words)
@@ -32,9 +37,10 @@ def fill(text: str, words: Mapping[str, Any]) -> str:
     return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
 
-def resource(folder: str, file: str) -> str:
-    """Text of a file of this package."""
-    return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
+def resource(folder: str, file: str, *, on_device: bool = False) -> str:
+    """Text of a file of this package; without what compilers for GPUs alone need, unless it is for one."""
+    text = (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
+    return text if on_device else DEVICE.sub("", text)
 
 
 def files_in_c() -> list[str]:

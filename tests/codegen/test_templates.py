@@ -38,7 +38,7 @@ end @{if outer}
 )
 def test_sections(monkeypatch: pytest.MonkeyPatch, words: dict[str, Any], expected: str) -> None:
     parts = {"whole.in": "@{include nested.in}\n", "nested.in": NESTED}
-    monkeypatch.setattr(texts, "resource", lambda folder, file: parts[file])
+    monkeypatch.setattr(texts, "resource", lambda folder, file, **_more: parts[file])
     assert texts.render("whole.in", {"word": "W", **words}) == expected
 
 

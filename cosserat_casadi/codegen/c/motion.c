@@ -11,13 +11,13 @@ static void set_instant(const real *x, const real *v, const real *a, const real 
   }
 }
 
-void solver_inverse_dynamics(const real *x, const real *v, const real *a, const real *inputs, const real *inputs_rate,
+SOLVER_DEVICE void solver_inverse_dynamics(const real *x, const real *v, const real *a, const real *inputs, const real *inputs_rate,
                              const real *inputs_acceleration, real *residual, workspace *work) {
   set_instant(x, v, a, inputs, inputs_rate, inputs_acceleration, &work->at);
   motion_residual_at(&work->at, residual, work);
 }
 
-void solver_residual_units(real *units) { memcpy(units, UNITS, sizeof UNITS); }
+SOLVER_DEVICE void solver_residual_units(real *units) { memcpy(units, UNITS, sizeof UNITS); }
 
 static void fill_dense(const real *entries, real *matrix) {
   if (!matrix) return;
@@ -25,7 +25,7 @@ static void fill_dense(const real *entries, real *matrix) {
   for (int k = 0; k < STAGE_ENTRIES; k++) matrix[ENTRY_COLUMNS[k] * N + ENTRY_ROWS[k]] = entries[k];
 }
 
-void solver_linearise(const solver_state *state, const real *inputs, const real *inputs_rate, real *stiffness,
+SOLVER_DEVICE void solver_linearise(const solver_state *state, const real *inputs, const real *inputs_rate, real *stiffness,
                       real *damping, real *mass, real *d_residual_d_inputs, real *d_residual_d_inputs_rate,
                       real *d_residual_d_inputs_acceleration, workspace *work) {
   real *by_inputs[ORDERS] = {d_residual_d_inputs, d_residual_d_inputs_rate, d_residual_d_inputs_acceleration};
@@ -78,7 +78,7 @@ static void accelerate(const int *is_constraint, solver_state *state, const real
   }
 }
 
-solver_motion_status solver_rest(const real *inputs, const real *x, solver_state *state, workspace *work) {
+SOLVER_DEVICE solver_motion_status solver_rest(const real *inputs, const real *x, solver_state *state, workspace *work) {
   real *residual = work->stage_residuals;
   int *is_constraint = work->is_constraint;
   if (!all_finite(inputs, INPUTS) || !all_finite(x, N)) return SOLVER_MOTION_NOT_FINITE;

@@ -69,7 +69,7 @@ static solver_status finish(const real *x, const real *inputs, updated_jacobian 
   return found->status;
 }
 
-solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
+SOLVER_DEVICE solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
   updated_jacobian *jacobian = 0;
   if (all_finite(inputs, INPUTS)) {
@@ -83,7 +83,7 @@ solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, 
   return finish(x, inputs, jacobian, &found, info, work);
 }
 
-solver_status solver_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
+SOLVER_DEVICE solver_status solver_follow(const real *from, const real *inputs, real *x, solver_workspace *work, solver_info *info) {
   solver_info found = no_result();
   updated_jacobian *jacobian = 0;
   const load_path path = {.grows_load = 0, .from = from, .to = inputs};
@@ -96,19 +96,19 @@ solver_status solver_follow(const real *from, const real *inputs, real *x, solve
   return finish(x, inputs, jacobian, &found, info, work);
 }
 
-void solver_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {
+SOLVER_DEVICE void solver_residual(const real *x, const real *inputs, real *residual, solver_workspace *work) {
   const loads at = full_load(inputs);
   residual_at(x, &at, residual, work);
 }
 
-void solver_residual_jacobian(const real *x, const real *inputs, real *jacobian, real *residual,
+SOLVER_DEVICE void solver_residual_jacobian(const real *x, const real *inputs, real *jacobian, real *residual,
                               solver_workspace *work) {
   const loads at = full_load(inputs);
   residual_at(x, &at, residual, work);
   dense_jacobian_at(x, &at, jacobian, work);
 }
 
-void solver_input_jacobian(const real *x, const real *inputs, real *d_residual_d_inputs, solver_workspace *work) {
+SOLVER_DEVICE void solver_input_jacobian(const real *x, const real *inputs, real *d_residual_d_inputs, solver_workspace *work) {
   const loads at = full_load(inputs);
   input_jacobian_at(x, &at, d_residual_d_inputs, work);
 }

@@ -175,7 +175,7 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
   return 1;
 }
 
-solver_status solver_error_estimate(const real *inputs, const real *x, real *error_estimate, solver_workspace *work) {
+SOLVER_DEVICE solver_status solver_error_estimate(const real *inputs, const real *x, real *error_estimate, solver_workspace *work) {
   const real size = 1 + norm_of(x);
   const loads at = full_load(inputs);
   if (!all_finite(inputs, INPUTS) || !isfinite(size)) return SOLVER_NOT_FINITE;

@@ -32,7 +32,7 @@ static real next_step(const progress *end) {
   return left > end->step ? end->step / left : 1;
 }
 
-solver_status solver_recover(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
+SOLVER_DEVICE solver_status solver_recover(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
                              solver_workspace *work, solver_info *info) {
   const solver_options chosen = options ? *options : DEFAULT_OPTIONS;
   solver_info found = no_result();

@@ -46,7 +46,7 @@ static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_
   return SOLVER_CONVERGED;
 }
 
-solver_status solver_solve_sensitivity(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
+SOLVER_DEVICE solver_status solver_solve_sensitivity(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
                                        solver_workspace *work) {
   const real size = 1 + norm_of(x);
   if (!all_finite(inputs, INPUTS) || !isfinite(size)) return SOLVER_NOT_FINITE;

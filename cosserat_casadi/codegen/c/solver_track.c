@@ -65,7 +65,7 @@ static solver_status refuse(solver_status end, const real *inputs, const real *x
   return end;
 }
 
-solver_status solver_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
+SOLVER_DEVICE solver_status solver_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
                            real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
   const solver_options chosen = options ? *options : DEFAULT_OPTIONS;
   real *reached = work->reached;

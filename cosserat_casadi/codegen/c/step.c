@@ -418,7 +418,7 @@ static solver_step_info no_step(void) {
   return none;
 }
 
-solver_motion_status solver_step(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
+SOLVER_DEVICE solver_motion_status solver_step(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
                                  solver_step_memory *memory, const solver_step_options *options, workspace *work,
                                  solver_step_info *info) {
   const solver_step_options chosen = chosen_options(options);

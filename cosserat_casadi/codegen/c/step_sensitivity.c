@@ -209,7 +209,7 @@ static void keep_jacobian_of_stages(real size, solver_step_memory *memory, works
   memory->first_iterations = 0;
 }
 
-solver_motion_status solver_step_sensitivity(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
+SOLVER_DEVICE solver_motion_status solver_step_sensitivity(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
                                              solver_step_memory *memory, const solver_step_options *options,
                                              real *d_end_d_start, real *d_end_d_inputs, real *d_end_d_inputs_rate,
                                              real *d_end_d_inputs_acceleration, workspace *work,

@@ -18,6 +18,7 @@ SENTENCES = {
     "dynamics": "motions in C know no exact contact",
     "stability": "the stability of rods in exact contact is not written in C",
     "batches": "rods in exact contact have no function for many load cases",
+    "cuda": "rods in exact contact have no batches on a GPU",
 }
 """What a folder may hold of other scenes, and why not of these."""
 
@@ -29,7 +30,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
     Args:
         scene: the scene.
-        asked: whether ``derivatives``, ``dynamics``, ``stability`` and ``batches`` are asked for.
+        asked: whether ``derivatives``, ``dynamics``, ``stability``, ``batches`` and ``cuda`` are asked for.
 
     Raises:
         ExportError: with every fault.
