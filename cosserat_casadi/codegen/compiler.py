@@ -35,6 +35,9 @@ EXPORT_ANEW = "export the folder anew"
 
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
+ENDS = (".c", ".cpp", ".cu")
+"""Ends of the names of sources."""
+
 LONGEST = 1200.0
 """Time that the compiler has for one file, s: the largest file of the examples takes it less than a tenth of that."""
 
@@ -43,7 +46,13 @@ Progress = Callable[[str, int, int], None]
 
 
 def shared_object(
-    name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str, progress: Progress | None = None
+    name: str,
+    sources: Sequence[Path],
+    headers: Sequence[Path],
+    compiler: str,
+    progress: Progress | None = None,
+    *,
+    flags: Sequence[str] = FLAGS,
 ) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
@@ -55,12 +64,13 @@ def shared_object(
         headers: files beside them that they include.
         compiler: command of a C compiler, of :func:`find_compiler`.
         progress: told what is compiled, how many files are, and of how many.
+        flags: of the compiler.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
     contents = [_read(path) for path in (*sources, *headers)]
-    stem = _stem(name, compiler, contents)
+    stem = _stem(name, compiler, flags, contents)
     folder = cache_folder()
     try:
         kept = _compiled_before(name, folder, stem)
@@ -68,7 +78,7 @@ def shared_object(
             return kept
         LOG.info("%s: compiling %d files in %s", name, len(sources), folder)
         folder.mkdir(parents=True, exist_ok=True)
-        library = _compile(compiler, sources, folder, stem, progress)
+        library = _compile(compiler, flags, sources, folder, stem, progress)
         keep_within(folder)
     except OSError as error:
         remedy = f"name a folder for it in the environment variable {VARIABLE}"
@@ -82,6 +92,8 @@ def compiled_texts(
     compiler: str,
     included: Collection[str] = frozenset(),
     progress: Progress | None = None,
+    *,
+    flags: Sequence[str] = FLAGS,
 ) -> Path:
     """As :func:`shared_object`, of sources and headers that are texts by file name.
 
@@ -91,12 +103,13 @@ def compiled_texts(
         compiler: command of a C compiler, of :func:`find_compiler`.
         included: files that others include: they are not compiled by themselves.
         progress: as there.
+        flags: as there.
     """
-    sources = [file for file in texts if file.endswith(".c") and file not in included]
+    sources = [file for file in texts if file.endswith(ENDS) and file not in included]
     headers = [file for file in texts if file not in sources]
     contents = [texts[file].encode() for file in (*sources, *headers)]
     with suppress(OSError):
-        kept = _compiled_before(name, cache_folder(), _stem(name, compiler, contents))
+        kept = _compiled_before(name, cache_folder(), _stem(name, compiler, flags, contents))
         if kept is not None:
             return kept
     with tempfile.TemporaryDirectory() as made:
@@ -104,12 +117,12 @@ def compiled_texts(
         for file, text in texts.items():
             (folder / file).write_bytes(text.encode())
         written = [folder / file for file in sources]
-        return shared_object(name, written, [folder / file for file in headers], compiler, progress)
+        return shared_object(name, written, [folder / file for file in headers], compiler, progress, flags=flags)
 
 
-def _stem(name: str, compiler: str, contents: Sequence[bytes]) -> str:
-    """Beginning of the name of a library, by its compiler and the contents of its sources."""
-    return f"{name}-{content_hash(compiler_words(compiler), FLAGS, contents)}"
+def _stem(name: str, compiler: str, flags: Sequence[str], contents: Sequence[bytes]) -> str:
+    """Beginning of the name of a library, by its compiler with its flags and the contents of its sources."""
+    return f"{name}-{content_hash(compiler_words(compiler), flags, contents)}"
 
 
 def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
@@ -164,10 +177,12 @@ def _words(command: str) -> list[str]:
         raise ExportError(Problem("compiler", f"{command} is no command: {error}", REMEDY)) from None
 
 
-def _compile(compiler: str, sources: Sequence[Path], folder: Path, stem: str, progress: Progress | None = None) -> Path:
+def _compile(
+    compiler: str, flags: Sequence[str], sources: Sequence[Path], folder: Path, stem: str, progress: Progress | None
+) -> Path:
     """Compile sources into a folder, under a name that begins with a stem and tells the content."""
     name = stem.rpartition("-")[0]
-    call = compiler_words(compiler, FLAGS)
+    call = compiler_words(compiler, flags)
     with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=folder) as scratch:
         objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
         doing = f"Compiling {name}"
