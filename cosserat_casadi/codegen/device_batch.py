@@ -184,6 +184,11 @@ class DeviceBatch:
         self._run("step", STEP_TABLE, settings, arrays, stream)
 
     @property
+    def workspace_size(self) -> int:
+        """Bytes of the workspace of a thread."""
+        return self._sizes[0]
+
+    @property
     def memory_size(self) -> int:
         """Bytes that a motion keeps between its steps; 0 where the folder has no motions."""
         return self._sizes[2]
@@ -246,7 +251,7 @@ class DeviceBatch:
     @cached_property
     def _workspaces(self) -> int:
         """Address of the workspaces of all threads, which stay until the process ends."""
-        return self._allocate(self.threads * self._sizes[0])
+        return self._allocate(self.threads * self.workspace_size)
 
     def _allocate(self, size: int) -> int:
         place = ctypes.c_void_p()
@@ -338,7 +343,7 @@ class DeviceBatch:
         if not typed or shape != wanted:
             described = "bytes" if kind == "memory" else np.dtype(self._type(kind)).name
             raise ValueError(f"{name} must be {described} of shape {wanted}, got shape {shape} of {tensor.bits} bits")
-        if tensor.strides and [tensor.strides[i] for i in range(tensor.axes)] != _contiguous(shape):
+        if tensor.strides and not _contiguous(shape, [tensor.strides[i] for i in range(tensor.axes)]):
             raise ValueError(f"{name} must be contiguous, its last axis first")
         return int(tensor.data or 0) + int(tensor.offset)
 
@@ -450,6 +455,23 @@ def find_nvcc(wanted: str | None = None) -> str:
     return shlex.quote(str(of_wheels[-1]))
 
 
+def check_gpu() -> None:
+    """Refuse a machine without a GPU that its driver knows.
+
+    Raises:
+        ExportError: there is none.
+    """
+    count = ctypes.c_int()
+    try:
+        driver = ctypes.CDLL("libcuda.so.1")
+        usable = driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0 and count.value > 0
+    except (OSError, AttributeError):
+        usable = False
+    if not usable:
+        remedy = "run it on a machine with one and its driver, or leave it out"
+        raise ExportError(Problem("--device cuda", "there is no GPU of NVIDIA that this machine can use", remedy))
+
+
 def _length(entries: list[dict[str, Any]]) -> int:
     return sum(len(entry["value"]) for entry in entries)
 
@@ -459,9 +481,10 @@ def _bytes_of(array: np.ndarray[Any, Any]) -> tuple[int, int]:
     return array.ctypes.data, array.nbytes
 
 
-def _contiguous(shape: tuple[int, ...]) -> list[int]:
-    """Strides of a contiguous array in numbers."""
-    return [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
+def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
+    """Whether numbers stand one after the other; strides of axes of one entry mean nothing."""
+    apart = [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
+    return all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
 
 
 def _tensor_of(capsule: Any) -> _Tensor:

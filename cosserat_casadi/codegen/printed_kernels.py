@@ -13,7 +13,7 @@ import casadi as ca
 from cosserat_casadi.codegen.products import Product, product_routines
 from cosserat_casadi.codegen.texts import fill, resource
 
-PROTOTYPE = """{qualifier}int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+PROTOTYPE = """{qualified} {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define {name}_SZ_ARG {arguments}
 #define {name}_SZ_RES {results}
 #define {name}_SZ_IW 0
@@ -148,7 +148,7 @@ class PrintedKernel:
         arguments = self.signature.n_in()
         results = self.signature.n_out()
         sizes = {"arguments": arguments, "results": results, "reals": self.reals}
-        return PROTOTYPE.format(name=self.name(), qualifier=qualifier, **sizes)
+        return PROTOTYPE.format(name=self.name(), qualified=f"{qualifier}int", **sizes)
 
 
 Kernel: TypeAlias = ca.Function | PrintedKernel

@@ -29,6 +29,7 @@ from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM
 from cosserat_casadi.sweeps.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweeps.cluster import Cluster
+from cosserat_casadi.sweeps.device_rows import DEVICE_ROWS, device_problems, device_rows
 from cosserat_casadi.sweeps.local import Cores
 from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
@@ -75,6 +76,7 @@ class Plan:
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
+        device: what solves compiled rows, of :func:`device_problems`; None for the cores.
     """
 
     scene: Scene
@@ -84,6 +86,7 @@ class Plan:
     samples: int
     stability: bool = False
     estimate_errors: bool = True
+    device: str | None = None
 
     @property
     def identity(self) -> str:
@@ -98,6 +101,7 @@ class Plan:
             self.stability,
             self.table.factors,
             self.estimate_errors,
+            *([] if self.device is None else [self.device]),
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
         # Block by block: the bytes of all would be a copy of the table.
@@ -126,7 +130,8 @@ class Plan:
     @property
     def work(self) -> list[Chunk]:
         """All rows in chunks."""
-        return chunks(self.variants, stability=self.stability)
+        rows = COMPILED_ROWS if self.device is None else DEVICE_ROWS
+        return chunks(self.variants, stability=self.stability, compiled_rows=rows)
 
     @property
     def part(self) -> Path | None:
@@ -152,6 +157,7 @@ def plan_sweep(
     *,
     stability: bool = False,
     estimate_errors: bool = True,
+    device: str | None = None,
 ) -> Plan:
     """A sweep, refused before anything is computed where it could not be done.
 
@@ -163,10 +169,12 @@ def plan_sweep(
         samples: rows that the discretisation is chosen on, at least 1.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
+        device: ``cuda`` for a GPU, which is experimental, or ``host``, for the same source on a processor; the cores
+            by default.
 
     Raises:
         SceneError: with every fault of scene, table and output.
-        ExportError: there is no C compiler, or two things of the scene would have one name in C.
+        ExportError: there is no compiler or no GPU, or two things of the scene would have one name in C.
     """
     # What differs from row to row is what the table says.
     scene = scene.baked()
@@ -174,9 +182,11 @@ def plan_sweep(
     plan = None
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
+    if device is not None:
+        problems += device_problems(scene, device, stability=stability)
     try:
         refuse_held_by_contact(scene)
-        plan = Plan(scene, table, variants_of(scene, table), output, samples, stability, estimate_errors)
+        plan = Plan(scene, table, variants_of(scene, table), output, samples, stability, estimate_errors, device)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -200,6 +210,7 @@ def sweep(
     samples: int = SAMPLES,
     stability: bool = False,
     estimate_errors: bool = True,
+    device: str | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
@@ -217,6 +228,8 @@ def sweep(
             potential.
         estimate_errors: whether each row says how large its error is: the columns ``error_estimate``, 1 where it is
             not known, and ``within_tolerance``, 1 or 0; NaN where the scene fixes its modes and asks for no tolerance.
+        device: ``cuda`` for a GPU, which is experimental and was never run on one, or ``host``, for the same source on
+            a processor; the cores by default.
         progress: told the work under way, how much of it is done, and of how much.
 
     Raises:
@@ -233,7 +246,9 @@ def sweep(
         table = table_of(table, scratch)
     elif not isinstance(table, Table):
         table = read_table(Path(table), scratch=scratch)
-    plan = plan_sweep(subject, table, file, samples, stability=stability, estimate_errors=estimate_errors)
+    plan = plan_sweep(
+        subject, table, file, samples, stability=stability, estimate_errors=estimate_errors, device=device
+    )
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -259,7 +274,7 @@ def run_sweep(
     if progress is None:
         progress = _ignore
     # A cluster that does not answer is told of before the discretisation is chosen.
-    with _machine(scheduler, cores) as machine:
+    with _machine(scheduler, cores, plan.device) as machine:
         work = plan.work
         if plan.output is None or plan.part is None:
             memory = Memory()
@@ -307,7 +322,7 @@ def run_shard(
     begun = Store(file).head()
     if begun is not None and begun["sweep"] != plan.identity:
         raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
-    with _machine(scheduler, cores) as machine, Store(file) as store:
+    with _machine(scheduler, cores, plan.device) as machine, Store(file) as store:
         choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
         _solve_rest(plan, choice, machine, work, store, told)
     return count
@@ -423,10 +438,12 @@ def _ignore(doing: str, done: int, total: int) -> None:
     """Progress that nobody asked for."""
 
 
-def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
+def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Cores | Cluster:
     """The workers: cores of this machine, or a cluster."""
     if scheduler is None:
         return Cores(cores)
+    if device is not None:
+        raise SceneError(Problem("--device", "is of this machine", "leave it out beside --scheduler"))
     if cores is not None:
         remedy = "leave it out beside --scheduler: a cluster has its own"
         raise SceneError(Problem("--cores", "are those of this machine", remedy))
@@ -501,8 +518,11 @@ def _tasks(
 def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
     """The library of a variant."""
     entry = plan.variants.entries[variant]
+    model = build(choice.scene(entry.scene))
+    if plan.device is not None:
+        return device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
     library = row_library(
-        build(choice.scene(entry.scene)),
+        model,
         estimate_errors=plan.estimate_errors,
         stability=plan.stability,
         lanes=len(entry.rows) >= IN_LANES_FROM,

@@ -101,13 +101,20 @@ class Chunk:
         return np.concatenate(pieces)
 
 
-def chunks(variants: Variants, compiled_from: int = COMPILED_FROM, *, stability: bool = False) -> list[Chunk]:
+def chunks(
+    variants: Variants,
+    compiled_from: int = COMPILED_FROM,
+    *,
+    stability: bool = False,
+    compiled_rows: int = COMPILED_ROWS,
+) -> list[Chunk]:
     """All work of a table; the same table gives the same chunks.
 
     Args:
         variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
         stability: whether each row says whether its equilibrium is stable, which C does not say in exact contact.
+        compiled_rows: rows of a chunk that a compiled library solves.
     """
     listed: list[Chunk] = []
     modelled = []
@@ -118,7 +125,7 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM, *, stability:
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
-        for rows in _cut(entry.rows, COMPILED_ROWS):
+        for rows in _cut(entry.rows, compiled_rows):
             listed.append(Chunk(len(listed), ((index, rows),), not in_contact, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):

@@ -74,6 +74,10 @@ def export(
     batches: Annotated[
         bool, typer.Option("--batches", help="With many load cases solved four at a time, in vectors of the processor.")
     ] = False,
+    cuda: Annotated[
+        bool,
+        typer.Option("--cuda", help="With batches on a GPU: experimental, never run on one, of unmeasured speed."),
+    ] = False,
     over: Annotated[
         Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
     ] = None,
@@ -107,7 +111,7 @@ def export(
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
     files = {"--page": page, "--fmu": fmu, "--mjcf": mjcf}
-    parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches}
+    parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
     of_sources = {
         **{f"--{part}": wanted for part, wanted in parts.items()},
         "--over": over is not None,

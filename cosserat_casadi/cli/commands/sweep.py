@@ -56,6 +56,10 @@ def sweep(
         str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
     ] = None,
     cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(metavar="cuda", help="Solve on a GPU: experimental, never run on one, of unmeasured speed."),
+    ] = None,
     samples: Annotated[
         int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
     ] = SAMPLES,
@@ -100,7 +104,7 @@ def sweep(
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     part = _check_shard(shard, merge, plot, problems)
-    asked = {"stability": stability, "estimate_errors": estimate_errors}
+    asked = {"stability": stability, "estimate_errors": estimate_errors, "device": device}
     plan = _check_table(
         scene, tuple(settings or ()), over, ranges or [], output, samples, asked, sobol is not None, problems
     )
@@ -157,7 +161,7 @@ def _check_table(
     ranges: list[str],
     output: Path,
     samples: int,
-    asked: dict[str, bool],
+    asked: dict[str, Any],
     sobol: bool,
     problems: list[Problem],
 ) -> Plan | None:
