@@ -116,7 +116,7 @@ class DeviceBatch:
 
     Attributes:
         library: the shared object.
-        manifest: what the folder says of itself.
+        manifest: of the folder.
         device: ``cuda`` or ``host``.
         single: whether numbers are float instead of double.
         threads: rows that are solved at once.
@@ -129,7 +129,7 @@ class DeviceBatch:
     threads: int = THREADS
 
     def solve(self, *, stream: int = 0, **arrays: Array | None) -> None:
-        """Equilibria of many load cases from the unloaded scene, written into the arrays that are given.
+        """Equilibria of many load cases from the unloaded scene, written into the arrays of the call.
 
         For m inputs, p parameters, n unknowns and k rows: ``inputs`` (m, k), ``parameters`` (p, k) where the scene has
         some, ``x`` (n, k) and ``status`` (k), whose numbers are those of the header. Others may be left out:
@@ -157,7 +157,7 @@ class DeviceBatch:
         stream: int = 0,
         **arrays: Array | None,
     ) -> None:
-        """One step of many motions, written into the arrays that are given.
+        """One step of many motions, written into the arrays of the call.
 
         ``inputs`` (m, k), ``parameters`` (p, k); ``state`` (3 n, k), x, v and a, before and after; ``memory``
         (k, :attr:`memory_size`), bytes, zeros before the first step; ``status`` (k). Others may be left out:
@@ -182,6 +182,11 @@ class DeviceBatch:
         settings = [("dt", real, dt), ("tolerance", real, tolerance)]
         settings += [("max_iterations", ctypes.c_int, max_iterations), ("max_parts", ctypes.c_int, max_parts)]
         self._run("step", STEP_TABLE, settings, arrays, stream)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return sum(int(entry["count"]) for entry in self.manifest["unknowns"])
 
     @property
     def workspace_size(self) -> int:
@@ -268,7 +273,7 @@ class DeviceBatch:
         """Shape of an array of a table."""
         described = self.manifest
         inputs, parameters = (_length(described.get(key, [])) for key in ("inputs", "parameters"))
-        unknowns = sum(int(entry["count"]) for entry in described["unknowns"])
+        unknowns = self.size
         rods = len({entry["rod"] for entry in described["unknowns"]})
         poses = rods + len(described.get("bodies", []))
         shapes = {
@@ -313,7 +318,7 @@ class DeviceBatch:
         self._call(word, members, settings, places, count, stream)
 
     def _capsule(self, name: str, array: Array, stream: int) -> Any:
-        """What an array says of its memory, once the stream may use it.
+        """The capsule of an array, once the stream may use its memory.
 
         Raises:
             ValueError: it says nothing, or may not be written to.
@@ -329,7 +334,7 @@ class DeviceBatch:
         """Address of the numbers of an array.
 
         Raises:
-            ValueError: they are not those wanted.
+            ValueError: their type, shape or place is wrong.
         """
         shape = tuple(tensor.shape[i] for i in range(tensor.axes))
         wanted = self._shape(kind, count)
@@ -422,7 +427,7 @@ def batch_of(
     Args:
         described: the manifest.
         texts: sources and headers by name.
-        device: as for :func:`load_batch`, and so what follows.
+        device: as for :func:`load_batch`, and so the others.
         compiler: as there.
         single: as there.
         threads: as there.
@@ -488,7 +493,7 @@ def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
 
 
 def _tensor_of(capsule: Any) -> _Tensor:
-    """What a capsule of DLPack holds."""
+    """The tensor in a capsule of DLPack."""
     pointer = ctypes.pythonapi.PyCapsule_GetPointer
     pointer.restype = ctypes.c_void_p
     pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]

@@ -15,7 +15,7 @@ SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.
 
 
 DEVICE = re.compile(r"(?:SOLVER|@\{MACRO\})_DEVICE ")
-"""Before functions that a header declares: what a compiler for GPUs has to know of them."""
+"""The qualifier before functions of a header, which compilers for GPUs need."""
 
 
 def render(template: str, words: dict[str, Any]) -> str:
@@ -38,7 +38,7 @@ def fill(text: str, words: Mapping[str, Any]) -> str:
 
 
 def resource(folder: str, file: str, *, on_device: bool = False) -> str:
-    """Text of a file of this package; without what compilers for GPUs alone need, unless it is for one."""
+    """Text of a file of this package; without the qualifiers of functions for a GPU, unless it is for one."""
     text = (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
     return text if on_device else DEVICE.sub("", text)
 

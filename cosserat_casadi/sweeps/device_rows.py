@@ -26,7 +26,7 @@ _LOCK = threading.Lock()
 
 @dataclass(frozen=True)
 class DeviceRows:
-    """What solves rows of one scene.
+    """The solver of rows of one scene.
 
     Attributes:
         batch: the compiled source.
@@ -59,10 +59,10 @@ class DeviceRows:
 
 
 def device_rows(model: Model, device: str, *, estimate_errors: bool) -> DeviceRows:
-    """What solves rows of a model on a device.
+    """The solver of rows of a model on a device.
 
     Args:
-        model: what is solved.
+        model: of rods.
         device: ``cuda`` or ``host``.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
 

@@ -76,7 +76,7 @@ class Plan:
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable.
         estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
-        device: what solves compiled rows, of :func:`device_problems`; None for the cores.
+        device: solves compiled rows, one of :func:`device_problems`; None for the cores.
     """
 
     scene: Scene
