@@ -106,7 +106,7 @@ def kernel_sources(
         on_device: whether compilers for GPUs are to take them too.
 
     Raises:
-        ExportError: they are for a GPU, and one of them is among those that CasADi prints.
+        ExportError: they are for a GPU, and CasADi prints one of them.
     """
     prologue = QUIET + OF_A_LIBRARY.format(macro=names.macro) + (ON_DEVICE if on_device else "")
     return _files(kernels, stem or f"{names.name}_kernels", "int", prologue, on_device=on_device)
