@@ -52,7 +52,7 @@ def shared_object(
     compiler: str,
     progress: Progress | None = None,
     *,
-    flags: Sequence[str] = FLAGS,
+    flags: Sequence[str] | None = None,
 ) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
@@ -64,11 +64,12 @@ def shared_object(
         headers: files beside them that they include.
         compiler: command of a C compiler, of :func:`find_compiler`.
         progress: told what is compiled, how many files are, and of how many.
-        flags: of the compiler.
+        flags: of the compiler, :data:`FLAGS` by default.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
+    flags = FLAGS if flags is None else flags
     contents = [_read(path) for path in (*sources, *headers)]
     stem = _stem(name, compiler, flags, contents)
     folder = cache_folder()
@@ -93,7 +94,7 @@ def compiled_texts(
     included: Collection[str] = frozenset(),
     progress: Progress | None = None,
     *,
-    flags: Sequence[str] = FLAGS,
+    flags: Sequence[str] | None = None,
 ) -> Path:
     """As :func:`shared_object`, of sources and headers that are texts by file name.
 
@@ -105,6 +106,7 @@ def compiled_texts(
         progress: as there.
         flags: as there.
     """
+    flags = FLAGS if flags is None else flags
     sources = [file for file in texts if file.endswith(ENDS) and file not in included]
     headers = [file for file in texts if file not in sources]
     contents = [texts[file].encode() for file in (*sources, *headers)]

@@ -188,7 +188,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the objects that would have been compiled."""
     made: list[str] = []
 
-    def pretend(compiler: str, sources: list[Path], folder: Path, stem: str, progress: object) -> Path:
+    def pretend(compiler: str, flags: object, sources: list[Path], folder: Path, stem: str, progress: object) -> Path:
         library = folder / file_name(stem, b"")
         made.append(library.name)
         library.write_bytes(b"")

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen import library as library_module
 from cosserat_casadi.codegen.library import VERBATIM
+from cosserat_casadi.codegen.texts import resource
 from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
 from tests.families import mostly_slow
 
@@ -23,7 +23,6 @@ KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
 
 ALL = pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=KINDS))
 
-C_SOURCES = Path(library_module.__file__).parent / "c"
 
 STRICT = (*C99, "-Werror")
 
@@ -104,7 +103,7 @@ def test_solver_is_the_same_file_in_every_folder(library: Library, name: str) ->
     held = {path.name: path.read_text() for path in library(name).folder.iterdir() if path.name in VERBATIM}
     assert {"solver.c", "solver.h"} < set(held)
     for file, text in held.items():
-        assert text == (C_SOURCES / file).read_text(), file
+        assert text == resource("c", file), file
 
 
 @pytest.mark.parametrize("flags", [("-DPLANAR_SINGLE",), ("-fopenmp",), ("-std=c11",)], ids=lambda flags: flags[0])
