@@ -12,7 +12,7 @@ import shlex
 import shutil
 import sysconfig
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
@@ -42,8 +42,8 @@ DLPACK_DEVICES = {HOST: (1, 3), CUDA: (2, 13)}
 KINDS = {0: "int", 2: "float"}
 """Types of numbers by their code in DLPack."""
 
-THREADS = 16_384
-"""Rows that are solved at once unless said otherwise: as many workspaces are taken of the memory of the device."""
+THREADS, ROOM = 16_384, 4e9
+"""Rows that a GPU solves at once unless said otherwise, and bytes that their workspaces take at most."""
 
 SOLVE_TABLE = {
     "inputs": "inputs",
@@ -126,7 +126,7 @@ class DeviceBatch:
     manifest: Mapping[str, Any]
     device: str
     single: bool = False
-    threads: int = THREADS
+    threads: int = 1
 
     def solve(self, *, stream: int = 0, **arrays: Array | None) -> None:
         """Equilibria of many load cases from the unloaded scene, written into the arrays of the call.
@@ -383,7 +383,7 @@ def load_batch(
     *,
     compiler: str | None = None,
     single: bool = False,
-    threads: int = THREADS,
+    threads: int | None = None,
 ) -> DeviceBatch:
     """Compile the batches of an exported folder for a device, once, and load them. Experimental.
 
@@ -392,7 +392,8 @@ def load_batch(
         device: ``cuda``, or ``host`` for the same source on a processor.
         compiler: a command, such as ``nvcc -arch=sm_90``; by default nvcc of the path or of the extra ``cuda``.
         single: whether to compute in float.
-        threads: rows that are solved at once; each takes a workspace of the device.
+        threads: rows that are solved at once; each takes a workspace of the device. By default one on the host, and on
+            a GPU as many as is usual and fit into a few gigabytes.
 
     Raises:
         ExportError: the folder has no batches on a GPU, there is no compiler, or it fails.
@@ -420,7 +421,7 @@ def batch_of(
     *,
     compiler: str | None = None,
     single: bool = False,
-    threads: int = THREADS,
+    threads: int | None = None,
 ) -> DeviceBatch:
     """The same from texts.
 
@@ -432,8 +433,8 @@ def batch_of(
         single: as there.
         threads: as there.
     """
-    if device not in FLAGS:
-        raise ValueError(f"a device is 'cuda' or 'host', got {device!r}")
+    if device not in FLAGS or (threads is not None and threads < 1):
+        raise ValueError(f"a device is 'cuda' or 'host', with at least one thread, got {device!r} and {threads}")
     found = find_compiler(compiler) if device == HOST else find_nvcc(compiler)
     name = described["name"]
     source = device_files(name)[0]
@@ -442,7 +443,9 @@ def batch_of(
     included = [file for file in renamed if file.endswith(".c")]
     flags = (*FLAGS[device], *([f"-D{name.upper()}_SINGLE"] if single else []))
     library = compiled_texts(f"{name}_{device}", renamed, found, included, flags=flags)
-    return DeviceBatch(library, described, device, single, threads)
+    batch = DeviceBatch(library, described, device, single)
+    usual = 1 if device == HOST else max(1, min(THREADS, int(ROOM // batch.workspace_size)))
+    return replace(batch, threads=usual if threads is None else threads)
 
 
 def find_nvcc(wanted: str | None = None) -> str:
