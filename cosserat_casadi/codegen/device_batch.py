@@ -210,8 +210,10 @@ class DeviceBatch:
         wanted = ("x", "status", "iterations", "residual_norm", "error_estimate", "results")
         for name in wanted:
             tables[name] = np.empty(self._shape(SOLVE_TABLE[name], len(inputs)), self._type(SOLVE_TABLE[name]))
-        places = {name: self._allocate(table.nbytes) for name, table in tables.items()}
+        places: dict[str, int] = {}
         try:
+            for name, table in tables.items():
+                places[name] = self._allocate(table.nbytes)
             for name in given:
                 self._check(self._function("device_copy")(places[name], *_bytes_of(tables[name])))
             self._call("solve", SOLVE_TABLE, [], places, len(inputs), 0)

@@ -130,8 +130,9 @@ class Plan:
     @property
     def work(self) -> list[Chunk]:
         """All rows in chunks."""
-        rows = COMPILED_ROWS if self.device is None else DEVICE_ROWS
-        return chunks(self.variants, stability=self.stability, compiled_rows=rows)
+        if self.device is not None:
+            return chunks(self.variants, stability=self.stability, compiled_rows=DEVICE_ROWS)
+        return chunks(self.variants, stability=self.stability)
 
     @property
     def part(self) -> Path | None:

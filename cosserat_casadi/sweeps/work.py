@@ -106,7 +106,7 @@ def chunks(
     compiled_from: int = COMPILED_FROM,
     *,
     stability: bool = False,
-    compiled_rows: int = COMPILED_ROWS,
+    compiled_rows: int | None = None,
 ) -> list[Chunk]:
     """All work of a table; the same table gives the same chunks.
 
@@ -114,7 +114,7 @@ def chunks(
         variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
         stability: whether each row says whether its equilibrium is stable, which C does not say in exact contact.
-        compiled_rows: rows of a chunk that a compiled library solves.
+        compiled_rows: rows of a chunk that a compiled library solves, :data:`COMPILED_ROWS` by default.
     """
     listed: list[Chunk] = []
     modelled = []
@@ -125,7 +125,7 @@ def chunks(
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
-        for rows in _cut(entry.rows, compiled_rows):
+        for rows in _cut(entry.rows, compiled_rows or COMPILED_ROWS):
             listed.append(Chunk(len(listed), ((index, rows),), not in_contact, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):
