@@ -210,19 +210,19 @@ class DeviceBatch:
         wanted = ("x", "status", "iterations", "residual_norm", "error_estimate", "results")
         for name in wanted:
             tables[name] = np.empty(self._shape(SOLVE_TABLE[name], len(inputs)), self._type(SOLVE_TABLE[name]))
-        places: dict[str, int] = {}
+        addresses: dict[str, int] = {}
         try:
             for name, table in tables.items():
-                places[name] = self._allocate(table.nbytes)
+                addresses[name] = self._allocate(table.nbytes)
             for name in given:
-                self._check(self._function("device_copy")(places[name], *_bytes_of(tables[name])))
-            self._call("solve", SOLVE_TABLE, [], places, len(inputs), 0)
+                self._check(self._function("device_copy")(addresses[name], *_bytes_of(tables[name])))
+            self._call("solve", SOLVE_TABLE, [], addresses, len(inputs), 0)
             for name in wanted:
                 address, size = _bytes_of(tables[name])
-                self._check(self._function("device_copy")(address, places[name], size))
+                self._check(self._function("device_copy")(address, addresses[name], size))
         finally:
-            for place in places.values():
-                self._function("device_release")(place)
+            for address in addresses.values():
+                self._function("device_release")(address)
         return {name: tables[name] for name in wanted}
 
     @property
@@ -261,9 +261,9 @@ class DeviceBatch:
         return self._allocate(self.threads * self.workspace_size)
 
     def _allocate(self, size: int) -> int:
-        place = ctypes.c_void_p()
-        self._check(self._function("device_allocate")(ctypes.byref(place), ctypes.c_size_t(size)))
-        return place.value or 0
+        address = ctypes.c_void_p()
+        self._check(self._function("device_allocate")(ctypes.byref(address), ctypes.c_size_t(size)))
+        return address.value or 0
 
     def _check(self, error: int) -> None:
         if error:
@@ -316,8 +316,8 @@ class DeviceBatch:
         capsules = {name: self._capsule(name, array, stream) for name, array in given.items()}
         tensors = {name: _tensor_of(capsule) for name, capsule in capsules.items()}
         count = int(tensors["status"].shape[0]) if tensors["status"].axes else 0
-        places = {name: self._place(name, tensor, members[name], count) for name, tensor in tensors.items()}
-        self._call(word, members, settings, places, count, stream)
+        addresses = {name: self._address(name, tensor, members[name], count) for name, tensor in tensors.items()}
+        self._call(word, members, settings, addresses, count, stream)
 
     def _capsule(self, name: str, array: Array, stream: int) -> Any:
         """The capsule of an array, once the stream may use its memory.
@@ -332,7 +332,7 @@ class DeviceBatch:
         except (BufferError, RuntimeError) as error:
             raise ValueError(f"{name} gives no memory: {error}") from None
 
-    def _place(self, name: str, tensor: _Tensor, kind: str, count: int) -> int:
+    def _address(self, name: str, tensor: _Tensor, kind: str, count: int) -> int:
         """Address of the numbers of an array.
 
         Raises:
@@ -359,7 +359,7 @@ class DeviceBatch:
         word: str,
         members: Mapping[str, str],
         settings: list[tuple[str, Any, Any]],
-        places: Mapping[str, int],
+        addresses: Mapping[str, int],
         count: int,
         stream: int,
     ) -> None:
@@ -373,7 +373,7 @@ class DeviceBatch:
             ]
 
         values = {name: value for name, _, value in settings}
-        table = Table(count=count, **values, **{name: place or None for name, place in places.items()})
+        table = Table(count=count, **values, **{name: address or None for name, address in addresses.items()})
         workspaces = ctypes.c_void_p(self._workspaces)
         call = self._function(f"{word}_on_device")
         self._check(call(ctypes.byref(table), workspaces, self.threads, ctypes.c_void_p(stream)))
