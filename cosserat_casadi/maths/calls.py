@@ -18,9 +18,27 @@ def called_functions(function: ca.Function) -> dict[int, ca.Function]:
     return {k: elements[k].which_function() for k in calls}
 
 
+def functions_within(function: ca.Function) -> list[ca.Function]:
+    """The functions that a function calls, deep inside too, once each.
+
+    CasADi 3.7 does not list what a map maps.
+    """
+    known: dict[int, ca.Function] = {}
+    callers = [function]
+    while callers:
+        caller = callers.pop()
+        called = list(caller.find_functions(0))
+        if caller.is_a("Map"):
+            called.append(caller.info()["f"])
+        fresh = {each.__hash__(): each for each in called if each.__hash__() not in known}
+        known.update(fresh)
+        callers.extend(fresh.values())
+    return list(known.values())
+
+
 def chooses(function: ca.Function) -> bool:
     """Whether a function calls another one, deep inside too, or leaves it out, by a value.
 
     Written as scalars, or as a program without branches, it would compute all that it may leave out.
     """
-    return any(called.class_name() == "Switch" for called in function.find_functions())
+    return any(called.class_name() == "Switch" for called in functions_within(function))

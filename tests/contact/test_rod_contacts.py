@@ -13,7 +13,7 @@ from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, functions_within
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.scene import Simulation
@@ -289,7 +289,7 @@ def test_rods_that_are_apart_cost_no_pair() -> None:
     far = [SectionsInContact(ca.MX.sym("x", 3, count * PANEL), ca.DM(3, count * PANEL)) for count in (4, 4)]
     pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100, 0.4, 1e-3]))
     gradient = ca.Function("gradient", [own.positions for own in far], list(pairs.gradient))
-    calls = [function for function in gradient.find_functions() if function.class_name() == "Switch"]
+    calls = [function for function in functions_within(gradient) if function.class_name() == "Switch"]
     # One for the rods, one for the panels: nothing of either is called where rods are apart.
     assert len(calls) == 2
     places = np.vstack([along, 0 * along, 0 * along])

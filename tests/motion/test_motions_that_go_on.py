@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError, scene_from_dict, simulate
 from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume, Strand
@@ -70,7 +70,12 @@ def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_
 
 @pytest.mark.parametrize("subject", mostly_slow(["held", "free", "touches"], quick=["held", "touches"]))
 def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> None:
-    """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over."""
+    """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over.
+
+    To the last bit; in contact to rounding, since a contact's Jacobian is computed anew.
+    Where nothing is taken over they differ by 1e-8.
+    """
+    rounding = 1e-14 if subject == "touches" else 0.0
     if subject == "touches":
         model = moving(rod(BALL, duration=0.4, damping=0.03))
     else:
@@ -84,8 +89,8 @@ def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> Non
         assert first.outcome is StepOutcome.INTERRUPTED
         second = replace(simulator, start=resumed_start(model, through_data(first))).resumed(strand(first))
         assert len(second.steps) == len(whole.steps) - len(first.steps)
-        assert_array_equal(second.end.x, whole.end.x)
-        assert_array_equal(second.end.v, whole.end.v)
+        assert_allclose(second.end.x, whole.end.x, rtol=0, atol=rounding)
+        assert_allclose(second.end.v, whole.end.v, rtol=0, atol=100 * rounding)
     assert bool(whole.events) == (subject == "touches")
 
 
