@@ -66,7 +66,7 @@ class _Episode:
     periods: int = 0
 
 
-class ReachEnvironment(gymnasium.Env[Observation, Observation]):
+class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore[misc]
     """Bring the tip of a rod to a target by the inputs that the scene bounds.
 
     An action says where those inputs are to be, from −1 at the lower bound to 1 at the upper one. Tensions and other
@@ -108,7 +108,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         RuntimeError: there is no equilibrium at the scene's inputs.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012  (so declared by gymnasium)
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012  (so declared by gymnasium)
 
     def __init__(
         self,

@@ -53,6 +53,7 @@ def test_a_robot_of_six_tendons_is_right_at_random_tensions() -> None:
     assert missed > 0
 
 
+@pytest.mark.slow
 def test_beyond_the_ranges_an_answer_says_that_it_is_beyond_the_tolerance() -> None:
     """Modes chosen for tensions alone, under a payload that nobody asked for."""
     tables = six_tendons().model_dump(mode="json", by_alias=True, exclude_unset=True)

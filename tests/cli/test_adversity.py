@@ -313,6 +313,7 @@ def test_results_for_a_standard_output_that_is_closed_are_told_to_be_lost(folder
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell closes streams")
 def test_files_do_not_take_the_place_of_streams_that_are_closed(folder: Path) -> None:
     assert in_shell(folder, "solve wire.toml --output out.json >&- 2>&- <&-").returncode == 0
@@ -320,13 +321,17 @@ def test_files_do_not_take_the_place_of_streams_that_are_closed(folder: Path) ->
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no /dev/full")
-@pytest.mark.parametrize(("line", "code"), [("solve nowhere.toml", REFUSED), ("solve wire.toml", 0)])
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [("solve nowhere.toml", REFUSED), pytest.param("solve wire.toml", 0, marks=pytest.mark.slow)],
+)
 def test_a_standard_error_that_is_full_changes_no_exit_code(folder: Path, line: str, code: int) -> None:
     assert in_shell(folder, f"{line} 2>/dev/full").returncode == code
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell sets the variable")
-@pytest.mark.parametrize("columns", mostly_slow(["0", "00", "''"], quick=["00"]))
+@pytest.mark.parametrize("columns", ["0", "00", "''"])
 def test_no_columns_are_those_of_a_pipe(folder: Path, columns: str) -> None:
     wanted = in_shell(folder, "solve --help").stdout
     shown = subprocess.run(
@@ -341,6 +346,7 @@ def test_no_columns_are_those_of_a_pipe(folder: Path, columns: str) -> None:
     assert len(wanted) > 100
 
 
+@pytest.mark.slow
 def test_a_reader_that_has_seen_enough(folder: Path) -> None:
     process = start(["solve", "wire.toml", "--json"], folder)
     assert process.stdout is not None

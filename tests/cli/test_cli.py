@@ -296,7 +296,8 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 # What nothing holds has no equilibrium.
 HELD = [path for path in sorted((ROOT / "examples").glob("*.toml")) if "free = true" not in path.read_text()]
 # The search for contacts takes seconds, and so does the largest platform; both have tests of their own. So have the
-# robot of two sections and its tendons, on the pages, and the arch, among the paths.
+# robot of two sections and its tendons, on the pages, the arch, among the paths, and rods of several materials and in
+# contact with each other.
 ELSEWHERE = {
     "six_rod_platform",
     "two_section_robot",
@@ -304,6 +305,8 @@ ELSEWHERE = {
     "fishing_rod_cast",
     "deep_arch",
     "disk_robot",
+    "three_materials",
+    "crossing_fingers",
 }
 LONG = [path for path in HELD if "[[obstacles]]" in path.read_text() or path.stem in ELSEWHERE]
 # Half of the others are solved every time; the models of all of them are built, by the tests of inverse dynamics.
@@ -456,6 +459,7 @@ def test_export_in_exact_contact(tmp_path: Path) -> None:
     assert not (tmp_path / "d").exists()
 
 
+@pytest.mark.slow
 def test_export_with_derivatives(wire: Path) -> None:
     fixed = ("--set", 'wire.strain="planar"', "--set", "accuracy.modes=2", "--set", "accuracy.nodes=5")
     plain = cosserat("export", "wire.toml", "--output", "plain", *fixed, cwd=wire)
@@ -487,6 +491,7 @@ def test_export_with_motions_of_a_scene_without_mass(wire: Path) -> None:
     assert not (wire / "c").exists()
 
 
+@pytest.mark.slow
 def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> None:
     """The folder holds the scene as it was changed; a fixed discretisation is used as it is."""
     changes = ('wire.strain="planar"', "accuracy.modes=2", "accuracy.nodes=5")

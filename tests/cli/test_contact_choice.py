@@ -37,6 +37,7 @@ def test_modes_in_contact_are_verified_where_the_inputs_go() -> None:
     assert "push.force.z=-4:-3" in choice.verified.sentence
 
 
+@pytest.mark.slow
 def test_in_contact_no_point_is_solved_for_each_range_alone() -> None:
     few = with_accuracy(over_bar(), tolerance=1e-3, modes=2, nodes=6)
     choice = choose(few, {"push.force.x": (-0.5, 0.5), "push.force.z": (-4.0, -3.0)}, samples=1)

@@ -203,6 +203,7 @@ def test_warnings_go_to_standard_error(
     assert warning not in " ".join(shown.out.split())
 
 
+@pytest.mark.slow
 def test_a_hasty_animation_is_told_how_to_slow_down(
     folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -52,6 +52,7 @@ def wanted_tips(made: Exported) -> np.ndarray:
     return made.tips(made.solve(inputs).x, inputs)
 
 
+@pytest.mark.slow
 def test_two_libraries_in_one_program(library: Library) -> None:
     one, other = library("planar"), library("pair")
     source = one.scratch / "both.c"

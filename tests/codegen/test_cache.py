@@ -62,6 +62,7 @@ def test_the_second_load_runs_no_compiler_at_all(strip: Path, tmp_path: Path) ->
     assert len(runs.read_text().splitlines()) == len(told) == 3
 
 
+@pytest.mark.slow
 @needs_compiler
 @needs_shell
 def test_another_compiler_under_the_same_name_compiles_again(strip: Path, tmp_path: Path) -> None:
@@ -78,6 +79,7 @@ def test_contents_are_told_from_each_other_and_from_their_order() -> None:
     assert len(hashes | {content_hash([compiler], ["-O3"], [b"ab", b"c"])}) == 4
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_switched_off_nothing_is_left(strip: Path, tmp_path: Path) -> None:
     code = (

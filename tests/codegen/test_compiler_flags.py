@@ -20,7 +20,7 @@ def compiled_sources(folder: Path, name: str) -> list[Path]:
     return sorted(folder.glob(f"{name}*.c"))
 
 
-@pytest.mark.parametrize("name", ["planar", "robot"])
+@pytest.mark.parametrize("name", ["planar", pytest.param("robot", marks=pytest.mark.slow)])
 def test_folder_without_a_warning(library: Callable[[str], Exported], name: str) -> None:
     made = library(name)
     for source in compiled_sources(made.folder, name):

@@ -120,6 +120,7 @@ def test_derivatives_of_a_line(table: ContactLibrary) -> None:
     np.testing.assert_allclose(-derivatives["rod"][:, 2], (ends[0] - ends[1]) / 2e-2, rtol=1e-5, atol=1e-10)
 
 
+@pytest.mark.slow
 def test_what_the_library_does_not_know_is_not_found(table: ContactLibrary, tmp_path: Path) -> None:
     """A library of the tip alone does not let the rod lie down in the table: it says so, and keeps its state."""
     library = exported_contact(on_table(), tmp_path / "tip", np.zeros((0, 3)), 4, 8).loaded
@@ -208,6 +209,7 @@ def test_errors_in_contact(bar: ContactLibrary, table: ContactLibrary) -> None:
     assert true <= answer.error_estimate <= 10 * true
 
 
+@pytest.mark.slow
 def test_where_other_contacts_hold_on_richer_modes_the_error_is_not_known(tmp_path: Path) -> None:
     """With one polynomial a rod does not come to the bar at 0.6 N, and with more it does."""
     library = exported_contact(over_bar(), tmp_path / "stiff", np.zeros((0, 3)), 1, 4)

@@ -122,6 +122,7 @@ def test_a_turn_of_a_control_loop_estimates_nothing(in_c: Compiled) -> None:
     assert info.error_estimate < 0
 
 
+@pytest.mark.slow
 def test_missing_modes_that_bounce_off_a_wall_are_told(tmp_path: Path) -> None:
     read = read_scene(ROOT / "examples" / "reach_past_bar.toml", ["accuracy.tolerance=2e-3"])
     compiled = load(export(build(read, discretise(read, 1, 2, "magnus6")), tmp_path / "robot"))

@@ -35,6 +35,7 @@ def test_law_vs_python(export_recipe: ExportRecipe, name: str) -> None:
         assert_allclose(in_c.x, in_python.x, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_strain_beyond_a_table_vs_python(export_recipe: ExportRecipe) -> None:
     """The status is that of Python, cold, warm and in a batch."""
     material = {"law": "table", "table": {"bending_y": TABLE}}

@@ -157,6 +157,7 @@ def test_critical_equilibrium_is_not_stable(library: Callable[[str], Library]) -
     assert (found.verdict, found.stable) == ("critical", False)
 
 
+@pytest.mark.slow
 def test_stability_follows_parameters(library: Callable[[str], Library]) -> None:
     """A load beyond the critical one of the scene's own stiffness is not beyond that of twice as much."""
     compiled = library("adjustable").compiled

@@ -116,6 +116,7 @@ def test_a_step_beyond_a_limit_is_told_vs_simulate(
     assert kind in motion.message
 
 
+@pytest.mark.slow
 def test_an_fmu_of_a_law_says_what_its_step_is_beyond(lattice: Exported, tmp_path: Path) -> None:
     path = write_fmu(lattice.model, tmp_path / "lattice.fmu", "lattice")
     described = fmpy.read_model_description(str(path))

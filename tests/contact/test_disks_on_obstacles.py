@@ -97,6 +97,7 @@ def test_the_radius_of_disks_that_touch_as_a_parameter() -> None:
     assert_allclose(there.contacts[0].force, shot(radius)[1] * NORMAL, rtol=0, atol=5e-3)
 
 
+@pytest.mark.slow
 def test_disks_touch_in_c(tmp_path: Path) -> None:
     model = build(finger(), discretise(finger(), 2, 5))
     compiled = load(export(model, tmp_path / "finger", "finger"))

@@ -46,6 +46,7 @@ def test_the_fingers_press_each_other_where_they_cross() -> None:
     assert alone.tip("left").position[1] > found.tip("left").position[1] + 5e-3
 
 
+@pytest.mark.slow
 def test_a_parameter_of_rods_that_touch_is_a_number_of_the_scene() -> None:
     """The same equilibrium as of a scene with that number, though counted in other units."""
     name = "left.material.youngs_modulus"

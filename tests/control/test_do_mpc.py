@@ -35,6 +35,7 @@ def imported() -> Any:
 MODULUS = "finger.material.youngs_modulus"
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_vs_nlp() -> None:
     model, near = robot()

@@ -189,6 +189,7 @@ def test_rates_that_constraints_leave_free(family: str, count: int) -> None:
         assert_allclose(stage.independent_rates(stage.state(at.x, swollen), at.x, at.inputs), 0.0, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_body_on_a_rod_is_brought_to_rest() -> None:
     push = {**PULL, "position": [0, 0, 0], "force": [0, 0, 0], "moment": [0, 0, 0]}
     plate = {"name": "plate", "mass": 0.3, "inertia": np.diag([0.03, 0.03, 0.03]).tolist()}

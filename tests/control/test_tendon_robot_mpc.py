@@ -22,6 +22,7 @@ def pulled(run: Run, first: np.ndarray) -> np.ndarray:
     return np.vstack([first, run.tensions])
 
 
+@pytest.mark.slow
 def test_the_robot_follows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
     known, robot = robots()

@@ -227,6 +227,7 @@ def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     assert single.stable is True
 
 
+@pytest.mark.slow
 def test_assembly_that_cannot_close_says_what_is_left() -> None:
     """A body wider than rods that keep their length can reach."""
     rods = [rod(n, 0.3, "kirchhoff", base={"position": [x, 0, 0]}) for n, x in (("a", 0.0), ("b", 1.5))]

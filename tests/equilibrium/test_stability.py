@@ -319,6 +319,7 @@ def test_a_round_rod_that_a_force_and_a_pin_press_together_is_neutral() -> None:
     assert solution.stable
 
 
+@pytest.mark.slow
 def test_a_bent_rod_that_is_drawn_nearly_straight_relaxes() -> None:
     """Springs that close most gaps leave it far from its clamp, whose force is some hundred times EI/L²."""
     drawn = held_scene(28)

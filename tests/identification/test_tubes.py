@@ -90,6 +90,7 @@ def test_numbers_are_found_exactly_where_nothing_was_measured_wrongly() -> None:
     assert_allclose(fitted.tubes[1].curvature, TRUTH["inner.curvature"], rtol=1e-7, atol=0)
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
     found = found_in(1)
     assert found.converged

@@ -163,6 +163,7 @@ def test_bounces_vs_scipy() -> None:
     assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_two_links_bounce_until_both_rest_on_their_stops() -> None:
     """Blows of one joint throw the other off its stop again: all of the energy is lost in the end."""
     stiff = {"strain": ["torsion"], "damping": {"retardation_time": 1e-3}}

@@ -185,6 +185,7 @@ def test_an_interrupt_ends_ffmpeg(short: Motion, tmp_path: Path, monkeypatch: py
     assert sorted(file.name for file in tmp_path.iterdir()) == ["ended", "ffmpeg"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="needs ffmpeg")
 def test_mp4(short: Motion, tmp_path: Path) -> None:
     path = tmp_path / "swing.mp4"

@@ -129,6 +129,7 @@ def test_a_thread_of_dask_that_begins_late() -> None:
     assert len(made) == 3
 
 
+@pytest.mark.slow
 def test_lost_clients_are_collected_before_another_is_made() -> None:
     """Dask's clients take a lock where they are collected, which the making of a client holds."""
 

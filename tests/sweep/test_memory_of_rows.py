@@ -207,6 +207,7 @@ def answered() -> Sweep:
     return Sweep(("push.force.x",), ("iterations", "rod.x"), values, np.zeros(ROWS, dtype=np.int64), {})
 
 
+@pytest.mark.slow
 def test_a_file_takes_a_block_of_rows_at_once(
     answered: Sweep, tmp_path: Path, peak: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -154,6 +154,7 @@ def test_the_discretisation_is_chosen_for_all_rows() -> None:
         assert_allclose(found.positions()[row], expected, rtol=0, atol=1e-4 * 0.8)
 
 
+@pytest.mark.slow
 def test_a_check_that_finds_the_tolerance_missed_says_so() -> None:
     coarse = scene(push(), WEIGHT, accuracy={"modes": 2, "nodes": 6, "tolerance": 1e-9})
     found = sweep(coarse, {"push.force.x": [1.0, 1.5]})
@@ -380,6 +381,7 @@ def test_what_lacks_an_extra_says_which(tmp_path: Path, monkeypatch: pytest.Monk
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_no_process_outlives_a_killed_sweep(tmp_path: Path) -> None:
     """Rows in Python run in processes beside the sweep; they end with it."""
     code = (

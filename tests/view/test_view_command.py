@@ -51,6 +51,7 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
     assert running.returncode == 130
 
 
+@pytest.mark.slow
 def test_a_scene_in_contact_opens_on_the_modes_of_its_own_inputs(tmp_path: Path) -> None:
     """A choice for the sliders would take minutes; every answer in the view tells its error."""
     scene = tmp_path / "bar.toml"

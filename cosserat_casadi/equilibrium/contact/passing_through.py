@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
@@ -159,16 +160,21 @@ def _sinks(
         X: abscissae, shape (k,).
         admitted: depth, m.
     """
-    ways = np.linalg.norm(end - start, axis=1)
-    stretches = np.maximum(*(np.linalg.norm(np.diff(positions, axis=0), axis=1) for positions in (start, end)))
-    first = np.arange(len(X) - 1)
+    # Types are written: to infer those of what the loop changes takes the type checker six seconds.
+    ways: FloatArray = np.asarray(np.linalg.norm(end - start, axis=1), dtype=float)
+    stretches: FloatArray = np.maximum(
+        *(np.linalg.norm(np.diff(positions, axis=0), axis=1) for positions in (start, end))
+    )
+    first: npt.NDArray[np.int_] = np.arange(len(X) - 1)
     # Middle and width of each part, in the number of the section and in the share of the way.
-    section, share = first + 0.5, np.full(len(first), 0.5)
-    along, across = np.ones(len(first)), np.ones(len(first))
+    section: FloatArray = first + np.float64(0.5)
+    share: FloatArray = np.full(len(first), 0.5)
+    along: FloatArray = np.ones(len(first))
+    across: FloatArray = np.ones(len(first))
     while len(first):
-        weight = (section - first)[:, None]
-        before = (1 - weight) * start[first] + weight * start[first + 1]
-        after = (1 - weight) * end[first] + weight * end[first + 1]
+        weight: FloatArray = (section - first)[:, None]
+        before: FloatArray = (1 - weight) * start[first] + weight * start[first + 1]
+        after: FloatArray = (1 - weight) * end[first] + weight * end[first + 1]
         abscissae = X[first] + weight[:, 0] * (X[first + 1] - X[first])
         gaps = gaps_at(before + share[:, None] * (after - before), abscissae)
         if gaps.min() < -admitted:
@@ -178,11 +184,12 @@ def _sinks(
         reach = (by_section + by_way) / 2
         halved = (gaps - reach < -admitted) & (reach > FINEST * admitted)
         longer = (by_section > by_way)[halved]
-        first, section, share, along, across = (part[halved] for part in (first, section, share, along, across))
+        first = np.tile(first[halved], 2)
+        section, share, along, across = (part[halved] for part in (section, share, along, across))
         along = np.where(longer, along / 2, along)
         across = np.where(longer, across, across / 2)
         by_half = np.where(longer, along / 2, 0.0), np.where(longer, 0.0, across / 2)
-        first, along, across = (np.tile(part, 2) for part in (first, along, across))
+        along, across = (np.tile(part, 2) for part in (along, across))
         section = np.concatenate([section - by_half[0], section + by_half[0]])
         share = np.concatenate([share - by_half[1], share + by_half[1]])
     return False
