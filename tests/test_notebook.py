@@ -41,6 +41,7 @@ def run_cell(source: str, names: dict[str, Any]) -> Any:
     return eval(compile(ast.Expression(last.value), "cell", "eval"), names)
 
 
+@pytest.mark.slow
 def test_the_copied_notebook_runs_cell_by_cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done = cosserat_line("cosserat examples notebook --output .", tmp_path)
     assert done.returncode == 0, done.stderr

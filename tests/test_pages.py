@@ -57,6 +57,7 @@ LONG = (
     "cosserat simulate examples/rod_hits_floor.toml",
     "cosserat simulate examples/tendon_robot_move.toml",
     "cosserat solve examples/crossing_fingers.toml",
+    "cosserat solve examples/disk_robot.toml",
     "cosserat solve examples/finger_on_finger.toml",
     "cosserat solve examples/robot_leans_on_wall.toml",
     "cosserat solve examples/three_materials.toml",
@@ -65,6 +66,7 @@ LONG = (
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 
 LONG_PYTHON = {
+    "solution = solve(scene)  # modes and nodes chosen": "test_readme.py",
     "environment = ReachEnvironment(": "environments/test_reach.py",
     "examples/robot_leans_on_wall.toml": "contact/test_contact_of_assemblies.py",
     'name = "stone"': "contact/test_split_lines.py",

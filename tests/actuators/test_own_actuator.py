@@ -20,6 +20,7 @@ from cosserat_casadi.model.registry import register
 from cosserat_casadi.rod.strain_density import StrainDensity
 from cosserat_casadi.scene.actuator_records import ActuatorRecord
 from cosserat_casadi.scene.input_fields import InputField
+from tests.families import mostly_slow
 from tests.registration import forget
 from tests.scenes import STIFFNESS, push
 
@@ -115,7 +116,7 @@ def point(model: Model) -> np.ndarray:
 STRAINS = ["planar", "kirchhoff", "reissner", ["bending_y", "shear_x", "extension"]]
 
 
-@pytest.mark.parametrize("strain", STRAINS)
+@pytest.mark.parametrize("strain", mostly_slow(STRAINS, quick=["planar", "kirchhoff"]))
 def test_cord_as_density_vs_tendon(strain: str | list[str]) -> None:
     """The derivatives by CasADi against those that rod/cable.py writes out."""
     cord = CordRecord(

@@ -145,6 +145,7 @@ def test_friction_takes_the_energy_of_the_way() -> None:
     assert stretch == last
 
 
+@pytest.mark.slow
 def test_at_rest_nothing_rubs_and_it_is_said() -> None:
     """Statics have not one instruction more, and an equilibrium in contact tells that friction is not in it."""
     lying = read_scene(ROOT / "examples" / "rod_on_table.toml", ["table.width=4e-3", "accuracy.modes=4"])

@@ -20,6 +20,7 @@ EXACT = StepOptions(tolerance=1e-14, iterations=20)
 """What Newton's method leaves of the length is next to rounding."""
 
 
+@pytest.mark.slow
 def test_an_optimum_replays_in_c(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
     # Steps in C have two stages.

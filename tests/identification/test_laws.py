@@ -126,7 +126,7 @@ def identified(name: str, seed: int = 3) -> Identification:
     return identify(build(scene_from_dict({**tables, **unknown}).with_unknowns()), {"made_up.csv": columns})
 
 
-@pytest.mark.parametrize("name", mostly_slow(MADE_UP, quick=["ogden"]))
+@pytest.mark.parametrize("name", mostly_slow(MADE_UP, quick=["polynomial"]))
 def test_numbers_are_found_within_their_intervals(name: str) -> None:
     found = identified(name)
     assert found.converged, found.message
