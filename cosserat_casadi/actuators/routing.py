@@ -18,9 +18,9 @@ from cosserat_casadi.maths.numbers import (
     as_vector,
     is_symbolic,
     known,
+    power_table,
     stacked_rows,
 )
-from cosserat_casadi.maths.polynomials import power_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.straight_cable import HoleRouting

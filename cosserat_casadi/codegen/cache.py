@@ -30,8 +30,7 @@ from typing import Any
 
 from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.errors import WriteError
-from cosserat_casadi.files import write_atomically
-from cosserat_casadi.sources import sources_hash
+from cosserat_casadi.files import sources_hash, write_atomically
 
 VARIABLE = "COSSERAT_CASADI_CACHE"
 """Environment variable that names the folder; ``off`` keeps nothing beyond the end of the process."""

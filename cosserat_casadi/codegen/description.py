@@ -18,8 +18,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.files import sources_hash
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.sources import sources_hash
 
 PACKAGE = "cosserat_casadi"
 

@@ -1,14 +1,16 @@
-"""Identification of a model's unknowns from its measurements."""
+"""Identification of a model's unknowns from its measurements, and the error that modes and nodes leave in it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.models import build
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.case_motions import StartInputs, check_motions
 from cosserat_casadi.identification.fit_discretisation import with_discretisation
@@ -17,14 +19,15 @@ from cosserat_casadi.identification.fit_unknowns import UnknownLayout, refuse_ro
 from cosserat_casadi.identification.identification_result import Identification
 from cosserat_casadi.identification.measured_cases import Case, Data, read_cases
 from cosserat_casadi.identification.measured_modes import check_vibrations
-from cosserat_casadi.identification.model_error import with_model_error
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.spelling import counted
-from cosserat_casadi.tubes.tube_functions import AnyModel
-from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
+from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, error_beside, finer_than, solution_at
 
 RECHOSEN = 2
 """Times that a discretisation is chosen again at the identified numbers."""
@@ -190,3 +193,56 @@ def _refuse_few_data(layout: UnknownLayout, cases: Sequence[Case], scene: scenes
         wanted = f"{counted(unknowns, 'unknown')} in {counted(len(cases), 'case')}"
         problem = f"{wanted} are too many for {counted(data + priors, 'number')}"
         raise SceneError(Problem("unknowns", problem, "leave some out, give priors, or measure more"))
+
+
+def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identification:
+    """An identification with the largest error of the equilibria that were measured, and a warning where it is large.
+
+    Motions have the errors of their steps, and are left out here.
+
+    Args:
+        found: at the end of a search.
+        cases: the fitted cases, by their first rows in words.
+    """
+    try:
+        model = found.model.at(found.parameters)
+    except SceneError:
+        # Numbers that the scene refuses are no model whose error could be told.
+        return found
+    errors = {
+        where: _error(model, inputs, x)
+        for where, x, inputs in zip(found.cases, found.unknowns_x, found.inputs, strict=True)
+        if not cases[where].moves
+    }
+    if not errors:
+        return found
+    worst = max(errors, key=lambda where: errors[where])
+    told = replace(found, error_estimate=errors[worst], error_case=worst)
+    if told.within_tolerance is not False:
+        return told
+    return replace(told, warnings=(*told.warnings, _warning(told)))
+
+
+def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
+    """The estimated error of an equilibrium that the tolerance binds; of tubes beside twice the steps."""
+    if isinstance(model, TubeFunctions):
+        solution = solution_at(model, inputs, x, found=True)
+        beside = error_beside(solution, finer_than(solution))
+        return UNKNOWN if beside is None else beside
+    equilibrium = Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0)
+    error = answer_error(equilibrium)
+    return error.shape if equilibrium.model.scene.accuracy.shape else error.watched
+
+
+def _warning(found: Identification) -> str:
+    tolerance = found.model.scene.accuracy.tolerance
+    remedy = "Choose modes and nodes for the range of what was measured with cosserat tune."
+    if isinstance(found.model, TubeFunctions):
+        remedy = "Build the model with more steps, or identify the scene."
+    error = f"may be off by {found.error_estimate:.2g} of the length"
+    if found.error_estimate == UNKNOWN:
+        error = "has an error that is not known"
+    return (
+        f"The model itself {error} in {found.error_case}, where the tolerance is {tolerance:g}: the numbers found make "
+        f"up for that. {remedy}"
+    )

@@ -19,7 +19,6 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import (
     Numbers,
@@ -30,14 +29,37 @@ from cosserat_casadi.maths.numbers import (
     is_symbolic,
     is_zero,
     known,
+    legendre_table,
 )
-from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
 from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.families import Kind, Kinds
 from cosserat_casadi.scene.load_records import LOADS, LoadRecord
+
+Sort = Literal["point", "moment", "line"]
+
+UNITS: dict[Sort, str] = {"point": "N", "moment": "N m", "line": "N/m"}
+"""Unit of an arrow of each sort."""
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """An arrow of a picture.
+
+    Attributes:
+        start: where it begins, world axes, shape (3,), m.
+        vector: force, moment or force per length, world axes, shape (3,), in the unit of its sort.
+        sort: kind of vector that the arrow stands for.
+        label: its entry in the legend; empty for one that another arrow speaks for.
+    """
+
+    start: FloatArray
+    vector: FloatArray
+    sort: Sort
+    label: str
+
 
 RecordType = TypeVar("RecordType", bound=LoadRecord)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial import legendre, polynomial
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
@@ -205,3 +206,24 @@ def _affine(numbers: Matrix) -> tuple[Matrix, FloatArray, FloatArray] | None:
     at_zero = ca.Function("numbers", [symbol], [numbers, ca.jacobian(numbers, symbol)])
     constant, slope = at_zero(0)
     return symbol, constant.full()[:, 0], slope.full()
+
+
+def legendre_table(count: int, X: Numbers) -> Numbers:
+    """The values of P₀ … P_{n−1} at 2X − 1, shape (len(X), n): (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1}."""
+    if not is_symbolic(X):
+        return np.asarray(legendre.legvander(2 * known(X) - 1, count - 1), dtype=float)
+    x = 2 * X - 1
+    columns: list[Matrix] = [ca.DM.ones(X.shape[0], 1), x]
+    for k in range(1, count - 1):
+        columns.append(((2 * k + 1) * x * columns[k] - k * columns[k - 1]) / (k + 1))
+    return ca.horzcat(*columns[:count])
+
+
+def power_table(count: int, X: Numbers) -> Numbers:
+    """The values of 1, X … X^{n−1}, shape (len(X), n)."""
+    if not is_symbolic(X):
+        return np.asarray(polynomial.polyvander(known(X), count - 1), dtype=float)
+    columns: list[Matrix] = [ca.DM.ones(X.shape[0], 1)]
+    for _ in range(1, count):
+        columns.append(columns[-1] * X)
+    return ca.horzcat(*columns)

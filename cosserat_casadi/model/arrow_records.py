@@ -11,8 +11,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.loads.load import Load, Site
+from cosserat_casadi.loads.load import Arrow, Load, Site
 from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray, Matrix

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import casadi as ca
@@ -40,7 +40,6 @@ from cosserat_casadi.constraints.section_constraint import PoseVariations
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.block_matrix import BlockMatrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.body_obstacle_loads import BorneLoad, borne_loads
 from cosserat_casadi.model.discrete_scene import STOP_COMPLIANCE, CableOfLength, DiscreteScene, JointStop
@@ -555,3 +554,37 @@ class Assembly:
             yield self.discrete.tension(cable), cable.compliance
         for stop in self.discrete.stops:
             yield self.discrete.stop(stop), STOP_COMPLIANCE
+
+
+@dataclass
+class BlockMatrix:
+    """A square matrix made of blocks; blocks in the same rows and columns are added.
+
+    Attributes:
+        ends: last row of each block row, plus one; the same for columns.
+        entries: blocks by the first of their rows and the first of their columns.
+    """
+
+    ends: list[int]
+    entries: dict[tuple[int, int], Matrix] = field(default_factory=dict)
+
+    def add(self, rows: slice, columns: slice, block: Matrix) -> None:
+        """Add a block."""
+        corner = (rows.start, columns.start)
+        if corner in self.entries:
+            block = self.entries[corner] + block
+        self.entries[corner] = block
+
+    def matrix(self) -> Matrix:
+        """The whole, sparse."""
+        starts = [0, *self.ends[:-1]]
+        ranges = list(zip(starts, self.ends, strict=True))
+        rows = []
+        for top, bottom in ranges:
+            row = []
+            for left, right in ranges:
+                # Unknowns that do not meet have a block without a stored entry.
+                nothing = ca.DM(bottom - top, right - left)
+                row.append(self.entries.get((top, left), nothing))
+            rows.append(ca.horzcat(*row))
+        return ca.vertcat(*rows)

@@ -19,7 +19,7 @@ from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers, with_parameters
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_checks import check_loads
+from cosserat_casadi.model.load_assembly import check_loads
 from cosserat_casadi.model.load_potential import loads_have_potential
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.motion_functions import MotionFunctions

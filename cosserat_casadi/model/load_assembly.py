@@ -1,4 +1,4 @@
-"""Loads of a scene on its rods."""
+"""Loads of a scene on its rods, and the refusal of loads that cannot act on the unloaded rods."""
 
 from __future__ import annotations
 
@@ -289,3 +289,32 @@ def kernels_of(discrete: DiscreteScene, load: scenes.LoadRecord, values: Mapping
     # A body has no data that differ from section to section.
     data_sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
     return [traced(member, load, values, size) for size in data_sizes]
+
+
+LOOKED_AT = np.linspace(0.0, 1.0, 201)
+"""Abscissae of the sections that a load is held against."""
+
+
+def check_loads(discrete: DiscreteScene) -> None:
+    """Refuse a scene whose loads cannot act on its unloaded rods.
+
+    Raises:
+        SceneError: with the faults of all loads.
+    """
+    problems = list(_problems(discrete))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
+    for load in discrete.loads:
+        member = EFFECTS[load.kind]
+        for rod, discrete_rod in discrete.rods.items():
+            if member.acts_on(load, rod):
+                site = Site(discrete_rod.properties, LOOKED_AT, partial(_unloaded_poses, discrete, rod))
+                yield from member.faults(load, site)
+
+
+def _unloaded_poses(discrete: DiscreteScene, rod: str) -> UnloadedPoses:
+    to_sections = discrete.rods[rod].grid.interpolation_matrix(LOOKED_AT)
+    return unloaded_poses(discrete, rod, to_sections)

@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.maths.numbers import as_matrix, is_symbolic
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.block_matrix import BlockMatrix
+from cosserat_casadi.model.assembly_equations import BlockMatrix
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_equations import SceneEquations

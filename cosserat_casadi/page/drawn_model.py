@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.loads.arrow import Sort
+from cosserat_casadi.loads.load import Sort
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows

@@ -15,7 +15,7 @@ from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_positions
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
-from cosserat_casadi.loads.arrow import UNITS
+from cosserat_casadi.loads.load import UNITS
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi.loads.arrow import Arrow
+from cosserat_casadi.loads.load import Arrow
 from cosserat_casadi.plots.canvas import FLAT, Canvas
 from cosserat_casadi.plots.colours import FORCES, LINE_FORCES, MOMENTS
 

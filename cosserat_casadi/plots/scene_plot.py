@@ -12,8 +12,7 @@ import casadi as ca
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.loads.load import Poses
+from cosserat_casadi.loads.load import Arrow, Poses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.arrow_records import LoadArrows
 from cosserat_casadi.plots.arrows import draw_arrows

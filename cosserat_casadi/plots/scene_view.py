@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cosserat_casadi.loads.arrow import Arrow
+from cosserat_casadi.loads.load import Arrow
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.arrows import lies_in_plane
 from cosserat_casadi.plots.canvas import FLAT, WORLD, Plane

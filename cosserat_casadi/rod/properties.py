@@ -20,9 +20,9 @@ from cosserat_casadi.maths.numbers import (
     is_symbolic,
     is_zero,
     known,
+    legendre_table,
     side_by_side,
 )
-from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]

@@ -36,11 +36,11 @@ from cosserat_casadi.maths.numbers import (
     is_symbolic,
     is_zero,
     known,
+    legendre_table,
     product,
     reciprocal,
     without_rounding,
 )
-from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
-from cosserat_casadi.model.load_checks import check_loads
+from cosserat_casadi.model.load_assembly import check_loads
 from cosserat_casadi.scene import Scene, parse_scene
 from cosserat_casadi.sweeps.outcome_table import ENDINGS
 from cosserat_casadi.tubes.robot import robot_of

@@ -18,8 +18,7 @@ from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_stages, loaded_step
 from cosserat_casadi.tubes.loaded_tangent import VECTOR, LoadedTangent, tangent_step
-from cosserat_casadi.tubes.march import March
-from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.stages import March, Staged
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad
 from cosserat_casadi.tubes.tube_model import TubeModel

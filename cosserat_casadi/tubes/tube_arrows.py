@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
+from cosserat_casadi.loads.load import UNITS, Arrow, Sort
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.tubes.robot import Robot

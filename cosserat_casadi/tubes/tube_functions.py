@@ -26,9 +26,8 @@ from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
-from cosserat_casadi.tubes.march import AnyState, March
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
-from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.stages import AnyState, March, Staged
 from cosserat_casadi.tubes.variations import TipVariations
 
 NEWTON_TOLERANCE = 1e-12

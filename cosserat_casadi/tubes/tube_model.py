@@ -12,8 +12,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.tubes.march import March
-from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.stages import March, Staged
 from cosserat_casadi.tubes.tube_flow import START, FlowState, twist_step, whole_stages, whole_step
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.variations import TipVariations, of_angles

@@ -26,9 +26,9 @@ from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.errors import WriteError
+from cosserat_casadi.files import sources_hash
 from cosserat_casadi.loads.load import Load
 from cosserat_casadi.scene.load_records import LoadRecord
-from cosserat_casadi.sources import sources_hash
 from tests.codegen.test_load import needs_compiler
 from tests.registration import registered
 from tests.scenes import WEIGHT, push, rod, scene

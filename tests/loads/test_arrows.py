@@ -11,8 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, solve
-from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.loads.load import Poses
+from cosserat_casadi.loads.load import Arrow, Poses
 from cosserat_casadi.model.arrow_records import DRAWN_SECTIONS, LoadArrows
 from tests.loads.kinds import BedRecord, DipoleRecord, ElasticSpringRecord, registered, with_loads
 from tests.scenes import HOOK, STIFFNESS, WEIGHT, WIND, push, rod, scene

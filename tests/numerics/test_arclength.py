@@ -10,10 +10,9 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Hyperplane, Monitor, tangent_along
-from cosserat_casadi.numerics.branches import crossing_direction
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, bracketed_zero
-from cosserat_casadi.numerics.trace import PathOutcome, Trace, trace
+from cosserat_casadi.numerics.trace import PathOutcome, Trace, crossing_direction, trace
 
 EIGENVALUES = Monitor(lambda _y, jacobian, _: np.linalg.eigvalsh((jacobian + jacobian.T) / 2), feels_limits=True)
 MONITORS = pytest.mark.parametrize("monitor", [EIGENVALUES, DETERMINANT], ids=["eigenvalues", "determinant"])

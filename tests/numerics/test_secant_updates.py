@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics import broyden
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.secant_updates import SecantUpdates
+from cosserat_casadi.numerics.stage_newton import SecantUpdates
 
 WEIGHTS = np.array([1.0, 1e3, 20.0, 0.0])
 """Of four entries; the last one is algebraic."""

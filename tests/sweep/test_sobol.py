@@ -16,7 +16,7 @@ from rich.console import Console
 from scipy import stats
 
 from cosserat_casadi import SceneError, sobol_indices, sobol_table, sweep
-from cosserat_casadi.cli.reports.sobol import print_sobol
+from cosserat_casadi.cli.reports.sweep import print_sobol
 from cosserat_casadi.plots.sobol_plot import plot_sobol
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.sobol import estimates

@@ -17,7 +17,7 @@ from cosserat_casadi.cli.options import (
     collect_problems,
 )
 from cosserat_casadi.cli.progress import solve_display
-from cosserat_casadi.cli.reports.modes import print_modes
+from cosserat_casadi.cli.reports.motion import print_modes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of

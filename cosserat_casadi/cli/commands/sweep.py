@@ -20,8 +20,7 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_written
-from cosserat_casadi.cli.reports.sobol import print_sobol
-from cosserat_casadi.cli.reports.sweep import print_shard, print_stopped_sweep, print_sweep
+from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
