@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
-from cosserat_casadi import choose, read_scene
+from cosserat_casadi import read_scene
+from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.fixing import with_accuracy
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
+from cosserat_casadi.cli.reports.model import print_choice
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.scene.writing import scene_text
 from tests.codegen.contact_libraries import over_bar
 from tests.commands import cosserat
+from tests.scenes import push, scene
 
 RANGES = [word for text in ("x=-0.5:0.5", "y=-0.1:0.1", "z=-4:-2") for word in ("--range", f"push.force.{text}")]
 
@@ -70,3 +77,32 @@ def test_an_export_in_contact_that_misses_the_tolerance_says_so(bar: Path) -> No
     assert verified["solves"] == 3
     assert verified["ranges"] == ["push.force.z=-4:-2"]
     assert "The tolerance is not kept there." in " ".join((bar / "c" / "bar.h").read_text().split())
+
+
+# What is printed of a choice of modes where an equilibrium is missing, or an error is not known.
+
+
+@pytest.fixture(scope="module")
+def choice() -> Choice:
+    bent = scene(push(), strain="planar", accuracy={"tolerance": 1e-2})
+    return choose(bent, cases=[{"push.force": [force, 0.0, 0.0]} for force in (0.1, 0.2)])
+
+
+def printed(choice: Choice) -> str:
+    """The report in one line."""
+    text = StringIO()
+    print_choice(Console(file=text, width=200), choice)
+    return " ".join(text.getvalue().split())
+
+
+def test_cases_without_an_equilibrium_are_not_within_the_tolerance(choice: Choice) -> None:
+    assert "All 2 load cases are within 0.01." in printed(choice)
+    said = printed(replace(choice, without_equilibrium=(choice.worst,)))
+    assert "All 1 load cases that have an equilibrium are within 0.01." in said
+    assert "No equilibrium was found at 1 load cases" in said
+
+
+def test_an_error_that_is_not_known_is_no_number(choice: Choice) -> None:
+    unknown = replace(choice, error_estimate=UNKNOWN, met=False)
+    assert "estimated error not known" in printed(unknown)
+    assert "their error is not known. The tolerance is not kept there." in unknown.verified.sentence

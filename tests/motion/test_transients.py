@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -11,9 +13,23 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Motion, MotionOutcome, scene_from_dict, simulate
+from cosserat_casadi import (
+    Model,
+    Motion,
+    MotionOutcome,
+    build,
+    discretise,
+    modes_of,
+    read_scene,
+    scene_from_dict,
+    simulate,
+)
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.history import History, equations_of
+from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
+from cosserat_casadi.numerics.integration import StepOutcome
+from tests.conftest import case_files
 from tests.families import mostly_slow
 from tests.motion import transients
 from tests.motion.stepping import moving_model, orders, stepped
@@ -295,3 +311,99 @@ def test_coarser_tolerances_take_fewer_steps() -> None:
     for coarse, fine in pairwise(steps):
         # Order 5 would take 10^(1/5) = 1.6 times as many.
         assert coarse < fine < 3 * coarse
+
+
+# Modes of the reference cases: by transfer matrices, and by chains of rigid slices in other coordinates.
+
+
+CASES = [path for path in case_files("dynamics") if path.stem.startswith("modes_")]
+pytestmark = pytest.mark.skipif(not CASES, reason="the reference cases are not beside this checkout")
+
+UNDERSTATED = {"modes_sagged": 3.0}
+"""Factors on uncertainties that are too small: test_modes_of_the_literature.py has digits for this one."""
+
+QUICK = {"modes_beck_15", "modes_wire_damped"}
+
+EXACT = 1e-9
+"""Uncertainty, relative, of what transfer matrices give."""
+
+
+@pytest.mark.parametrize(
+    "path",
+    [path if path.stem in QUICK else pytest.param(path, marks=pytest.mark.slow) for path in CASES],
+    ids=lambda path: path.stem,
+)
+def test_modes_vs_independent_program(path: Path) -> None:
+    """Angular frequencies, and where they are given damping ratios and the tip of the equilibrium."""
+    case = json.loads(path.with_suffix(".json").read_text())
+    expected = case["expected"]["modes"]
+    found = modes_of(read_scene(path), count=len(expected))
+    assert found.converged, found.message
+    uncertainty = 0.0
+    if case["uncertainty"] > EXACT:
+        uncertainty = UNDERSTATED[path.stem] * case["uncertainty"]
+    for mode, entry in zip(found.modes, expected, strict=True):
+        assert_allclose(mode.angular_frequency, entry["angular_frequency"], rtol=EXACT, atol=uncertainty)
+        if "damping_ratio" in entry:
+            assert_allclose(mode.damping_ratio, entry["damping_ratio"], rtol=EXACT, atol=0)
+    if "tip" in case["expected"]:
+        assert_allclose(found.solution.tip().position, case["expected"]["tip"], rtol=0, atol=1e-5)
+
+
+# Steps of given sizes on motions that they hardly resolve: their equations are solved all the same.
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def in_given_steps(example: str, size: float, duration: float, integrator: str) -> History:
+    """The beginning of an example's motion on six modes."""
+    changes = [f"simulation.duration={duration}", f"simulation.integrator={integrator!r}"]
+    scene = read_scene(EXAMPLES / f"{example}.toml", changes).with_motion_inputs()
+    simulation = scene.simulation
+    assert simulation is not None
+    model = build(scene, discretise(scene, 6, 18), moving=True)
+    return Simulator(model, simulation, started(model, simulation, None)).stepped(size)
+
+
+def largest_residual(history: History) -> float:
+    """Largest entry of the equations at the stages of all steps."""
+    largest = 0.0
+    for leg, step in history.steps:
+        equations = equations_of(history.model, leg.piece)
+        if history.coordinates is not None:
+            equations = history.coordinates.equations(equations)
+        stages = step.stages
+        rows = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
+        largest = max(largest, float(np.abs(rows).max()))
+    return largest
+
+
+RUNS = [(example, integrator) for example in ("tendon_robot_move", "thrown_rod") for integrator in ("radau", "gauss")]
+
+
+@pytest.mark.parametrize(("example", "integrator"), mostly_slow(RUNS, quick=[RUNS[3]]))
+def test_every_given_step_is_solved(example: str, integrator: str) -> None:
+    history = in_given_steps(example, 0.03, 0.21, integrator)
+    assert history.outcome is StepOutcome.COMPLETED
+    # Forces and moments over those of the rod's stiffness.
+    assert largest_residual(history) < 1e-7
+    sizes = [step.size for _, step in history.steps]
+    assert max(sizes) <= 0.03 * (1 + 1e-9)
+
+
+def test_without_growing_to_their_size_some_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The steps above reach beyond what the step before foretells."""
+    monkeypatch.setattr("cosserat_casadi.numerics.given_step.LEAST_GROWTH", 1.0)
+    assert in_given_steps("tendon_robot_move", 0.03, 0.21, "gauss").outcome is StepOutcome.NOT_SOLVED
+
+
+@pytest.mark.slow
+def test_a_jacobian_at_each_stage_finds_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is found so is what one Jacobian finds, where both find it."""
+    plain = in_given_steps("tendon_robot_move", 0.01, 0.1, "radau")
+    monkeypatch.setattr("cosserat_casadi.numerics.step_run.ITERATIONS_OF_GIVEN_STEP", 2)
+    coupled = in_given_steps("tendon_robot_move", 0.01, 0.1, "radau")
+    assert coupled.completed
+    assert coupled.statistics.jacobians > 5 * plain.statistics.jacobians
+    assert_allclose(coupled.end.x, plain.end.x, rtol=0, atol=1e-10)

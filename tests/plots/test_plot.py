@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,13 +11,26 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from PIL import Image
 
-from cosserat_casadi import Outcome, SceneError, Solution, build, solve
+from cosserat_casadi import Outcome, SceneError, Solution, build, modes_of, read_scene, solve
+from cosserat_casadi.cli.main import REFUSED, app, run
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.motion.vibration_modes import Modes
+from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
+from cosserat_casadi.plots.material_plot import plot_materials, stress_curves
+from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.plots.solved_shapes import SAMPLES
+from cosserat_casadi.plots.sweep_plot import plot_sweep
+from cosserat_casadi.plots.tubes_plot import _between, plot_tubes
+from cosserat_casadi.sweeps.outcome_table import Sweep
+from cosserat_casadi.tubes.tube_solution import TubeShape
+from tests.conftest import ROOT
 from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
+from tests.tubes.pendulum import Pendulum
 
 
 @pytest.fixture(scope="module")
@@ -195,3 +209,208 @@ def test_missing_matplotlib_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(PlotUnavailableError, match=r"pip install 'cosserat-casadi\[plot\]'"):
         check_plot_path("figure.png")
+
+
+# The figure of materials: its curves are those of the laws, and linear scenes have none.
+
+
+MATERIALS = ROOT / "examples" / "three_materials.toml"
+
+
+def test_curves_are_those_of_the_laws() -> None:
+    rubber, wire, lattice = read_scene(MATERIALS).rods
+    (measured,) = stress_curves(rod_properties(lattice))
+    assert_allclose(np.interp([-10.0, 5.0], measured.change, measured.stress), [-0.034, 0.020], rtol=2e-3, atol=0)
+    # Beyond the last point there is no law.
+    assert np.array_equal(measured.inside, np.abs(measured.change) < 40.0)
+    assert 40.0 < measured.change[-1] <= 52.0
+    # The line of small strains is the slope of the curve, not that of Young's modulus.
+    near = np.abs(measured.change) < 0.5
+    assert_allclose(measured.stress[near], measured.linear[near], rtol=2e-2, atol=0)
+    (superelastic,) = stress_curves(rod_properties(wire))
+    steep = np.abs(superelastic.change) * 0.5e-3 < 0.008
+    assert_allclose(superelastic.stress[steep], superelastic.linear[steep], rtol=1e-12, atol=0)
+    assert [curve.component for curve in stress_curves(rod_properties(rubber))] == [1, 5]
+
+
+def test_every_curve_has_a_panel() -> None:
+    figure = plot_materials(read_scene(MATERIALS))
+    titles = [panel.get_title() for panel in figure.axes if panel.get_visible()]
+    assert titles == ["rubber: bending y", "rubber: extension", "wire: bending y", "lattice: bending y"]
+    words = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert words == ["small strains", "material", "beyond its law"]
+
+
+def test_linear_scene_has_no_figure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wire = ROOT / "examples" / "planar_strip.toml"
+    with pytest.raises(SceneError, match="the scene has none"):
+        plot_materials(read_scene(wire))
+    monkeypatch.setattr(sys, "argv", ["cosserat", "check", str(wire), "--plot", str(tmp_path / "laws.png")])
+    assert run(app) == REFUSED
+    assert not list(tmp_path.iterdir())
+    assert "the scene has none" in " ".join(capsys.readouterr().err.split())
+
+
+# Figures of concentric tubes: the line between stations.
+
+
+CURVATURE = 3.0
+LENGTH = 0.5
+
+
+def distance_from_arc(stations: int) -> float:
+    """Largest distance of the drawn line from the arc of a circle that its stations lie on, m."""
+    s = np.linspace(0.0, LENGTH, stations)
+    turned = CURVATURE * s
+    zeros = np.zeros(stations)
+    position = np.stack([(1.0 - np.cos(turned)) / CURVATURE, zeros, np.sin(turned) / CURVATURE], axis=1)
+    quaternion = np.stack([np.cos(turned / 2.0), zeros, np.sin(turned / 2.0), zeros], axis=1)
+    none = np.zeros((stations, 0))
+    line, frames = TubeShape(s, position, quaternion, none, none).between(np.linspace(0.0, LENGTH, 12 * stations))
+    assert_allclose(line[-1], position[-1], rtol=0, atol=1e-15)
+    assert_allclose(frames[-1], quaternion[-1], rtol=0, atol=1e-15)
+    radius = np.hypot(line[:, 0] - 1.0 / CURVATURE, line[:, 2])
+    return float(np.abs(radius - 1.0 / CURVATURE).max())
+
+
+def test_an_arc_is_drawn_to_order_four() -> None:
+    coarse = distance_from_arc(5)
+    assert coarse < 2e-5
+    assert np.log2(coarse / distance_from_arc(9)) == pytest.approx(4.0, abs=0.2)
+
+
+def test_a_station_off_by_rounding_belongs_to_both_sides() -> None:
+    distance = np.array([0.0, 0.1, 0.30000000000000004, 0.5])
+    assert _between(distance, 0.0, 0.3).tolist() == [True, True, True, False]
+    assert _between(distance, 0.3, 0.5).tolist() == [False, False, True, True]
+
+
+def test_each_tube_has_one_colour_in_space_and_beside() -> None:
+    figure = plot_tubes(solve(Pendulum(1.0).scene(1.0, tolerance=1e-4)))
+    in_space, beside = ({line.get_label(): line.get_color() for line in axes.get_lines()} for axes in figure.axes)
+    assert in_space["outer"] != in_space["inner"]
+    assert {name: in_space[name] for name in ("outer", "inner")} == {name: beside[name] for name in ("outer", "inner")}
+
+
+# The workspace figure: its panels, its points, the same bytes twice.
+
+
+POSE = ("rod.x", "rod.y", "rod.z", "rod.qw", "rod.qx", "rod.qy", "rod.qz")
+
+
+def swept(*, planar: bool, failing: bool = False) -> Sweep:
+    """Made-up results: 40 rows over two inputs."""
+    rng = np.random.default_rng(8)
+    values = rng.uniform(-1.0, 1.0, (40, 2 + 2 + 7))
+    if planar:
+        values[:, 5] = 0.0
+    outcomes = np.zeros(40, dtype=np.int64)
+    if failing:
+        outcomes[::4] = 4
+        values[::4, 4:] = np.nan
+    return Sweep(("a.b", "c.d"), ("iterations", "residual", *POSE), values, outcomes, {"title": "Made up"})
+
+
+def test_points_of_a_plane_are_one_map() -> None:
+    sweep = swept(planar=True)
+    figure = plot_sweep(sweep)
+    panel, bar = figure.axes
+    assert (panel.get_xlabel(), panel.get_ylabel(), bar.get_ylabel()) == ("x, m", "z, m", "a.b")
+    points = panel.collections[0].get_offsets()
+    assert_allclose(points, sweep.positions()[:, [0, 2]], rtol=0, atol=1e-12)
+    assert_allclose(panel.collections[0].get_array(), sweep["a.b"], rtol=0, atol=0)
+
+
+def test_points_in_space_are_seen_from_four_sides() -> None:
+    figure = plot_sweep(swept(planar=False), "rod.qw")
+    assert [axes.get_xlabel() for axes in figure.axes[:4]] == ["x, m", "x, m", "x, m", "y, m"]
+    assert figure.axes[1].name == "3d"
+    assert figure.axes[4].get_ylabel() == "rod.qw"
+
+
+def test_rows_that_failed_are_shown_among_the_inputs() -> None:
+    sweep = swept(planar=True, failing=True)
+    figure = plot_sweep(sweep, "outcome")
+    panel, inputs = figure.axes
+    assert len(panel.collections[0].get_offsets()) == 30
+    assert "10 without a result" in panel.get_title()
+    assert [text.get_text() for text in inputs.get_legend().get_texts()] == ["converged", "load stalled"]
+    assert_allclose(inputs.collections[1].get_offsets(), sweep.values[::4, :2], rtol=0, atol=0)
+
+
+def test_nothing_converged() -> None:
+    sweep = swept(planar=True)
+    nothing = Sweep(sweep.swept, sweep.found, sweep.values, np.full(40, 2), sweep.record)
+    assert "0 of 40 rows" in plot_sweep(nothing).axes[0].get_title()
+
+
+@pytest.mark.slow
+def test_the_same_sweep_gives_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a.png", "b.png"):
+        swept(planar=False, failing=True).write(tmp_path / name)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    with pytest.raises(SceneError):
+        swept(planar=True).write(tmp_path / "a.bmp")
+    with pytest.raises(KeyError, match="'none' is no column"):
+        plot_sweep(swept(planar=True), "none")
+
+
+# What figures and animations of modes show.
+
+
+ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.05}
+
+
+@pytest.fixture(scope="module")
+def modes() -> Modes:
+    """Bending in two planes, then torsion."""
+    soft = rod("kirchhoff", stiffness=ROUND, rotary_inertia=[0.0, 0.0, 0.02], damping={"bending_x": 1e-3})
+    return modes_of(scene(rods=[soft]), count=3)
+
+
+def test_one_panel_a_mode_in_the_plane_that_holds_it(modes: Modes) -> None:
+    figure = plot_modes(modes)
+    labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
+    bending = sorted(label for label, axes in zip(labels, figure.axes, strict=True) if axes.name != "3d")
+    assert bending == [("x, m", "z, m"), ("y, m", "z, m")]
+    assert [axes.name for axes in figure.axes].count("3d") == 1
+    for index, axes in enumerate(figure.axes):
+        assert axes.get_title() == mode_words(modes.modes[index], index)
+
+
+def test_modes_in_a_plane_that_stands_askew_are_drawn_in_it() -> None:
+    turned = {"quaternion": [np.cos(0.3), 0, 0, np.sin(0.3)]}
+    figure = plot_modes(modes_of(scene(rods=[rod("planar", base=turned)]), count=2))
+    assert [axes.name for axes in figure.axes] == ["rectilinear", "rectilinear"]
+    assert figure.axes[0].get_xlabel() == "along (0.825, 0.565, 0), m"
+
+
+def test_both_ends_of_a_swing_lie_about_the_equilibrium(modes: Modes) -> None:
+    axes = next(axes for axes in plot_modes(modes).axes if axes.get_xlabel() == "x, m" and axes.name != "3d")
+    rest, _, back, there = (line.get_xydata() for line in axes.get_lines()[:4])
+    assert_allclose((back + there) / 2, rest, rtol=0, atol=1e-12)
+    # A fifth of the rod's length, however large the mode's own numbers are.
+    assert_allclose(np.abs(there - rest).max(), 0.2 * 0.8, rtol=1e-9, atol=0)
+
+
+def test_words_of_a_damped_mode(modes: Modes) -> None:
+    words = [mode_words(mode, index) for index, mode in enumerate(modes.modes)]
+    damped = [text for text in words if "ζ" in text]
+    assert len(damped) == 1
+    assert all("Hz" in text for text in words)
+
+
+def test_figure_and_animation_are_written(modes: Modes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modes_plot, "PERIOD_FRAMES", 8)
+    modes.write(tmp_path / "m.png")
+    modes.write(tmp_path / "again.png")
+    assert (tmp_path / "m.png").read_bytes() == (tmp_path / "again.png").read_bytes()
+    torsion = next(index for index, axes in enumerate(plot_modes(modes).axes) if axes.name == "3d")
+    shares: list[float] = []
+    modes.animate(tmp_path / "m.gif", mode=torsion + 1, progress=shares.append)
+    assert shares[-1] == 1.0
+    with Image.open(tmp_path / "m.gif") as film:
+        # Sections that only turn are seen to turn.
+        assert film.n_frames == 8

@@ -15,7 +15,7 @@ from cosserat_casadi.plots.scenery import ACTUATOR_STYLES
 from cosserat_casadi.plots.sweep_plot import plot_sweep
 from cosserat_casadi.sweeps.outcome_table import LABELS
 from tests.plots.test_colours import linear_rgb
-from tests.plots.test_sweep_plot import swept
+from tests.plots.test_plot import swept
 from tests.scenes import HOOK, WEIGHT, WIND, push, scene
 
 CABLE = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 0.3, "offset": [0.01, 0.0]}

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, build, choose, scene_from_dict, solve
+from cosserat_casadi import Scene, SceneError, build, choose, discretise, read_scene, scene_from_dict, solve
 from cosserat_casadi.accuracy.fixing import unfixed
+from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.page.drawn_model import SECTIONS
 from cosserat_casadi.page.slider_ranges import sliders
 from cosserat_casadi.view.robot_session import ELSEWHERE
 from cosserat_casadi.view.view_session import PERIOD_FRAMES, ViewSession, opened
+from tests.conftest import ROOT
 from tests.page.pages_made import FEW
 from tests.scenes import rod
 
@@ -207,3 +209,26 @@ def test_no_error_is_told_where_nobody_asked_for_one(session: ViewSession) -> No
     assert session.accuracy()["within"] is None
     session.move([None, *session.first.inputs.tolist()[1:]])
     assert session.accuracy()["within"] is None
+
+
+# Wherever the sliders of a shipped robot go, the modes that it is viewed with are right.
+
+
+@pytest.mark.slow
+def test_a_template_is_right_all_over_its_sliders() -> None:
+    """Against finer modes; those of its own inputs, which lie in a plane, are off by a hundred times the tolerance."""
+    robot = read_scene(ROOT / "cosserat_casadi" / "cli" / "templates" / "tendon-robot.toml")
+    model = choose(robot).model
+    fine = build(robot, discretise(robot, 10, 20, "magnus8"))
+    own = build(robot, solve(robot).model.discretisation)
+    ends = sliders(model)
+    least = np.array([slider.least for slider in ends])
+    most = np.array([slider.most for slider in ends])
+    random = np.random.default_rng(3)
+    worst = 0.0
+    for share in random.random((6, len(ends))):
+        inputs = least + share * (most - least)
+        exact = solve(fine, inputs, estimate_error=False)
+        assert pose_distance(solve(model, inputs, estimate_error=False), exact) <= 1e-4
+        worst = max(worst, pose_distance(solve(own, inputs, estimate_error=False), exact))
+    assert worst > 1e-2
