@@ -54,6 +54,7 @@ def test_a_case_without_equilibrium_is_not_met() -> None:
 CURVATURE = "rod.intrinsic.curvature.y"
 
 
+@pytest.mark.slow
 def test_modes_are_chosen_for_parameters_as_for_inputs() -> None:
     """A rod that a parameter bends more wants more modes; the file says what they were chosen for."""
     curved = {**rod("planar"), "intrinsic": {"curvature": [0, [0.5, 0.0], 0]}}

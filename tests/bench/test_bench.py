@@ -146,6 +146,7 @@ def test_scene_without_equilibrium_has_no_reference(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_point_that_is_not_compiled_says_why() -> None:
     opened = session.Session.open(planar(), "/bin/false")
     (row,) = opened.measure([Candidate("magnus4", 3, 5)])

@@ -1,7 +1,7 @@
 """The catalogue of hard cases (a) – (k): (l) is in test_exact_derivatives.py.
 
-Of (d), (e) this is the deep arch; critical loads, branches and their elliptic integrals are in tests/paths/test_path.py,
-the column under its weight in tests/equilibrium/test_stability.py.
+Of (d), (e) this is the deep arch; critical loads, branches and their elliptic integrals are in
+tests/paths/test_path.py, the column under its weight in tests/equilibrium/test_stability.py.
 """
 
 from __future__ import annotations

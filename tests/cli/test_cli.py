@@ -717,6 +717,7 @@ def test_an_export_says_for_which_ranges_its_modes_were_chosen(wire: Path) -> No
     assert list(kept.accuracy.chosen_for) == verified["ranges"]
 
 
+@pytest.mark.slow
 def test_an_export_that_misses_the_tolerance_is_written_and_says_so(wire: Path) -> None:
     """Of modes that the scene fixes: exit code 3 as of ``solve``, a sentence, and words in header, README, manifest."""
     fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=6")

@@ -16,7 +16,6 @@ from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.codegen import cache, compiler
 from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
 from cosserat_casadi.codegen.compiler import find_compiler
-from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
@@ -156,7 +155,8 @@ def test_the_variable_names_the_folder(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @needs_compiler
-@pytest.mark.parametrize("damage", mostly_slow(["cut off", "empty", "text"], quick=["cut off"]))
+@pytest.mark.slow
+@pytest.mark.parametrize("damage", ["cut off", "empty", "text"])
 def test_a_damaged_library_is_compiled_anew(strip: Path, damage: str) -> None:
     first = load(strip).library
     sound = first.read_bytes()

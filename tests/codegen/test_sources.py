@@ -164,6 +164,7 @@ def test_program_of_the_readme_vs_python(library: Library, name: str) -> None:
     assert_allclose(np.array(printed.split(), dtype=float), wanted, rtol=0, atol=1e-9 * made.length)
 
 
+@pytest.mark.slow
 def test_shell_line_of_the_readme(library: Library, tmp_path: Path) -> None:
     """The first shell block builds and runs the demo, exactly as printed."""
     made = library("tiny")

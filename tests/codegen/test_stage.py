@@ -118,6 +118,7 @@ def test_sections_and_actuators_vs_model() -> None:
     assert_allclose(by_name["jac_tension_flexor_inputs"].full(), [[1.0]], rtol=0, atol=0)
 
 
+@pytest.mark.slow
 def test_second_derivatives_of_further_outputs_vs_model() -> None:
     """The length of a tendon and the pose of a section bend with x, the work of a tension is bilinear."""
     model = finger()

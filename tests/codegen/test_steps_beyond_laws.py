@@ -70,6 +70,7 @@ def stepped(made: Exported, moment: float, pressure: float, count: int, step: fl
     return taken
 
 
+@pytest.mark.slow
 def test_steps_of_a_law_vs_simulate(lattice: Exported) -> None:
     """The path of the tip is that of the simulator, and not that of a linear law."""
     ends = []

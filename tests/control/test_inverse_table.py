@@ -231,6 +231,7 @@ def test_distance_of_rows_counts_orientations() -> None:
     assert_allclose(found, [0.0, 0.5 / 0.8, 0.2], rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 def test_rounds_of_all_discretisations_are_told() -> None:
     """On a finer one Newton's method has next to nothing left to do: the optimiser worked before."""
     found = inverse(wanted({**POSITION, "position": [0.2, 0.05, 0.95]}, accuracy={"tolerance": 1e-10}))

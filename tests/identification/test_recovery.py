@@ -94,6 +94,7 @@ def measured(tentacle: Model) -> dict[str, FloatArray]:
     return dict(zip(("t1", "t2", "mx", "my", "mz", "tx", "ty", "tz"), columns.T, strict=True))
 
 
+@pytest.mark.slow
 def test_the_bound_is_named_and_the_others_go_on(tentacle: Model) -> None:
     data = measured(tentacle)
     found = identify(tentacle, {"middle": data, "tip": data})

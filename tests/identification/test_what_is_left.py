@@ -57,6 +57,7 @@ def tips(seed: int = 1) -> dict[str, FloatArray]:
     return {"M": MOMENTS, "x": positions[:, 0], "z": positions[:, 2]}
 
 
+@pytest.mark.slow
 def test_cases_without_equilibrium_at_the_start_are_tried_again() -> None:
     """So soft a strip is rolled up by the larger moments; by the smaller ones the modulus is found."""
     soft = {**STRIP["rods"][0], "material": {"youngs_modulus": 0.5e9, "poisson_ratio": 0.3}}

@@ -79,6 +79,7 @@ def test_numbers_of_disks_as_parameters() -> None:
     )
 
 
+@pytest.mark.slow
 def test_digits_of_c(tmp_path: Path) -> None:
     few = {"modes": 2, "nodes": 5}
     model = build(scene(ROW, rods=[rod("a", 1.0, "planar")], loads=[WEIGHT, PUSH], accuracy=few))

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import EquilibriumPath, SceneError, build, follow
 from cosserat_casadi.plots.path_plot import plot_path
 from cosserat_casadi.results.presentation import csv_of
+from tests.families import mostly_slow
 from tests.scenes import push, rod, scene
 
 
@@ -62,7 +63,7 @@ def test_a_path_that_ended_early_says_so_in_red(straight: EquilibriumPath) -> No
     assert title.get_color() == "#cc3311"
 
 
-@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+@pytest.mark.parametrize("suffix", mostly_slow(["png", "pdf", "svg"], quick=["svg"]))
 def test_files_are_the_same_every_time(buckled: EquilibriumPath, tmp_path: Path, suffix: str) -> None:
     first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
     buckled.write(first)

@@ -67,6 +67,7 @@ def test_all_rows_share_one_library_vs_arcs() -> None:
     assert found.holds
 
 
+@pytest.mark.slow
 def test_few_rows_are_solved_on_models_of_their_own() -> None:
     """The same names serve there: those of ``--set``, and those of parameters."""
     table = tolerances(3)

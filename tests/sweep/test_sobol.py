@@ -168,6 +168,7 @@ def test_designs_that_make_no_sense_are_refused(columns: dict[str, object], samp
         sobol_table(columns, samples)
 
 
+@pytest.mark.slow
 def test_rows_that_were_not_drawn_for_it_are_refused(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("push.force.x\n0.1\n")
     (tmp_path / "scene.toml").write_text(scene_text(SMALL))

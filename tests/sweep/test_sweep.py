@@ -226,6 +226,7 @@ def test_a_killed_sweep_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     assert sorted(file.name for file in tmp_path.iterdir()) == names
 
 
+@pytest.mark.slow
 def test_an_interrupt_says_that_the_sweep_can_go_on(tmp_path: Path) -> None:
     done = stopped(tmp_path, signal.SIGINT)
     assert done.returncode == 130

@@ -52,6 +52,7 @@ def test_rows_are_what_solve_finds() -> None:
     assert swept["stable"].tolist() == [1.0, 1.0, 0.0, 1.0]
 
 
+@pytest.mark.slow
 def test_other_numbers_of_tubes_are_swept_beside_inputs() -> None:
     curvatures = [10.0, 18.0, 18.0]
     turns = [1.0, 1.0, 2.0]

@@ -95,6 +95,7 @@ def test_a_number_that_is_none_is_said_and_forgotten(session: ContactSession) ->
     assert session.eigenvalues()[0] > 0
 
 
+@pytest.mark.slow
 def test_the_estimated_error_is_told(session: ContactSession, monkeypatch: pytest.MonkeyPatch) -> None:
     session.move([1.3, 0.0, 0.0])
     assert session.accuracy()["within"] is None
