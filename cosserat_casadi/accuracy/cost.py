@@ -76,21 +76,6 @@ class AffineLaw:
     entries: float
 
 
-@dataclass(frozen=True)
-class LoopsLaw:
-    """A law of C in loops: factors.
-
-    Attributes:
-        intervals: of the intervals, each as often as it has axes to turn about.
-        structure: of operations for sums and products of any rod.
-        loads: of operations for loads along the rod.
-    """
-
-    intervals: float
-    structure: float
-    loads: float
-
-
 STATEMENTS = AffineLaw(
     constant=194.0,
     of_intervals={PLANAR: 68.6, "magnus4": 122.0, "magnus6": 190.0, "magnus8": 398.0},
@@ -111,8 +96,11 @@ TIME_IN_COLUMNS = AffineLaw(
 )
 """µs of residual and Jacobian by columns."""
 
-TIME_IN_LOOPS = LoopsLaw(intervals=0.157, structure=0.167e-3, loads=0.0538e-3)
-"""µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py)."""
+LOOP_TIMES = {"intervals": 0.157, "structure": 0.167e-3, "loads": 0.0538e-3}
+"""µs of residual and Jacobian in loops, of rods near the limit (benchmarks/code_limit.py).
+
+Of each interval for each axis that it turns about, each operation for sums and products, each for loads along a rod.
+"""
 
 
 @dataclass(frozen=True)
@@ -261,8 +249,8 @@ def time_in_columns(terms: Terms) -> float:
 def time_in_loops(terms: Terms) -> float:
     """Time of residual and Jacobian in loops, µs."""
     operations = terms.operations
-    of_rod = TIME_IN_LOOPS.intervals * terms.intervals + TIME_IN_LOOPS.structure * operations.structure
-    of_loads = TIME_IN_LOOPS.loads * (operations.follower + operations.couple)
+    of_rod = LOOP_TIMES["intervals"] * terms.intervals + LOOP_TIMES["structure"] * operations.structure
+    of_loads = LOOP_TIMES["loads"] * (operations.follower + operations.couple)
     return of_rod + of_loads
 
 
