@@ -131,6 +131,20 @@ def _write_script(path: Path, text: str) -> None:
     path.chmod(0o755)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """The second process of a run begins with the last folders: each compiles half of the files for both."""
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw1" and config.args_source is pytest.Config.ArgsSource.TESTPATHS:
+        folders = [path for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"]
+        places = [*folders, *(ROOT / "tests").glob("test_*.py")]
+        config.args = sorted(map(str, places), reverse=True)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """All processes of a run have the tests in one order, wherever they began."""
+    items.sort(key=lambda item: item.path)
+
+
 def pytest_collection_finish() -> None:
     """Thousands of tests live until the end: the garbage collector need not look at them again and again."""
     gc.collect()
