@@ -31,7 +31,7 @@ MOST_HALVINGS = 12
 
 
 STEEPER = 2.0
-"""How much faster than between any two of them a guard is thought to fall, where it may fall and rise between."""
+"""How much faster than between looks next to them a guard is thought to fall, where it may fall and rise between."""
 
 GOLDEN = (3.0 - 5.0**0.5) / 2.0
 """Share of an interval at which golden sections are looked at."""
@@ -51,8 +51,9 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
         values.append(guards(step.at(float(time))))
         if np.any(values[-1] < -THROUGH):
             break
-    # The looks are at even distances.
-    falls = STEEPER * np.abs(np.diff(values, axis=0)).max(axis=0)
+    # The looks are at even distances, and what turns between two of them is steep between one of them and the next.
+    changes = np.pad(np.abs(np.diff(values, axis=0)), ((1, 1), (0, 0)))
+    steepest = STEEPER * np.max([changes[:-2], changes[1:-1], changes[2:]], axis=0)
     for number, (before, after) in enumerate(pairwise(values)):
         earlier, later = float(times[number]), float(times[number + 1])
         found = []
@@ -60,8 +61,9 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
             fallen: tuple[float, float] | None = (later, after[k])
             if not after[k] < -THROUGH:
                 fallen = None
-                if min(before[k], after[k]) > THROUGH and before[k] + after[k] < falls[k]:
-                    fallen = _dip(step, guards, k, (earlier, later), falls[k] / (later - earlier))
+                falls = steepest[number, k]
+                if min(before[k], after[k]) > THROUGH and before[k] + after[k] < falls:
+                    fallen = _dip(step, guards, k, (earlier, later), falls / (later - earlier))
             if fallen is not None:
                 found.append((_zero(step, guards, k, (earlier, before[k]), fallen), k))
         if found:
