@@ -76,7 +76,7 @@ class Result:
         return _presentation().figure_of(self, **options)
 
     def animate(self, path: Any, **options: Any) -> Any:
-        """Draw a motion, a path of rods or a mode as a film into a file, whole or not at all; the suffix says which.
+        """Draw a motion, a path or a mode as a film into a file, whole or not at all; the suffix says which.
 
         Args:
             path: of the file, a string or a Path: ``.gif`` or ``.mp4``; of a motion ``.glb`` or ``.usda`` too.

@@ -64,6 +64,21 @@ def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json",
         raise SceneError(*problems)
 
 
+def check_animation(animation: Path | None, problems: list[Problem], *, meshes: bool = False) -> None:
+    """Add the faults of the file of an animation; ``meshes`` says whether it may be a file of meshes."""
+    if animation is None:
+        return
+    with collect_problems(problems):
+        check_writable(animation, "--animation")
+    if meshes and animation.suffix.lower() in MESHES:
+        return
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.animation import check_animation_path
+
+    with collect_problems(problems):
+        check_animation_path(animation, "--animation")
+
+
 def check_file(file: Path | None, option: str, suffix: str) -> None:
     """Refuse a file that cannot be written, or whose suffix promises another format than the one it would have.
 

@@ -176,12 +176,38 @@ class AnimationFrames:
 def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`animate_motion`."""
     check_animation_path(file)
-    path = Path(file)
     film = _Film(frames)
-    count = len(frames.words)
-    with write_errors(path), _writer_of(film.figure, path.suffix.lower(), frames.interval) as (writer, drawn):
+    save_film(film.figure, film.show, len(frames.words), frames.interval, file, progress=progress)
+
+
+def save_film(
+    figure: Any,
+    show: Callable[[int], None],
+    count: int,
+    interval: float,
+    file: str | Path,
+    *,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Draw a figure that changes into a file, whole or not at all; errors as of :func:`animate_motion`.
+
+    Args:
+        figure: of matplotlib.
+        show: changes the figure to a frame, from 0.
+        count: number of frames.
+        interval: time from frame to frame, s.
+        file: its suffix is one of FORMATS.
+        progress: receives the share of the frames that are drawn.
+    """
+    check_animation_path(file)
+    path = Path(file)
+    # Laid out once: a layout for every frame would let the axes jump about.
+    show(0)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    with write_errors(path), _writer_of(figure, path.suffix.lower(), interval) as (writer, drawn):
         for index in range(count):
-            film.show(index)
+            show(index)
             writer.grab_frame()
             if progress is not None:
                 progress((index + 1) / count)
@@ -311,10 +337,6 @@ class _Film:
         # One rod alone needs no name.
         if len(handles) > 1:
             self.figure.legend(handles, labels, loc="outside right center", fontsize=9)
-        self.show(0)
-        # Laid out once: a layout for every frame would let the axes jump about.
-        self.figure.draw_without_rendering()
-        self.figure.set_layout_engine("none")
 
     def show(self, index: int) -> None:
         """Lead all lines to a frame, and write its words over them."""

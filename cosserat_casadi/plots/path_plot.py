@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -91,10 +92,7 @@ def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[
         AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
         WriteError: the file cannot be written, as on a full disk.
     """
-    count = len(path.factor)
-    if not count:
-        raise SceneError(Problem("path", "the path has no point: it was not started"))
-    shown = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
+    shown = shown_points(len(path.factor))
     stability = _stability(path)[shown]
     frames = AnimationFrames(
         model=path.model,
@@ -105,9 +103,25 @@ def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[
             for factor, style in zip(path.factor[shown], stability, strict=True)
         ],
         colour=PLAIN_TEXT if path.converged else FAILURE,
-        interval=max(1 / FRAME_RATE, SHOWN_SECONDS / len(shown)),
+        interval=path_interval(shown),
     )
     save_frames(frames, file, progress=progress)
+
+
+def shown_points(count: int) -> npt.NDArray[np.int64]:
+    """Numbers of the points of a path that its film shows, at most MOST_FRAMES of them.
+
+    Raises:
+        SceneError: the path has no point.
+    """
+    if not count:
+        raise SceneError(Problem("path", "the path has no point: it was not started"))
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(np.int64))
+
+
+def path_interval(shown: npt.NDArray[np.int64]) -> float:
+    """Time from frame to frame of the film of a path, s."""
+    return max(1 / FRAME_RATE, SHOWN_SECONDS / len(shown))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
-"""Figures of concentric tubes: equilibria in space with the angles along them, and a path with its snaps.
+"""Figures of concentric tubes: equilibria in space with the angles along them, a path with its snaps, its film.
 
 matplotlib is an extra and is imported inside functions only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
+from cosserat_casadi.plots.animation import SIZE, check_animation_path, save_film
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.path_plot import path_interval, shown_points
 from cosserat_casadi.plots.scenery import draw_targets
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
@@ -103,8 +106,9 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
         label = None
 
 
-def _draw_nested(canvas: Canvas, solution: TubeSolution) -> None:
-    """The tubes of an equilibrium, each over the tubes that enclose it and thinner."""
+def _draw_nested(canvas: Canvas, solution: TubeSolution) -> dict[int, Any]:
+    """Draw the tubes of an equilibrium, each over the tubes that enclose it and thinner; their lines by number."""
+    lines = {}
     reaches = solution.robot.translations(solution.inputs)
     stroke = STROKES[solution.stable]
     # A tube that encloses another one ends before it.
@@ -112,7 +116,8 @@ def _draw_nested(canvas: Canvas, solution: TubeSolution) -> None:
         line = _centre_line(solution, 0.0, float(reaches[index]))
         width = WIDEST * (len(reaches) - rank) / len(reaches)
         name = solution.robot.names[index]
-        canvas.line(line, color=rod_colour(index), linestyle=stroke, linewidth=width, label=name)
+        lines[index] = canvas.line(line, color=rod_colour(index), linestyle=stroke, linewidth=width, label=name)
+    return lines
 
 
 def _centre_line(solution: TubeSolution, start: float, end: float) -> FloatArray:
@@ -181,6 +186,46 @@ def plot_tube_path(path: TubePath) -> Any:
     left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
     add_title(figure, path.model.scene.title)
     return figure
+
+
+def animate_tube_path(path: TubePath, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Draw the equilibria of a path one after the other into a file; a tube is dashed where they are unstable.
+
+    Args:
+        path: what to show.
+        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        progress: receives the share of the frames that are drawn.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS, or the path has no point.
+        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
+        WriteError: the file cannot be written, as on a full disk.
+    """
+    shown = shown_points(len(path.solutions))
+    check_animation_path(file)
+    solutions = [path.solutions[index] for index in shown]
+    points = np.concatenate([solution.shape.position for solution in solutions])
+    figure = figure_class()(figsize=SIZE, layout="constrained")
+    canvas = Canvas(figure.add_subplot(projection="3d"), None, float(np.ptp(points, axis=0).max()))
+    tips = np.array([solution.tip().position for solution in solutions])
+    trail = canvas.line(tips[:1], color="0.55", linewidth=1.2)
+    tubes = _draw_nested(canvas, solutions[0])
+    canvas.label_axes()
+    canvas.equalise(points)
+    figure.legend(handles=list(tubes.values()), loc="outside right center", fontsize=9)
+    add_title(figure, path.model.scene.title)
+    colour = PLAIN_TEXT if path.converged else FAILURE
+
+    def show(frame: int) -> None:
+        solution = solutions[frame]
+        canvas.move(trail, tips[: frame + 1])
+        for index, reach in enumerate(solution.robot.translations(solution.inputs)):
+            canvas.move(tubes[index], _centre_line(solution, 0.0, float(reach)))
+            tubes[index].set_linestyle(STROKES[solution.stable])
+        words = f"{path.name} = {path.values[shown[frame]]:.4g} {path.unit}, {VERDICTS[solution.stable]}"
+        canvas.axes.set_title(words, fontsize=10, color=colour)
+
+    save_film(figure, show, len(shown), path_interval(shown), file, progress=progress)
 
 
 def _subtitle(path: TubePath) -> str:

@@ -144,6 +144,7 @@ PRESENTATIONS = {
         facts="results.facts:tube_path_facts",
         figure="plots.tubes_plot:plot_tube_path",
         table="results.tubes_file:tube_path_table",
+        film="plots.tubes_plot:animate_tube_path",
     ),
 }
 """Presentations by the class of the result; a class without an entry is presented as its base."""
@@ -230,8 +231,8 @@ def animate(result: Any, path: str | Path, **options: Any) -> Path:
     """
     film = presentation_of(result).film
     if not film:
-        problem = f"{type(result).__name__} has no film"
-        raise SceneError(Problem("animate", problem, "motions, modes and paths of rods have one; plot() is a figure"))
+        problem = f"{type(result).__name__} has no film: it holds no shapes one after the other"
+        raise SceneError(Problem("animate", problem, "motions, modes and paths have one; plot() is a figure"))
     _function(film)(result, path, **options)
     return Path(path)
 

@@ -111,6 +111,7 @@ def test_a_motion_that_ended_early_says_so(short: Motion) -> None:
     drawn = animation._Film(
         animation.motion_frames(replace(short, outcome=MotionOutcome.NOT_FINITE), frame_times(short), 1.0)
     )
+    drawn.show(0)
     assert drawn.figure.axes[0].get_title() == "t = 0.00 s, not converged"
 
 

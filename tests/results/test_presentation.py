@@ -147,7 +147,7 @@ def tube_path() -> TubePath:
         model=end.model,
         name=next(iter(end.robot.columns)),
         base=end.inputs,
-        change=np.zeros_like(end.inputs),
+        change=0.1 * np.eye(end.inputs.size)[0],
         outcome=path().outcome,
         message=path().message,
         factor=np.array([0.0, 1.0]),
@@ -321,14 +321,14 @@ def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
         sweep().to_xarray()
 
 
-@pytest.mark.parametrize("name", ["EquilibriumPath", pytest.param("Motion", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["EquilibriumPath", "TubePath", pytest.param("Motion", marks=pytest.mark.slow)])
 def test_a_film_is_written_and_named(name: str, tmp_path: Path) -> None:
     result = MAKERS[name]()
     assert result.animate(str(tmp_path / "film.gif")) == tmp_path / "film.gif"
     with Image.open(tmp_path / "film.gif") as film:
         pictures = film.n_frames
     # A frame of a path is a point of it; those of a motion follow the clock.
-    assert pictures == (len(result.factor) if name == "EquilibriumPath" else 1 + 25 * result.times[-1] // 1)
+    assert pictures == (1 + 25 * result.times[-1] // 1 if name == "Motion" else len(result.factor))
     with pytest.raises(SceneError, match=r"film\.doc has no suffix of an animation .*use one of \.gif"):
         result.animate(tmp_path / "film.doc")
 
@@ -343,6 +343,8 @@ def test_a_film_of_meshes_is_that_of_write(tmp_path: Path) -> None:
 def test_what_has_no_film_says_so(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="Solution has no film"):
         solution().animate(tmp_path / "film.gif")
+    with pytest.raises(SceneError, match="the path has no point"):
+        replace(tube_path(), factor=np.zeros(0), x=np.zeros((0, 2))).animate(tmp_path / "film.gif")
     with pytest.raises(SceneError, match="the motion has no state"):
         without_start().animate(tmp_path / "film.gif")
     with pytest.raises(SceneError, match="from 1 to 2"):

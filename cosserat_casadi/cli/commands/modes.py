@@ -12,6 +12,7 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
     Settings,
+    check_animation,
     check_inputs_stay,
     check_outputs,
     collect_problems,
@@ -19,7 +20,6 @@ from cosserat_casadi.cli.options import (
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.motion import print_modes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.files import check_writable
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
@@ -74,15 +74,7 @@ def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> N
 def _check_files(output: Path | None, plot: Path | None, animation: Path | None, problems: list[Problem]) -> None:
     with collect_problems(problems):
         check_outputs(output, plot)
-    if animation is None:
-        return
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.animation import check_animation_path
-
-    with collect_problems(problems):
-        check_writable(animation, "--animation")
-    with collect_problems(problems):
-        check_animation_path(animation, "--animation")
+    check_animation(animation, problems)
 
 
 def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) -> list[Path]:

@@ -15,12 +15,13 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
     Settings,
+    check_animation,
     check_file,
     check_inputs_stay,
     check_outputs,
     collect_problems,
 )
-from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.progress import share_display, solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.cli.reports.tubes import print_tube_path
 from cosserat_casadi.errors import Problem, SceneError
@@ -81,6 +82,7 @@ def path(
     output: Annotated[Path | None, typer.Option(help="Write the path (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw load against displacement here: .png, .pdf or .svg.")] = None,
     table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
+    animation: Annotated[Path | None, typer.Option(help="Draw the shapes in motion here: .gif or .mp4.")] = None,
 ) -> None:
     """Follow equilibria while an input moves, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
     # Every check adds to the list; the last one raises, so that all faults are seen at once.
@@ -91,8 +93,11 @@ def path(
         check_outputs(output, plot)
     with collect_problems(problems):
         check_file(table, "--csv", ".csv")
+    check_animation(animation, problems)
     with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot, "--csv": table}, scene, settings)
+        check_inputs_stay(
+            {"--output": output, "--plot": plot, "--csv": table, "--animation": animation}, scene, settings
+        )
     checked_scene, way = _check_way(scene, tuple(settings or ()), name, to, ranges or [], problems)
     # The branch that follow leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0
@@ -109,6 +114,10 @@ def path(
         )
 
     written = write_all(followed, output, table, plot)
+    # A path that was not started has nothing to show.
+    if animation is not None and len(followed.factor):
+        with share_display("Drawing the animation") as show_share:
+            written.append(followed.animate(animation, progress=show_share))
     if isinstance(followed, TubePath):
         print_tube_path(Console(), followed, written)
     else:

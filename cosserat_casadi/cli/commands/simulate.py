@@ -12,6 +12,7 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     SceneFile,
     Settings,
+    check_animation,
     check_inputs_stay,
     check_outputs,
     collect_problems,
@@ -128,17 +129,7 @@ def _check_files(
         check_outputs(None, plot)
     if not speed > 0.0:
         problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
-    if animation is None:
-        return
-    with collect_problems(problems):
-        check_writable(animation, "--animation")
-    if animation.suffix.lower() in MESHES:
-        return
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.animation import check_animation_path
-
-    with collect_problems(problems):
-        check_animation_path(animation, "--animation")
+    check_animation(animation, problems, meshes=True)
 
 
 def _check_scene(
