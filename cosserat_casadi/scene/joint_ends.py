@@ -45,7 +45,8 @@ def end_faults(ends: Any) -> Iterator[Fault]:
         return
     rods = [end for end in ends if "rod" in end]
     if not rods:
-        yield Fault((), "joins no rod", "one end at least is a section of a rod: { rod = …, at = … }")
+        remedy = 'one end at least is a section of a rod, between two bodies of a short one with strain = ["torsion"]'
+        yield Fault((), "joins no rod", remedy)
     elif len(rods) == 2 and all(_at(end) == 0 for end in rods):
         yield Fault((), "joins two bases", "start one of the rods from its other end")
     for number, end in enumerate(ends):

@@ -261,14 +261,24 @@ inputs = ["push.force", "cable.tension"]
         return self.simulation.start == "unloaded"
 
     def _swings(self, joint: Joint) -> bool:
-        """Whether a joint at a base lets its rod, and all rods on it, move without straining any."""
+        """Whether a joint at a base lets its rod, and all rods and bodies on it, move without straining any."""
         if not joint.holds_base or joint.keeps_place:
             return False
-        moved = {joint.rod}
-        while more := {rod.name for rod in self.rods if rod.base.rod in moved} - moved:
-            moved |= more
-        holders = (*self.supports, *(other for other in self.joints if not other.holds_base))
-        return not any(holder.rod in moved for holder in holders)
+        others = [other for other in self.joints if other is not joint]
+        rods = {joint.rod}
+        bodies: set[str] = set()
+        more = True
+        while more:
+            before = len(rods) + len(bodies)
+            rods |= {rod.name for rod in self.rods if rod.base.rod in rods}
+            bodies |= {other.body for other in others if other.body is not None and other.rod in rods}
+            rods |= {other.rod for other in others if other.holds_base and other.body in bodies}
+            more = len(rods) + len(bodies) > before
+        supported = any(support.rod in rods for support in self.supports)
+        tied = [other for other in others if not other.holds_base]
+        in_world = any(other.rod in rods for other in tied if other.body is None)
+        by_other_rods = any(other.rod not in rods for other in tied if other.body in bodies)
+        return not (supported or in_world or by_other_rods)
 
     def with_motion_inputs(self) -> Scene:
         """The scene in which the inputs that its motions move are free as well, behind its free inputs."""

@@ -8,8 +8,9 @@ import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, solve
+from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, simulate, solve
 
 LENGTH = 0.5
 GRAVITY = 9.81
@@ -145,3 +146,46 @@ def test_a_rod_that_spins_on_a_ball_without_inertia_is_refused() -> None:
         scene_from_dict(scene([bar], [ball], simulation=simulation))
     scene_from_dict(scene([{**bar, "rotary_inertia": [0, 0, 1e-6]}], [ball], simulation=simulation))
     scene_from_dict(scene([bar], [hinge()], simulation=simulation))
+
+
+@pytest.mark.parametrize(
+    ("tables", "swings"),
+    [
+        (TWO, True),
+        (ON_A_BODY, True),
+        # The whole of it swings when the first rod is hinged too.
+        ({**ON_A_BODY, "joints": [hinge(), {"rod": "a", "body": "p", "kind": "fixed"}, hinge("b", body="p")]}, True),
+        # Springs, clamps, the world or another rod hold it.
+        (scene([link("a", base=DOWN)], [hinge(stiffness=0.1)]), False),
+        (scene([link("a", base=DOWN)], [{"rod": "a", "at": 0.0, "kind": "fixed"}]), False),
+        (scene([link("a", base=DOWN)], [hinge(), {"rod": "a", "kind": "fixed", "position": [0, 0, 0.5]}]), False),
+        (
+            {
+                **ON_A_BODY,
+                "rods": [link("a", base=DOWN), link("b", base={"position": [0.1, 0, 1], "tangent": [0, 0, -1]})],
+                "joints": [hinge(), *({"rod": rod, "body": "p", "kind": "spherical"} for rod in "ab")],
+            },
+            False,
+        ),
+    ],
+)
+def test_what_swings_begins_unloaded(tables: dict[str, Any], swings: bool) -> None:
+    assert scene_from_dict({**tables, "simulation": {"duration": 0.1}}).starts_unloaded is swings
+
+
+def test_a_bob_on_a_link_swings_as_the_pendulum() -> None:
+    """A body at its end does not hold a hinged rod: let go from the side both fall, (m ℓ² + I) θ̈ = m g ℓ cos θ."""
+    rod = link("a", strain=["torsion"], base={"tangent": [1, 0, 0]})
+    rod["material"]["density"] = 1e-3
+    bob = {"name": "bob", "mass": 1.0, "inertia": [0.01, 0.01, 0.01]}
+    joints = [hinge(), {"rod": "a", "body": "bob", "kind": "fixed"}]
+    simulation = {"duration": 0.5, "tolerance": 1e-5, "frames": 6}
+    tables = scene([rod], joints, bodies=[bob], accuracy={"modes": 1}, simulation=simulation)
+    motion = simulate(scene_from_dict(tables))
+    assert motion.converged
+    speed_up = GRAVITY * LENGTH / (LENGTH**2 + 0.01)
+    fall = solve_ivp(
+        lambda _, y: [y[1], speed_up * np.cos(y[0])], (0, 0.5), [0, 0], t_eval=motion.times, rtol=1e-10, atol=1e-12
+    )
+    wanted = LENGTH * np.column_stack([np.cos(fall.y[0]), -np.sin(fall.y[0])])
+    assert_allclose(motion.body("bob").position[:, [0, 2]], wanted, rtol=0, atol=2e-5 * LENGTH)

@@ -441,9 +441,10 @@ def test_files_hold_what_python_says(tmp_path: Path) -> None:
     assert data["complete"]
     assert (tmp_path / "all.png").stat().st_size > 10_000
     line = ("path", "tubes.toml", "--input", "inner.rotation", "--to", "6", "--csv", "p.csv", "--plot", "p.svg")
-    ended = cosserat(*line, "--output", "p.json", cwd=tmp_path)
+    ended = cosserat(*line, "--output", "p.json", "--animation", "p.gif", cwd=tmp_path)
     assert ended.returncode == 0
     assert "limit" in ended.stdout
+    assert "p.gif" in ended.stdout and (tmp_path / "p.gif").read_bytes()[:3] == b"GIF"
     path = follow(read, "inner.rotation", 6.0)
     assert json.loads((tmp_path / "p.json").read_text()) == path.to_dict()
     rows = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, dtype=None, encoding=None)
