@@ -25,8 +25,8 @@ def test_python_of_the_readme_finds_an_equilibrium() -> None:
     assert "Equilibrium found" in run_python(code)
 
 
-def test_there_are_four_commands() -> None:
-    assert [line.split()[1] for line in commands(README)] == ["check", "solve", "simulate", "export"]
+def test_there_are_five_commands() -> None:
+    assert [line.split()[1] for line in commands(README)] == ["examples", "check", "solve", "simulate", "export"]
 
 
 def cells(line: str) -> list[str]:

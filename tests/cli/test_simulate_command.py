@@ -189,6 +189,15 @@ def test_a_motion_that_was_not_started_has_no_picture(folder: Path, command: Cal
     assert new_files(folder) == ["m.csv"]
 
 
+def test_why_a_motion_was_not_started_is_told_once(
+    folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    reason = "No equilibrium found: the rod buckles."
+    unstarted = replace(without_start(), message=f"{without_start().message} {reason}", start=reason)
+    assert command("wire.toml", simulate=lambda scene, **_: unstarted) == NOT_FOUND
+    assert " ".join(capsys.readouterr().out.split()).count(reason) == 1
+
+
 def test_warnings_go_to_standard_error(
     folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:

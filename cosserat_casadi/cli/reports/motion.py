@@ -56,7 +56,8 @@ OF_PAIRS = {"cables: taut": ("taut", "slack"), "joints: at a stop": ("stop_hit",
 
 def _merit_sentences(motion: Motion) -> Iterator[str]:
     """The steps of the motion, its accuracy, and its discretisation."""
-    if motion.start:
+    # Why there was no start is told by the outcome.
+    if motion.start and motion.start not in motion.message:
         yield f"start: {motion.start}"
     yield f"steps: {_step_words(motion)}"
     if np.isfinite(motion.error_estimate):
