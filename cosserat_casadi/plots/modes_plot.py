@@ -53,6 +53,9 @@ EQUILIBRIUM = "0.65"
 PERIOD_FRAMES = 50
 """Frames of one period of an animation."""
 
+BELOW = 0.2
+"""Room for the labels of the lowest panels, which reach out of them in space, inches."""
+
 
 def plot_modes(modes: Modes) -> Any:
     """Figure of modes: one panel each with the equilibrium in grey and both ends of the swing.
@@ -63,9 +66,10 @@ def plot_modes(modes: Modes) -> Any:
     count = len(modes.modes)
     columns = max(1, min(COLUMNS, count))
     rows = max(1, ceil(count / columns))
-    figure = figure_class()(figsize=(3.6 * columns, 3.5 * rows + 0.6), layout="constrained")
+    height = 3.5 * rows + 0.6 + BELOW
+    figure = figure_class()(figsize=(3.6 * columns, height), layout="constrained")
     # Labels of axes in space reach out of their panels.
-    figure.get_layout_engine().set(wspace=0.08, hspace=0.08)
+    figure.get_layout_engine().set(wspace=0.08, hspace=0.08, rect=(0.0, BELOW / height, 1.0, 1.0 - BELOW / height))
     add_title(figure, modes.model.scene.title)
     if not count:
         figure.text(0.5, 0.5, modes.message, color=FAILURE, ha="center", wrap=True)
