@@ -49,6 +49,9 @@ DPI = {".gif": 80, ".mp4": 200}
 MARGIN = 0.08
 """Free room around the motion, relative to its extent."""
 
+BELOW = 0.04
+"""Room below the axes, whose labels reach out of the layout in space, relative to the picture."""
+
 TURNING = np.linspace(0.0, 1.0, 11)
 """Abscissae of the sections whose axes are drawn."""
 
@@ -203,6 +206,7 @@ def save_film(
     path = Path(file)
     # Laid out once: a layout for every frame would let the axes jump about.
     show(0)
+    figure.get_layout_engine().set(rect=(0.0, BELOW, 1.0, 1.0 - BELOW))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     with write_errors(path), _writer_of(figure, path.suffix.lower(), interval) as (writer, drawn):
