@@ -18,7 +18,7 @@ from cosserat_casadi.numerics import consistent_start, stage_newton, step_matric
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
-MOTION_FILES = ("motion.h", "elimination.c", "step.c", "step_sensitivity.c", "motion.c")
+MOTION_FILES = ("motion.h", "elimination.c", "stage_newton.c", "step.c", "step_sensitivity.c", "motion.c")
 """Files of the folder ``c`` that a library with motions includes."""
 
 STEP_TOLERANCE = 1e-11
@@ -129,30 +129,30 @@ def _method() -> dict[str, str]:
     method = radau(STAGES)
     eigenvalue = complex(method.eigenvalues[0])
     return {
-        "stage_nodes": _initialiser(method.nodes),
-        "stage_table": _initialiser(method.matrix),
-        "stage_table_squared": _initialiser(method.matrix_squared),
-        "stage_polynomials": _initialiser(method.polynomials),
-        "middle_values": _initialiser(method.values_at(0.5)),
-        "middle_integrals": _initialiser(method.integrals_at(0.5)),
-        "middle_double_integrals": _initialiser(method.double_integrals_at(0.5)),
-        "rate": _initialiser(_pairs([1.0 / eigenvalue])[0]),
-        "share": _initialiser(_pairs([1.0 / eigenvalue**2])[0]),
-        "to_eigenvector": _initialiser(_pairs(method.to_eigenvectors[0])),
-        "from_eigenvector": _initialiser(_pairs(method.from_eigenvectors[:, 0])),
+        "stage_nodes": initialiser(method.nodes),
+        "stage_table": initialiser(method.matrix),
+        "stage_table_squared": initialiser(method.matrix_squared),
+        "stage_polynomials": initialiser(method.polynomials),
+        "middle_values": initialiser(method.values_at(0.5)),
+        "middle_integrals": initialiser(method.integrals_at(0.5)),
+        "middle_double_integrals": initialiser(method.double_integrals_at(0.5)),
+        "rate": initialiser(pairs([1.0 / eigenvalue])[0]),
+        "share": initialiser(pairs([1.0 / eigenvalue**2])[0]),
+        "to_eigenvector": initialiser(pairs(method.to_eigenvectors[0])),
+        "from_eigenvector": initialiser(pairs(method.from_eigenvectors[:, 0])),
     }
 
 
-def _pairs(values: Sequence[complex] | np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def pairs(values: Sequence[complex] | np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Real and imaginary parts side by side."""
     return np.array([[complex(value).real, complex(value).imag] for value in values])
 
 
-def _initialiser(values: np.ndarray[Any, Any]) -> str:
-    """An array as an initialiser in C."""
+def initialiser(values: np.ndarray[Any, Any], real: str = "solver_real") -> str:
+    """An array of real numbers as an initialiser in C."""
     if values.ndim == 0:
-        return f"(solver_real){float(values)!r}"
-    return "{" + ", ".join(_initialiser(value) for value in values) + "}"
+        return f"({real}){float(values)!r}"
+    return "{" + ", ".join(initialiser(value, real) for value in values) + "}"
 
 
 def _entry_tables(motion: MotionInC) -> str:

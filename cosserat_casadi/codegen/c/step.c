@@ -1,8 +1,8 @@
 /* A step of a motion by Radau IIA with two stages, and what is solved for it. See the library's header for what each
    public function promises.
 
-   cosserat_casadi/numerics holds the same algorithm in Python: stage_newton.py, step_matrices.py, secant_updates.py. The
-   unknowns of a stage are the accelerations of coordinates, and the values of multipliers and tensions. */
+   cosserat_casadi/numerics/step_matrices.py holds the linear system in Python, stage_newton.c Newton's method. The unknowns
+   of a stage are the accelerations of coordinates, and the values of multipliers and tensions. */
 
 /* ---- Equations ---- */
 
@@ -92,17 +92,6 @@ static void stage_at(const step_start *start, int stage, const real *unknowns, i
 
 static real larger(real a, real b) { return a > b ? a : b; }
 
-/* The largest change of position, over the length, of a vector of changes; not finite where one of them is not. */
-static real weighted_length(const real *change, int count) {
-  real largest = 0;
-  for (int i = 0; i < count; i++) {
-    const real size = ABSOLUTE(change[i]) * DISPLACEMENTS[i % N];
-    if (!isfinite(size)) return size;
-    largest = larger(largest, size);
-  }
-  return largest;
-}
-
 /* The matrix of the step at the eigenvalue of the method, K + p C + p^2 M; it has no units of time (C. L. Bottasso et al.,
    Multibody System Dynamics 19, 2008). Zero where it is singular to rounding. */
 static int factorise_step(const real *matrices, real size, const stage_factors *found, workspace *work) {
@@ -143,62 +132,6 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
   }
 }
 
-/* Changes of h v that belong to changes of h^2 a. */
-static void velocity_changes(const real *corrections, real *changes) {
-  for (int i = 0; i < N; i++) {
-    for (int stage = 0; stage < STAGES; stage++) {
-      changes[stage * N + i] = STAGE_MATRIX[stage][0] * corrections[i] + STAGE_MATRIX[stage][1] * corrections[N + i];
-    }
-  }
-}
-
-static real dot_of_stages(const real *a, const real *b) { return dot(a, b) + dot(a + N, b + N); }
-
-/* Broyden's updates, applied from the corrections taken so far: C. T. Kelley, Iterative Methods for Linear and Nonlinear
-   Equations, SIAM 1995, section 7.3. */
-static void apply_step_updates(int count, real *corrections, const workspace *work) {
-  for (int k = 0; k + 1 < count; k++) {
-    const real share = dot_of_stages(work->duals[k], corrections);
-    for (int i = 0; i < STAGED; i++) corrections[i] += share * work->taken[k + 1][i];
-  }
-  if (count > 0) {
-    /* The last update contains what it is applied for. */
-    const real share = 1 - dot_of_stages(work->duals[count - 1], corrections);
-    for (int i = 0; i < STAGED; i++) corrections[i] /= share;
-  }
-}
-
-/* Remembers a correction for the updates, with the changes of h v that belong to it, which are written over. */
-static void take_correction(int count, const real *corrections, real *changes, workspace *work) {
-  real *dual = work->duals[count];
-  real square = 0;
-  memcpy(work->taken[count], corrections, STAGED * sizeof *corrections);
-  for (int i = 0; i < STAGED; i++) {
-    const real weight = DISPLACEMENTS[i % N];
-    changes[i] *= weight;
-    square += changes[i] * changes[i];
-    changes[i] *= weight;
-  }
-  for (int i = 0; i < N; i++) {
-    for (int stage = 0; stage < STAGES; stage++) {
-      const real sum = STAGE_MATRIX[0][stage] * changes[i] + STAGE_MATRIX[1][stage] * changes[N + i];
-      dual[stage * N + i] = sum / square;
-    }
-  }
-}
-
-typedef enum { ITERATES, CONVERGES, DIVERGES } newton_course;
-
-/* How the iteration goes on after a correction of this length; see stage_newton.py. */
-static newton_course course_of(real length, real longest, real contraction, real allowed, real *left) {
-  const real expected = larger(contraction, LEAST_CONTRACTION);
-  *left = contraction > 0 && contraction < 1 ? length * expected / (1 - expected) : length;
-  if (length <= allowed) return CONVERGES;
-  if (contraction > 0 && length >= DIVERGING * longest) return DIVERGES;
-  if (contraction > 0 && contraction < 1 && *left <= allowed) return CONVERGES;
-  return ITERATES;
-}
-
 /* Residuals of all stages. Returns the largest entry, or one that is not finite. */
 static real residuals_of_stages(const step_start *start, const real *unknowns, real *residuals, workspace *work) {
   real largest = 0;
@@ -213,39 +146,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
   return largest;
 }
 
-/* Newton's method from a guess of the unknowns of the stages, which it moves on. */
-static solver_motion_status solve_stages(const step_start *start, const stage_factors *factors,
-                                         const solver_step_options *options, real *unknowns, workspace *work,
-                                         solver_step_info *info) {
-  /* Positions are rounded at the length of a rod, however little the rod is bent. */
-  const real rounding = STAGE_ROUNDING * larger(1, weighted_length(start->x, N));
-  const real allowed = larger(options->tolerance, rounding);
-  const real to_acceleration = 1 / (start->size * start->size);
-  real *corrections = work->stage_corrections;
-  real *changes = work->stage_changes;
-  real length_before = 0;
-  real longest = 0;
-  for (int count = 0; count < options->max_iterations; count++) {
-    info->iterations++;
-    info->residual = residuals_of_stages(start, unknowns, work->stage_residuals, work);
-    if (!isfinite(info->residual)) return SOLVER_MOTION_NOT_FINITE;
-    corrections_of(factors, work->stage_residuals, corrections, work);
-    apply_step_updates(count, corrections, work);
-    velocity_changes(corrections, changes);
-    const real length = weighted_length(changes, STAGED);
-    if (!isfinite(length) || !all_finite(corrections, STAGED)) return SOLVER_MOTION_NOT_FINITE;
-    for (int i = 0; i < STAGED; i++) unknowns[i] += corrections[i] * (IS_SHAPE[i % N] ? to_acceleration : 1);
-    /* At first nothing is foretold. */
-    const real contraction = count > 0 ? length / length_before : 0;
-    const newton_course course = course_of(length, longest, contraction, allowed, &info->error_left);
-    if (course == CONVERGES) return SOLVER_MOTION_DONE;
-    if (course == DIVERGES) return SOLVER_MOTION_NOT_SOLVED;
-    take_correction(count, corrections, changes, work);
-    length_before = length;
-    longest = larger(longest, length);
-  }
-  return SOLVER_MOTION_NOT_SOLVED;
-}
+#include "stage_newton.c"
 
 /* ---- Steps ---- */
 
@@ -295,6 +196,10 @@ static solver_motion_status solve_step(const step_start *start, const solver_ste
                                        solver_step_memory *memory, workspace *work, solver_step_info *info) {
   const stage_factors factors = kept_factors(memory);
   const int kept = memory->jacobian_size == start->size;
+  /* Positions are rounded at the length of a rod, however little the rod is bent. */
+  const real rounding = STAGE_ROUNDING * larger(1, weighted_length(start->x, 1, work));
+  const real allowed = larger(options->tolerance, rounding);
+  real contraction;
   solver_motion_status status = SOLVER_MOTION_NOT_SOLVED;
   for (int attempt = kept ? 0 : 1; attempt < 2 && status != SOLVER_MOTION_DONE; attempt++) {
     const int iterations = info->iterations;
@@ -303,7 +208,7 @@ static solver_motion_status solve_step(const step_start *start, const solver_ste
       status = renew_jacobian(start, unknowns, memory, work, info);
       if (status != SOLVER_MOTION_DONE) return status;
     }
-    status = solve_stages(start, &factors, options, work->iterate, work, info);
+    status = solve_stages(start, &factors, allowed, options->max_iterations, work->iterate, &contraction, work, info);
     const int needed = info->iterations - iterations;
     if (attempt == 1) memory->first_iterations = needed;
     if (status != SOLVER_MOTION_DONE || !serves_on(memory, needed)) memory->jacobian_size = 0;
