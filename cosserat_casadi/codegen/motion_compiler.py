@@ -17,6 +17,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.cache import kept_texts, texts_in_cache
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
+from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -30,6 +31,7 @@ from cosserat_casadi.motion.simulate import Tell
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
+from cosserat_casadi.numerics.time_steps import Stepper
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -85,7 +87,18 @@ class MotionCompiler:
         return StepKernels(
             residual or interpreted_residual(model),
             interpreted_jacobians(model) if jacobians is None else jacobians.matrices,
+            self._stepper(),
         )
+
+    def _stepper(self) -> Stepper | None:
+        """The steps in machine code; None where there is no compiler."""
+        try:
+            steps_library()
+        except ExportError:
+            if self.always:
+                raise
+            return None
+        return CompiledSteps
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""
@@ -137,7 +150,7 @@ def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | 
     if texts is None:
         return None
     library = compiled_texts(name, texts, compiler)
-    return RepeatedCall(ca.external(name, os.fspath(library)), results)
+    return RepeatedCall(ca.external(name, os.fspath(library)), results, library)
 
 
 def _equations(model: Model) -> list[Any]:

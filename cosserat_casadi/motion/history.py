@@ -22,9 +22,11 @@ from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -70,9 +72,13 @@ def equations_of(
     # Every iteration of a step asks for the inputs at the same stages.
     inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
 
-    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+    def residual_with_parameters(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         value, rate, acceleration = inputs_at(t)
         return kernels.residual(x, v, a, value, *parameters, rate, acceleration)
+
+    residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray] = residual_with_parameters
+    if isinstance(kernels.residual, RepeatedCall) and p is None:
+        residual = KernelResidual(kernels.residual, inputs_at, piece.moves)
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         value, rate, acceleration = inputs_at(t)
@@ -449,7 +455,9 @@ def _switched(
             ends = None if stops is None else stops(piece, begin, coordinates)
             guards, changes = _joined(guards, ends, begin)
             own = _with_forces(settings, equations.size)
-            integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled, memory)
+            integration = integrate(
+                equations, begin, piece.end, method, own, after_step, guards, settled, memory, kernels.stepper
+            )
             memory = None
             legs.append(Leg(piece, restart, integration))
             if integration.guard is not None and integration.guard >= changes:

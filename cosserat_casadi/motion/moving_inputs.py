@@ -78,6 +78,11 @@ class Piece:
         """Shortest time between kinks and ends, s."""
         return float(np.diff([self.start, *self.kinks, self.end]).min())
 
+    @property
+    def moves(self) -> bool:
+        """Whether an input has a path."""
+        return bool(self._paths)
+
     def at(self, t: float) -> InputState:
         """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
         value = self._constant.copy()

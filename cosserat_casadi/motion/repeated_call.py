@@ -5,12 +5,37 @@ A call through matrices takes as long as the residual of a short rod itself.
 
 from __future__ import annotations
 
+import ctypes
+import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class MachineCode:
+    """A function in a shared object, with what a call of it in C takes; it writes the results of a :class:`RepeatedCall`.
+
+    Attributes:
+        address: of the function.
+        arguments: addresses of its arguments.
+        results: addresses of its results.
+        integers: memory of the function.
+        scratch: likewise.
+        library: that has the function.
+    """
+
+    address: int
+    arguments: npt.NDArray[np.uintp]
+    results: npt.NDArray[np.uintp]
+    integers: npt.NDArray[np.longlong]
+    scratch: FloatArray
+    library: ctypes.CDLL
 
 
 class RepeatedCall:
@@ -19,39 +44,57 @@ class RepeatedCall:
     Args:
         function: the function.
         results: how many of its results are wanted.
+        library: shared object that has it, where it is in machine code.
+
+    Attributes:
+        arguments: arrays that the arguments are read from.
+        results: matrices that the results are written to.
+        evaluate: reads the one and writes the other.
+        code: the function in machine code; None where CasADi's virtual machine runs it.
 
     Raises:
         ValueError: an argument or a result is not dense.
     """
 
-    def __init__(self, function: ca.Function, results: int = 1) -> None:
+    def __init__(self, function: ca.Function, results: int = 1, library: str | os.PathLike[str] | None = None) -> None:
         arguments = [function.sparsity_in(i) for i in range(function.n_in())]
         wanted = [function.sparsity_out(i) for i in range(results)]
         for sparsity in (*arguments, *wanted):
             if not sparsity.is_dense():
                 raise ValueError(f"{function.name()} has an argument or a result that is not dense")
-        buffer, self._evaluate = function.buffer()
-        self._arguments = [np.zeros(sparsity.nnz()) for sparsity in arguments]
+        buffer, self.evaluate = function.buffer()
+        self.arguments = [np.zeros(sparsity.nnz()) for sparsity in arguments]
         # CasADi stores column by column.
-        self._results = [np.zeros(sparsity.shape, order="F") for sparsity in wanted]
-        for number, argument in enumerate(self._arguments):
+        self.results = [np.zeros(sparsity.shape, order="F") for sparsity in wanted]
+        for number, argument in enumerate(self.arguments):
             buffer.set_arg(number, argument.data)
-        for number, result in enumerate(self._results):
+        for number, result in enumerate(self.results):
             buffer.set_res(number, result.ravel(order="K").data)
         # The evaluation reads and writes the buffer's memory: it has to live as long.
         self._buffer = buffer
+        self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     def __call__(self, *values: FloatArray) -> FloatArray:
         """The first result, column after column, as an array of shape (n,), for arguments in their order."""
         self._evaluated(values)
-        return self._results[0].flatten(order="F")
+        return self.results[0].flatten(order="F")
 
     def matrices(self, *values: FloatArray) -> list[FloatArray]:
         """All results for arguments in their order."""
         self._evaluated(values)
-        return [result.copy() for result in self._results]
+        return [result.copy() for result in self.results]
 
     def _evaluated(self, values: Sequence[FloatArray]) -> None:
-        for argument, value in zip(self._arguments, values, strict=True):
+        for argument, value in zip(self.arguments, values, strict=True):
             argument[:] = value
-        self._evaluate()
+        self.evaluate()
+
+    def _machine_code(self, function: ca.Function, library: str) -> MachineCode:
+        loaded = ctypes.CDLL(library)
+        address = ctypes.cast(getattr(loaded, function.name()), ctypes.c_void_p).value
+        assert address is not None, "a function has an address"
+        arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
+        arguments[: len(self.arguments)] = [array.ctypes.data for array in self.arguments]
+        results[: len(self.results)] = [array.ctypes.data for array in self.results]
+        integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
+        return MachineCode(address, arguments, results, integers, scratch, loaded)

@@ -311,7 +311,7 @@ class Simulator:
             rates,
             method,
             settings,
-            self._after_step,
+            None if self.tell is None else self._after_step,
             phases=self.start.phases,
             kernels=kernels,
             resume=self.start.resume,

@@ -13,6 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.trajectory import StepStatistics
+from cosserat_casadi.numerics.time_steps import Stepper
 
 
 @dataclass(frozen=True)
@@ -22,10 +23,12 @@ class StepKernels:
     Attributes:
         residual: ↦ residual of the equations of motion, shape (size,).
         jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
+        stepper: takes the steps in machine code; None where Python takes them.
     """
 
     residual: Callable[..., FloatArray]
     jacobians: Callable[..., list[FloatArray]]
+    stepper: Stepper | None = None
 
 
 class KernelSource(Protocol):
@@ -38,7 +41,7 @@ class KernelSource(Protocol):
         """Take note of the work of a motion: the next one may take as much."""
 
 
-def interpreted_residual(model: Model) -> Callable[..., FloatArray]:
+def interpreted_residual(model: Model) -> RepeatedCall:
     """Inverse dynamics by CasADi's virtual machine."""
     return RepeatedCall(model.inverse_dynamics_in_scalars)
 

@@ -37,6 +37,9 @@ FIRST_SHRINKAGE = 0.1
 WORTH_GROWING = 1.2
 """Growth below which a step keeps its size, and with it its factorised matrices."""
 
+WORTH_SHRINKING = 0.85
+"""Shrinkage above which a step that is taken is followed by one of its size, likewise: its error leaves room for that."""
+
 SMALLEST_ERROR = 1e-10
 """Error over tolerance below which a step grows by the most in any case."""
 
@@ -188,8 +191,8 @@ class StepControl:
             factor = min(factor, self._predicted_factor(size, error))
         if self.refused:
             factor = min(factor, 1.0)
-        # Growing by little would not pay for new matrices.
-        if 1.0 <= factor < WORTH_GROWING:
+        # Little more or less would not pay for new matrices.
+        if WORTH_SHRINKING <= factor < WORTH_GROWING:
             factor = 1.0
         following = factor * size
         # A step cut short by the end of the piece says nothing against the one that was wanted.

@@ -246,9 +246,7 @@ class StepRun:
             residual=solution.residual,
             contraction=solution.contraction,
         )
-        if self.settled is not None:
-            step = replace(step, end=self.settled(step))
-        self.steps.append(step)
+        self.add(step)
         self.longest = max(self.longest, self.size)
         self.fresh = False
         if solution.iterations > FEW_ITERATIONS:
@@ -256,6 +254,12 @@ class StepRun:
         # A step that is tried after this one, and interrupted, leaves no trace.
         linearised_at = None if self.linearisation is None else self.linearised_at
         self.memory = CarriedStep(self.begun, self.size, step.unknowns, wanted, error, self.longest, linearised_at)
+
+    def add(self, step: TimeStep) -> None:
+        """Append a step that is taken, its end put right."""
+        if self.settled is not None:
+            step = replace(step, end=self.settled(step))
+        self.steps.append(step)
 
     def stopped_by_guard(self) -> bool:
         """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""

@@ -7,11 +7,12 @@ Equations that jump or have a kink in time are integrated piece by piece: a step
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 
-from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.collocation import STAGES, Collocation
 from cosserat_casadi.numerics.given_step import solve_given_step
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings
@@ -41,6 +42,24 @@ WHOLE = 1e-9
 FAILED_SHRINKAGE = 0.5
 """Factor of a step whose equations were not solved."""
 
+AT_ONCE = 64
+"""Steps that other code takes in one call, where nothing is to be done after each."""
+
+
+class StepsElsewhere(Protocol):
+    """The steps of one integration, taken by other code than that of this module, with the same digits."""
+
+    def take(self, most: int) -> tuple[StepOutcome | None, list[float]]:
+        """Take steps, at most so many.
+
+        Returns:
+            how the motion ends, None where it goes on; and the time before each step that was tried, s.
+        """
+
+
+Stepper = Callable[[StepRun, StepControl, float], StepsElsewhere]
+"""(run, control, shortest step) ↦ the steps of the run, whose sizes are controlled."""
+
 
 def integrate(
     equations: MotionEquations,
@@ -52,6 +71,7 @@ def integrate(
     guards: Guards | None = None,
     settled: Settle | None = None,
     memory: CarriedStep | None = None,
+    stepper: Stepper | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
@@ -66,6 +86,7 @@ def integrate(
         guards: values that have to stay at zero or above; where one does not, the motion ends.
         settled: what puts the end of each step right; None for ends as they are.
         memory: of the steps up to the start, where a motion goes on in a piece: it takes the very steps of one motion.
+        stepper: other code that takes steps whose sizes are controlled; None for that of this module.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
@@ -78,7 +99,7 @@ def integrate(
         # Numbers that overflow are found where they are judged.
         with np.errstate(all="ignore"):
             if settings.size is None:
-                outcome = _controlled_steps(run, after_step)
+                outcome = _controlled_steps(run, after_step, stepper)
             else:
                 outcome = _equal_steps(run, settings.size, after_step)
     except KeyboardInterrupt:
@@ -147,7 +168,7 @@ def _crawls(reached: Sequence[float], length: float) -> bool:
     return reached[-1] - middle > (middle - reached[0]) / 2
 
 
-def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome:
+def _controlled_steps(run: StepRun, after_step: AfterStep | None, stepper: Stepper | None) -> StepOutcome:
     """Take steps as long as the tolerance allows."""
     length = run.stop - run.begun
     resolved = RESOLVED_TIME * max(abs(run.start.time), abs(run.stop))
@@ -156,6 +177,9 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
     control = StepControl(run.method.stages, run.settings.longest, min(first, run.settings.longest))
     if run.before is not None:
         control.remember(run.before.size, run.before.error)
+    # Linear systems with eliminated entries are condensed here alone.
+    if stepper is not None and run.method.stages == STAGES and not len(run.equations.eliminated):
+        return _steps_elsewhere(run, control, stepper(run, control, shortest), after_step)
     reason = StepOutcome.STEP_TOO_SMALL
     singular_steps = 0
     # Times reached before each of the last tries.
@@ -168,8 +192,7 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
         run.size = control.wanted
         if run.size < shortest or singular_steps == SINGULAR_STEPS:
             return reason
-        end = _end_of_next(run.now.time, control.wanted, run.stop)
-        run.size = end - run.now.time
+        run.size, end = _next_step(run.now.time, control.wanted, run.stop)
         refusal = _try_step(run, control, end)
         if refusal is None:
             singular_steps = 0
@@ -186,14 +209,40 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
     return StepOutcome.COMPLETED
 
 
-def _end_of_next(now: float, wanted: float, stop: float) -> float:
-    """Where a step of a wanted size ends, so that no tiny one is left at the end of the piece."""
+def _steps_elsewhere(
+    run: StepRun, control: StepControl, steps: StepsElsewhere, after_step: AfterStep | None
+) -> StepOutcome:
+    """Have other code take steps as long as the tolerance allows: one by one where each is looked at."""
+    length = run.stop - run.begun
+    looked_at = after_step is not None or run.guards is not None or run.settled is not None
+    reached = deque([run.now.time], maxlen=TRIES)
+    while True:
+        before = len(run.steps)
+        outcome, tried = steps.take(1 if looked_at else AT_ONCE)
+        for time in tried:
+            if _crawls(reached, length):
+                run.size = control.wanted
+                return StepOutcome.TOO_MANY_STEPS
+            reached.append(time)
+        if len(run.steps) > before:
+            if run.stopped_by_guard():
+                return StepOutcome.GUARDED
+            if after_step is not None:
+                after_step(run.now.time, run.steps[-1].size)
+        if outcome is not None:
+            run.size = control.wanted
+            return outcome
+
+
+def _next_step(now: float, wanted: float, stop: float) -> tuple[float, float]:
+    """Size of the next step and where it ends, s, so that no tiny one is left at the end of the piece."""
     remaining = stop - now
     if remaining <= wanted:
-        return stop
+        return remaining, stop
     if remaining < 2.0 * wanted:
-        return now + remaining / 2.0
-    return now + wanted
+        return remaining / 2.0, now + remaining / 2.0
+    # Not the difference of the times: its rounding would ask for new matrices.
+    return wanted, now + wanted
 
 
 def _try_step(run: StepRun, control: StepControl, end: float) -> StepOutcome | None:

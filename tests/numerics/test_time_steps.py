@@ -432,7 +432,7 @@ def test_light_direction_that_turns_costs_no_steps() -> None:
     assert statistics.steps < 60
     assert statistics.rejected < 5
     # With Jacobians at the start of the steps there are 16 for each.
-    assert statistics.iterations < 14 * statistics.steps
+    assert statistics.iterations < 15 * statistics.steps
 
 
 def test_all_stages_may_be_evaluated_at_once() -> None:

@@ -1,0 +1,342 @@
+"""Steps of a simulated motion in C: the loop of :mod:`cosserat_casadi.numerics.time_steps`, compiled once for all models.
+
+An iteration in Python takes five to ten times as long as the mathematics in it. Here C takes many steps in one call; the
+equations are called back, unless they are in machine code themselves.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
+from cosserat_casadi.codegen.motion_sources import initialiser, pairs
+from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.kernel_residual import KernelResidual
+from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, step_run, time_steps
+from cosserat_casadi.numerics.collocation import STAGES, radau
+from cosserat_casadi.numerics.integration import StepOutcome
+from cosserat_casadi.numerics.motion_equations import Instant, Linearisation
+from cosserat_casadi.numerics.step import CarriedStep, TimeStep
+from cosserat_casadi.numerics.step_control import StepControl
+from cosserat_casadi.numerics.step_run import StepRun
+
+NAME = "controlled_steps"
+"""Of the library in the cache."""
+
+FACTS = 7
+"""Numbers of a step beside its state and its stages."""
+
+MOST_TRIES = 64
+"""Steps that are tried in one call: then an interrupt is seen."""
+
+OUTCOMES = (
+    None,
+    StepOutcome.COMPLETED,
+    StepOutcome.STEP_TOO_SMALL,
+    StepOutcome.NOT_FINITE,
+    StepOutcome.SINGULAR,
+    StepOutcome.INTERRUPTED,
+)
+"""What the numbers that C returns mean; None where it would go on."""
+
+POINTER = ctypes.c_void_p
+CALL = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double)
+
+
+class _Record(ctypes.Structure):
+    """The record of ``controlled_steps.c``."""
+
+    _fields_ = [
+        *((name, ctypes.c_int) for name in ("unknowns", "inputs", "moving", "kink_count", "most_steps", "most_tries")),
+        *((name, POINTER) for name in ("differential", "weights", "kinks", "x", "v", "a")),
+        *((name, POINTER) for name in ("input_values", "input_rates", "input_accelerations", "residual")),
+        *((name, POINTER) for name in ("kernel", "kernel_arguments", "kernel_results")),
+        *((name, POINTER) for name in ("kernel_integers", "kernel_scratch")),
+        *((name, CALL) for name in ("residual_at", "residual_of_stages", "inputs_at", "jacobians_at")),
+        *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
+        *((name, POINTER) for name in ("matrices", "linearised_at", "kept_at", "now", "before", "room")),
+        *((name, POINTER) for name in ("facts", "ends", "stages", "tried_at")),
+        *((name, ctypes.c_double) for name in ("stop", "newton", "longest_allowed", "shortest", "time")),
+        *((name, ctypes.c_double) for name in ("linearised_time", "kept_time", "before_size", "longest", "wanted")),
+        *((name, ctypes.c_double) for name in ("size", "last_size", "last_error", "factorised")),
+        *((name, ctypes.c_int) for name in ("refused", "linearised", "kept", "fresh", "singular_steps", "reason")),
+        *((name, ctypes.c_int) for name in ("steps", "tries", "rejected", "iterations", "jacobians")),
+        *((name, ctypes.c_int) for name in ("factorisations", "interrupted")),
+        *((name, POINTER) for name in ("inverses", "stage_inputs", "iterate", "stage_residuals")),
+        *((name, POINTER) for name in ("stage_corrections", "stage_changes", "transformed", "solutions", "vectors")),
+        *((name, POINTER * step_control.MOST_ITERATIONS) for name in ("taken", "duals")),
+    ]
+
+
+@lru_cache(maxsize=1)
+def steps_library() -> ctypes.CDLL:
+    """The compiled loop.
+
+    Raises:
+        ExportError: there is no compiler, or it fails.
+    """
+    texts = {
+        f"{NAME}.c": resource("c", f"{NAME}.c"),
+        "stage_newton.c": resource("c", "stage_newton.c"),
+        f"{NAME}.h": render(f"{NAME}.h.in", _words()),
+    }
+    path = compiled_texts(NAME, texts, find_compiler(), included={"stage_newton.c"})
+    library = ctypes.CDLL(str(path))
+    assert library.steps_record() == ctypes.sizeof(_Record), "the record differs from that of the C"
+    library.steps_taken.argtypes = [ctypes.POINTER(_Record)]
+    return library
+
+
+def _words() -> dict[str, Any]:
+    """Constants of the C, from the modules that it follows."""
+    method = radau(STAGES)
+    whole, pair = complex(method.eigenvalues[0]), complex(method.eigenvalues[1])
+    arrays = {
+        "stage_nodes": method.nodes,
+        "stage_table": method.matrix,
+        "stage_table_squared": method.matrix_squared,
+        "stage_polynomials": method.polynomials,
+        "start_values": method.values_at(0.0),
+        "start_integrals": method.values_at(0.0) @ method.matrix,
+        "middle_values": method.values_at(0.5),
+        "middle_integrals": method.integrals_at(0.5),
+        "middle_double_integrals": method.double_integrals_at(0.5),
+        "end_values": method.values_at(1.0),
+        "end_integrals": method.weights,
+        "end_double_integrals": method.position_weights,
+        "pair_rate": pairs([1.0 / pair])[0],
+        "pair_share": pairs([1.0 / pair**2])[0],
+        "to_real": method.to_eigenvectors[0].real,
+        "to_pair": pairs(method.to_eigenvectors[1]),
+        "from_real": method.from_eigenvectors[:, 0].real,
+        "from_pair": pairs(method.from_eigenvectors[:, 1]),
+    }
+    return {
+        "iterations": step_control.MOST_ITERATIONS,
+        "few_iterations": step_run.FEW_ITERATIONS,
+        "singular_steps": time_steps.SINGULAR_STEPS,
+        "stage_rounding": repr(stage_newton.ROUNDING),
+        "singular": step_matrices.SINGULAR,
+        "least_contraction": stage_newton.LEAST_CONTRACTION,
+        "diverging": stage_newton.DIVERGING,
+        "safety": step_control.SAFETY,
+        "growth": step_control.GROWTH,
+        "shrinkage": step_control.SHRINKAGE,
+        "first_shrinkage": step_control.FIRST_SHRINKAGE,
+        "failed_shrinkage": time_steps.FAILED_SHRINKAGE,
+        "singular_shrinkage": time_steps.SINGULAR_SHRINKAGE,
+        "worth_growing": step_control.WORTH_GROWING,
+        "worth_shrinking": step_control.WORTH_SHRINKING,
+        "smallest_error": step_control.SMALLEST_ERROR,
+        "remembered_error": step_control.REMEMBERED_ERROR,
+        "real_rate": repr(1.0 / whole.real),
+        **{name: initialiser(values, "double") for name, values in arrays.items()},
+    }
+
+
+class CompiledSteps:
+    """The steps of one integration, taken by C; its run has them, and what a next step takes over.
+
+    Args:
+        run: the integration, whose steps are controlled and of Radau's method with three stages.
+        control: of the sizes of its steps.
+        shortest: step, s.
+
+    Raises:
+        ExportError: there is no compiler, or it fails.
+    """
+
+    def __init__(self, run: StepRun, control: StepControl, shortest: float) -> None:
+        self._library = steps_library()
+        self._run = run
+        self._control = control
+        self._raised: BaseException | None = None
+        n = run.equations.size
+        self._matrices = np.zeros((3, n, n))
+        self._now, self._linearised_at, self._kept_at = np.zeros((3, 3, n))
+        self._before = np.zeros((STAGES, n))
+        self._record = _Record(unknowns=n, stop=run.stop, newton=run.bounds.error, shortest=shortest)
+        # Arrays and functions that the record points at.
+        self._held: list[Any] = []
+        record = self._record
+        record.jacobians_at = self._called(self._linearise)
+        self._share("differential", run.equations.differential.astype(np.intc))
+        self._share("weights", np.ascontiguousarray(run.bounds.weights, dtype=float))
+        self._share("matrices", self._matrices)
+        self._share("now", self._now)
+        self._share("before", self._before)
+        self._share("linearised_at", self._linearised_at)
+        self._share("kept_at", self._kept_at)
+        kinks = np.array(run.equations.kinks, dtype=float)
+        record.kink_count = len(kinks)
+        self._share("kinks", kinks)
+        residual = run.equations.residual
+        if isinstance(residual, KernelResidual):
+            self._share_kernel(residual)
+        else:
+            self._share_function()
+        self._share("stage_times", np.zeros(STAGES))
+        self._share("room", np.zeros(self._library.steps_room(n, record.inputs)))
+        record.longest_allowed = control.longest
+        record.reason = OUTCOMES.index(StepOutcome.STEP_TOO_SMALL)
+        if run.before is not None:
+            self._before[:] = run.before.unknowns
+            record.before_size = run.before.size
+            record.longest = run.before.longest
+        if run.linearised_at is not None and run.linearisation is not None:
+            self._linearised_at[:] = run.linearised_at.x, run.linearised_at.v, run.linearised_at.a
+            record.linearised_time = run.linearised_at.time
+            self._remember(run.linearisation)
+            record.linearised = 1
+
+    def _share(self, name: str, array: np.ndarray[Any, Any]) -> None:
+        self._held.append(array)
+        setattr(self._record, name, array.ctypes.data)
+
+    def _called(self, function: Callable[[float], None]) -> Any:
+        """A function as C calls it; what it raises is raised when C has returned."""
+
+        def guarded(time: float) -> int:
+            try:
+                function(time)
+            except BaseException as raised:
+                self._raised = raised
+                return 1
+            return 0
+
+        wrapped = CALL(guarded)
+        self._held.append(wrapped)
+        return wrapped
+
+    def _share_kernel(self, residual: KernelResidual) -> None:
+        """Have C write the arguments of inverse dynamics in place, and call it, or CasADi's virtual machine."""
+        record = self._record
+        call = residual.call
+        x, v, a, value, rate, acceleration = call.arguments
+        inputs = (value, rate, acceleration)
+        for name, array in zip(("x", "v", "a", "input_values", "input_rates", "input_accelerations"), call.arguments):
+            self._share(name, array)
+        self._share("residual", call.results[0])
+        record.inputs = len(value)
+        record.moving = int(residual.moves)
+
+        def inputs_at(time: float) -> None:
+            for array, values in zip(inputs, residual.inputs_at(time), strict=True):
+                array[:] = values
+
+        inputs_at(self._run.start.time)
+        record.inputs_at = self._called(inputs_at)
+        if call.code is None:
+            record.residual_at = self._called(lambda _: call.evaluate())
+            return
+        kernel = call.code
+        record.kernel = kernel.address
+        self._share("kernel_arguments", kernel.arguments)
+        self._share("kernel_results", kernel.results)
+        self._share("kernel_integers", kernel.integers)
+        self._share("kernel_scratch", kernel.scratch)
+
+    def _share_function(self) -> None:
+        """Have C call the equations as a function of Python."""
+        equations = self._run.equations
+        n = equations.size
+        x, v, a, result = np.zeros((4, n))
+        stage_x, stage_v, stage_a, stage_results = np.zeros((4, STAGES, n))
+        times = radau(STAGES).nodes
+
+        def residual_at(time: float) -> None:
+            result[:] = equations.residual_at(Instant(time, x.copy(), v.copy(), a.copy()))
+
+        def residual_of_stages(begin: float) -> None:
+            at = begin + times * self._record.size
+            stage_results[:] = equations.residual_of_stages(at, stage_x.copy(), stage_v.copy(), stage_a.copy())
+
+        self._record.residual_at = self._called(residual_at)
+        self._record.residual_of_stages = self._called(residual_of_stages)
+        for name, array in zip(("x", "v", "a", "residual"), (x, v, a, result), strict=True):
+            self._share(name, array)
+        of_stages = {"stage_x": stage_x, "stage_v": stage_v, "stage_a": stage_a, "stage_results": stage_results}
+        for name, array in of_stages.items():
+            self._share(name, array)
+
+    def _linearise(self, time: float) -> None:
+        x, v, a = self._linearised_at.copy()
+        self._remember(self._run.equations.linearised(Instant(time, x, v, a)))
+
+    def _remember(self, linear: Linearisation) -> None:
+        # C has matrices column after column.
+        for held, matrix in zip(self._matrices, (linear.stiffness, linear.damping, linear.mass), strict=True):
+            held[:] = matrix.T
+
+    def take(self, most: int) -> tuple[StepOutcome | None, list[float]]:
+        """Take steps, at most so many.
+
+        Returns:
+            how the motion ends, None where it goes on; and the time before each step that was tried, s.
+        """
+        run, record, control = self._run, self._record, self._control
+        n = run.equations.size
+        most = min(most, MOST_TRIES)
+        facts = np.zeros((most, FACTS))
+        ends = np.zeros((most, 3, n))
+        stages = np.zeros((most, STAGES, n))
+        tried = np.zeros(MOST_TRIES)
+        for name, array in (("facts", facts), ("ends", ends), ("stages", stages), ("tried_at", tried)):
+            setattr(record, name, array.ctypes.data)
+        now = run.now
+        self._now[:] = now.x, now.v, now.a
+        record.time = now.time
+        record.most_steps, record.most_tries = most, MOST_TRIES
+        record.wanted, record.refused = control.wanted, control.refused
+        record.last_size, record.last_error = control.last_size, control.last_error
+        counted = record.rejected, record.iterations, record.jacobians, record.factorisations
+        outcome = OUTCOMES[self._library.steps_taken(ctypes.byref(record))]
+        control.wanted, control.refused = record.wanted, bool(record.refused)
+        control.last_size, control.last_error = record.last_size, record.last_error
+        run.rejected += record.rejected - counted[0]
+        run.iterations += record.iterations - counted[1]
+        run.jacobians += record.jacobians - counted[2]
+        run.factorisations += record.factorisations - counted[3]
+        run.size = record.size
+        self._taken(facts[: record.steps], ends, stages)
+        if self._raised is not None:
+            raise self._raised
+        return outcome, tried[: record.tries].tolist()
+
+    def _taken(self, facts: FloatArray, ends: FloatArray, stages: FloatArray) -> None:
+        """Give the run its new steps, and what a next one takes over."""
+        run, record = self._run, self._record
+        now = run.now
+        for fact, end, unknowns in zip(facts.tolist(), ends, stages, strict=False):
+            time, size, error, iterations, residual, contraction, wanted = fact
+            arrived = Instant(time, *end)
+            step = TimeStep(
+                method=run.method,
+                differential=run.equations.differential,
+                start=now,
+                size=size,
+                unknowns=unknowns,
+                end=arrived,
+                error=error,
+                iterations=int(iterations),
+                residual=residual,
+                contraction=contraction,
+            )
+            run.add(step)
+            now = run.now
+        if not len(facts):
+            return
+        run.longest = record.longest
+        run.fresh = bool(record.fresh)
+        linearised_at = Instant(record.kept_time, *self._kept_at.copy()) if record.kept else None
+        run.linearised_at = linearised_at
+        run.memory = CarriedStep(run.begun, size, unknowns, wanted, error, run.longest, linearised_at)
+        run.renew_jacobian()
+        if linearised_at is not None and run.guards is not None:
+            run.linearisation = Linearisation(*(matrix.T.copy() for matrix in self._matrices))
