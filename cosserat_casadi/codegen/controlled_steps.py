@@ -1,7 +1,7 @@
-"""Steps of a simulated motion in C: the loop of :mod:`cosserat_casadi.numerics.time_steps`, compiled once for all models.
+"""Steps of a simulated motion in C: the loop of :mod:`~cosserat_casadi.numerics.time_steps`, compiled for all models.
 
-An iteration in Python takes five to ten times as long as the mathematics in it. Here C takes many steps in one call; the
-equations are called back, unless they are in machine code themselves.
+An iteration in Python takes five to ten times as long as its mathematics. Here C takes many steps in one call; it calls
+the equations back, unless they are in machine code themselves.
 """
 
 from __future__ import annotations
@@ -218,12 +218,12 @@ class CompiledSteps:
         """Have C write the arguments of inverse dynamics in place, and call it, or CasADi's virtual machine."""
         record = self._record
         call = residual.call
-        x, v, a, value, rate, acceleration = call.arguments
-        inputs = (value, rate, acceleration)
-        for name, array in zip(("x", "v", "a", "input_values", "input_rates", "input_accelerations"), call.arguments):
+        names = ("x", "v", "a", "input_values", "input_rates", "input_accelerations")
+        for name, array in zip(names, call.arguments, strict=True):
             self._share(name, array)
+        inputs = call.arguments[3:]
         self._share("residual", call.results[0])
-        record.inputs = len(value)
+        record.inputs = len(inputs[0])
         record.moving = int(residual.moves)
 
         def inputs_at(time: float) -> None:

@@ -26,4 +26,5 @@ class KernelResidual:
     moves: bool
 
     def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        """F, shape (n,)."""
         return self.call(x, v, a, *self.inputs_at(t))

@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 @dataclass(frozen=True)
 class MachineCode:
-    """A function in a shared object, with what a call of it in C takes; it writes the results of a :class:`RepeatedCall`.
+    """A function in a shared object, and the arguments of a call of it in C, which does what a :class:`RepeatedCall` does.
 
     Attributes:
         address: of the function.
