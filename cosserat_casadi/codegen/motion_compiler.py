@@ -1,7 +1,7 @@
 """Simulate with the equations of motion in machine code, where that pays.
 
-A motion calls inverse dynamics and its derivatives thousands of times. In C they take a fifth to a tenth of the time of
-CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on the same
+A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the time
+of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on the same
 modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
 """
 
@@ -15,12 +15,13 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.cache import kept_texts, texts_in_cache
+from cosserat_casadi.codegen.cache import cache_folder, kept_texts, texts_in_cache
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
@@ -48,11 +49,11 @@ INSTRUCTION = 4e-9
 AS_MANY_RESIDUALS = 10.0
 """Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
 
-SAVED = 0.8
+SAVED = {RESIDUAL: 0.95, JACOBIANS: 0.8}
 """Share of that time that machine code saves."""
 
-TO_COMPILE = {RESIDUAL: 1.5, JACOBIANS: 6.0}
-"""Processor time for writing and compiling a function, s, of 40 to 90 unknowns."""
+TO_COMPILE = {RESIDUAL: (0.3, 2.5e-5), JACOBIANS: (0.5, 2e-4)}
+"""Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
 MOTIONS_TO_COME = 2.0
 """Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
@@ -124,7 +125,9 @@ class MotionCompiler:
         if name == JACOBIANS:
             calls = AS_MANY_RESIDUALS * self.last.jacobians
         instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
-        return SAVED * MOTIONS_TO_COME * calls * instructions * INSTRUCTION > TO_COMPILE[name]
+        at_least, each = TO_COMPILE[name]
+        saved = SAVED[name] * MOTIONS_TO_COME * calls * instructions * INSTRUCTION
+        return saved > at_least + each * instructions
 
 
 def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | None:
@@ -139,18 +142,29 @@ def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | 
         ExportError: there is no compiler, or it fails.
     """
     compiler = find_compiler()
+    results, _ = WRITTEN[name]
+    # Every motion of a model asks for them: the files of the cache are looked at once.
+    loaded: dict[tuple[str, str, Path], Path] = kept_with(model, "_machine_code", dict)
+    place = (name, compiler, cache_folder())
+    if place not in loaded:
+        library = _library(model, name, compiler, write=write)
+        if library is None:
+            return None
+        loaded[place] = library
+    return RepeatedCall(ca.external(name, os.fspath(loaded[place])), results, loaded[place])
+
+
+def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
+    """The shared object with a function; arguments as of :func:`_in_machine_code`, and the command of the compiler."""
     made_from = (name, *_equations(model))
-    results, function = WRITTEN[name]
+    _, function = WRITTEN[name]
     texts = texts_in_cache(name, made_from)
     if texts is None and write:
         # The printer of C is needed here alone, and takes its time to be loaded.
         from cosserat_casadi.codegen.kernel_files import external_sources
 
         texts = kept_texts(name, made_from, lambda: external_sources([function(model)], name, "long long int"))
-    if texts is None:
-        return None
-    library = compiled_texts(name, texts, compiler)
-    return RepeatedCall(ca.external(name, os.fspath(library)), results, library)
+    return None if texts is None else compiled_texts(name, texts, compiler)
 
 
 def _equations(model: Model) -> list[Any]:

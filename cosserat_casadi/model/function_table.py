@@ -276,6 +276,21 @@ def share_functions(model: Any, kept: Any) -> None:
     model.__dict__[SHARED] = kept
 
 
+def kept_with(model: Any, name: str, make: Callable[[], Result]) -> Result:
+    """A value that depends on the equations of a model alone: made once for all models that share its functions.
+
+    Args:
+        model: the model.
+        name: of the value.
+        make: makes it.
+    """
+    kept = model.__dict__.get(SHARED, model).__dict__
+    if name not in kept:
+        kept[name] = make()
+    value: Result = kept[name]
+    return value
+
+
 @dataclass
 class NamedFunction:
     """A member of a model that is built when it is first asked for, and kept.

@@ -7,6 +7,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
@@ -26,6 +27,10 @@ def displacements(model: Model) -> FloatArray:
 
     Of strain coordinates at the unloaded rod, which a rod that moves is at times as good as any.
     """
+    return kept_with(model, "_displacements", lambda: _displacements(model))
+
+
+def _displacements(model: Model) -> FloatArray:
     sizes = np.ones(model.size)
     unknowns = model.discrete.unknowns
     for name, rod in model.discrete.rods.items():
@@ -37,6 +42,8 @@ def displacements(model: Model) -> FloatArray:
                 sizes[entries] = np.tile(of_strains, len(rod.properties.branches))
     for _, entries in unknowns.of_kind(BlockKind.POSE):
         sizes[entries][3:] = QUATERNION
+    # Several motions have it.
+    sizes.setflags(write=False)
     return sizes
 
 

@@ -98,15 +98,35 @@ def _integrals(
     if not history.steps:
         return np.full(len(times), account.dissipated), np.full(len(times), account.work)
     places = [place for leg, step in history.steps for place in _stage_places(leg, step)]
-    of_model = [(leg, history.of_model(instant)) for leg, instant in places]
+    looked_at = places
+    if _powers_are_constant(history.model, working):
+        # A rod on a fixed clamp without damping, say.
+        looked_at = places[:1]
+    of_model = [(leg, history.of_model(instant)) for leg, instant in looked_at]
     dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, of_model, accelerations=True)
     put_in = working @ of_loads + of_actuators.sum(axis=0) + of_bases[0]
     if history.contacts is not None:
         put_in = put_in + history.contacts.powers([instant for _, instant in places])
     powers = np.stack([dissipated[0], put_in])
+    if len(looked_at) < len(places):
+        powers = np.tile(powers, (1, len(places)))
     stages = history.steps[0][1].method.stages
     by_step = powers.reshape(2, len(history.steps), stages)
     return _up_to(history, times, by_step, np.array([account.dissipated, account.work]))
+
+
+def _powers_are_constant(model: Model, working: FloatArray) -> bool:
+    """Whether the powers that count depend on nothing that moves: they are those of one instant then.
+
+    Args:
+        model: the model.
+        working: one for each load whose work counts, shape (loads,).
+    """
+    function = model.powers
+    if model.scene.touches_exactly or np.any(working):
+        return False
+    counted = [function.index_out(name) for name in ("dissipated", "of_actuators", "of_bases")]
+    return all(function.jac_sparsity(i, j).nnz() == 0 for i in counted for j in range(function.n_in()))
 
 
 def _up_to(history: History, times: FloatArray, powers: FloatArray, begin: FloatArray) -> tuple[FloatArray, FloatArray]:
