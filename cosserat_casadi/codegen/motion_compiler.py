@@ -74,8 +74,11 @@ class MotionCompiler:
     asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
 
     def learn(self, statistics: StepStatistics) -> None:
-        """Take note of the work of a motion."""
+        """Take note of the work of the motion for which kernels were asked last."""
         self.last = statistics
+        for name, (model, found) in self.asked.items():
+            if found is None:
+                _spent(model)[name] += _interpreted_time(model, name, statistics)
 
     def kernels(self, model: Model) -> StepKernels:
         """The kernels for the next motion of a model.
@@ -118,16 +121,30 @@ class MotionCompiler:
         return found
 
     def _pays(self, model: Model, name: str) -> bool:
-        """Whether machine code saves more time than it takes to compile, as far as the last motion tells."""
+        """Whether machine code saves more time than it takes to compile.
+
+        That is so where the next motions take as long as the last one, or where those of this model, in this process,
+        have taken so long already: what was asked for so often is asked for again.
+        """
         if self.last is None:
             return False
-        calls = STAGES * self.last.iterations
-        if name == JACOBIANS:
-            calls = AS_MANY_RESIDUALS * self.last.jacobians
-        instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
+        foreseen = max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), _spent(model)[name])
         at_least, each = TO_COMPILE[name]
-        saved = SAVED[name] * MOTIONS_TO_COME * calls * instructions * INSTRUCTION
-        return saved > at_least + each * instructions
+        return SAVED[name] * foreseen > at_least + each * model.inverse_dynamics_in_scalars.n_instructions()
+
+
+def _spent(model: Model) -> dict[str, float]:
+    """Processor time that the virtual machine has taken for each function of a model and those that share it, s."""
+    return kept_with(model, "_interpreted_time", lambda: dict.fromkeys(TO_COMPILE, 0.0))
+
+
+def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
+    """Processor time that the virtual machine takes for a function in a motion, s."""
+    calls = STAGES * work.iterations
+    if name == JACOBIANS:
+        calls = AS_MANY_RESIDUALS * work.jacobians
+    instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
+    return calls * instructions * INSTRUCTION
 
 
 def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | None:

@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 @dataclass(frozen=True)
 class MachineCode:
-    """A function in a shared object, and the arguments of a call of it in C, which does what a :class:`RepeatedCall` does.
+    """A function in a shared object, and the arguments of a call of it in C, as :class:`RepeatedCall` makes it.
 
     Attributes:
         address: of the function.

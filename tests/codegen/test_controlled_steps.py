@@ -1,0 +1,208 @@
+"""Steps that C takes are those of Python: where they lead, what they cost, how they end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import MotionOutcome, scene_from_dict, simulate
+from cosserat_casadi.codegen.controlled_steps import MOST_TRIES, CompiledSteps
+from cosserat_casadi.codegen.motion_compiler import MotionCompiler
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.step_kernels import StepKernels
+from cosserat_casadi.motion.trajectory import StepStatistics
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.consistent_start import consistent_start
+from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.time_steps import Stepper, integrate
+from tests.codegen.test_load import needs_compiler
+from tests.codegen.test_motion_compiler import arm, moving
+from tests.numerics.moving import DUFFING, PENDULUM, Top, TurningPair, duffing_force, explicit, pendulum_state
+
+pytestmark = needs_compiler
+
+SAME = 1e-10
+
+Run = Callable[[Stepper | None], Integration]
+
+
+def run_of(equations: MotionEquations, x: Any, v: Any, end: float, tolerance: float = 1e-5, **options: Any) -> Run:
+    """The motion as a function of what takes its steps."""
+    start = Instant(0.0, np.asarray(x, dtype=float), np.asarray(v, dtype=float), np.zeros(equations.size))
+    if equations.linearised(start).finite and options.pop("consistent", True):
+        start = consistent_start(equations, 0.0, start.x, start.v, interval=0.02).instant
+    settings = StepSettings(np.full(equations.size, tolerance), **options.pop("settings", {}))
+
+    def run(stepper: Stepper | None) -> Integration:
+        return integrate(equations, start, end, radau(3), settings, **options, stepper=stepper)
+
+    return run
+
+
+def assert_same(run: Run, outcome: StepOutcome = StepOutcome.COMPLETED, atol: float = SAME) -> Integration:
+    """Both ways of a motion, compared step by step; the one in C is returned.
+
+    Rounding of an error makes another size of the next step: states are compared at one time.
+    """
+    plain, in_c = run(None), run(CompiledSteps)
+    assert plain.outcome is in_c.outcome is outcome
+    # An interrupt leaves out the work on the step that it fell into.
+    if outcome is not StepOutcome.INTERRUPTED:
+        assert work_of(in_c) == work_of(plain)
+    for mine, other in zip(in_c.steps, plain.steps, strict=True):
+        expected = other.at(mine.end.time)
+        assert mine.iterations == other.iterations
+        assert_allclose(mine.size, other.size, rtol=1e-6, atol=0)
+        assert_allclose(mine.end.x, expected.x, rtol=SAME, atol=atol)
+        assert_allclose(mine.end.v, expected.v, rtol=SAME, atol=atol)
+        assert_allclose(mine.error, other.error, rtol=1e-5, atol=1e-7)
+    assert_allclose(in_c.next_size, plain.next_size, rtol=1e-6, atol=0)
+    return in_c
+
+
+def work_of(integration: Integration) -> tuple[int, ...]:
+    """Factorisations apart: whether two halves of what is left of a piece are equal is rounding."""
+    cost = integration.statistics
+    return cost.steps, cost.rejected, cost.iterations, cost.jacobians
+
+
+def test_steps_are_the_same_over_many_calls() -> None:
+    taken = assert_same(run_of(DUFFING, [1.0], [0.3], 30.0, 1e-6), atol=1e-8)
+    assert len(taken.steps) > 2 * MOST_TRIES
+
+
+def test_multipliers_and_directions_without_mass() -> None:
+    assert_same(run_of(PENDULUM, *pendulum_state(1.0, 0.5), 3.0))
+    top = Top(np.array([1.0, 2.0, 2.5]))
+    turning = np.array([0.0, 0.2, 1.0, 0.3])
+    assert_same(run_of(top.equations, [1.0, 0.0, 0.0, 0.0], turning, 2.0))
+    light = TurningPair(light=1e-4).equations
+    assert_same(run_of(light, [0.0, 0.0, 0.0, 0.02, 0.01], [0.0, 0.0, 4.0, 0.0, 0.0], 0.3, 1e-4), atol=1e-7)
+
+
+def test_kinks_are_seen() -> None:
+    pulsed = explicit(
+        lambda t, x, v: -x + np.interp(t, [0.499, 0.5, 0.501], [0.0, 100.0, 0.0]),
+        lambda t, x, v: -np.eye(1),
+        lambda t, x, v: np.zeros((1, 1)),
+    )
+    seen = assert_same(run_of(replace(pulsed, kinks=(0.499, 0.5, 0.501)), [0.0], [0.0], 1.0))
+    assert_allclose(seen.end.x, 0.1 * np.sin(0.5), rtol=0, atol=1e-4)
+
+
+def test_what_is_looked_at_after_each_step() -> None:
+    times: list[float] = []
+
+    def settled(step: Any) -> Instant:
+        return replace(step.end, a=1.01 * step.end.a)
+
+    guarded = run_of(DUFFING, [1.0], [0.3], 6.0, guards=lambda instant: instant.x + 0.5)
+    stopped = assert_same(guarded, StepOutcome.GUARDED)
+    assert_allclose(stopped.end.x, -0.5, rtol=0, atol=1e-12)
+    assert_same(run_of(DUFFING, [1.0], [0.3], 2.0, settled=settled, after_step=lambda time, _: times.append(time)))
+    assert times[: len(times) // 2] == pytest.approx(times[len(times) // 2 :], rel=SAME)
+
+
+def test_motion_goes_on_with_the_same_steps() -> None:
+    first = assert_same(run_of(DUFFING, [1.0], [0.3], 1.0))
+    assert first.memory is not None
+
+    def rest(stepper: Stepper | None) -> Integration:
+        settings = StepSettings(np.full(1, 1e-5))
+        return integrate(DUFFING, first.end, 2.0, radau(3), settings, memory=first.memory, stepper=stepper)
+
+    assert_same(rest)
+
+
+def test_failures_are_told_the_same() -> None:
+    zero = lambda *_: np.zeros((1, 1))  # noqa: E731
+    endless = explicit(lambda t, x, v: 6 * x**2, lambda t, x, v: np.diag(12 * x), zero)
+    short = {"settings": {"shortest": 1e-4}}
+    assert_same(run_of(endless, [1.0], [2.0], 2.0, 1e-4, **short), StepOutcome.STEP_TOO_SMALL, atol=1e-6)
+    rooted = explicit(lambda t, x, v: 0.0 * np.sqrt(1 - x), zero, zero)
+    assert_same(run_of(rooted, [0.0], [1.0], 2.0), StepOutcome.NOT_FINITE)
+    stiffness = np.array([[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    twice = MotionEquations(
+        np.array([True, False, False]),
+        lambda t, x, v, a: np.array([a[0] + x[1] + x[2], x[0], x[0]]),
+        lambda *_: (stiffness, np.zeros((3, 3)), np.diag([1.0, 0.0, 0.0])),
+    )
+    assert_same(run_of(twice, np.zeros(3), np.zeros(3), 1.0, consistent=False), StepOutcome.SINGULAR)
+    broken = explicit(lambda t, x, v: -x, lambda t, x, v: np.full((1, 1), np.nan), zero)
+    assert_same(run_of(broken, [1.0], [0.0], 1.0), StepOutcome.STEP_TOO_SMALL)
+
+
+def test_motion_that_crawls_is_given_up() -> None:
+    stiff = (2e6 * np.pi) ** 2
+    spring = explicit(lambda t, x, v: -stiff * x, lambda t, x, v: -stiff * np.eye(1), lambda *_: np.zeros((1, 1)))
+    crawling = run_of(spring, [1.0], [0.0], 1.0, 1e-8)(CompiledSteps)
+    assert crawling.outcome is StepOutcome.TOO_MANY_STEPS
+    assert crawling.statistics.steps < 1200
+
+
+@pytest.mark.parametrize("raised", [KeyboardInterrupt, ZeroDivisionError])
+def test_what_the_equations_raise_is_raised(raised: type[BaseException]) -> None:
+    def force(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+        if t > 1.0:
+            raise raised
+        return duffing_force(t, x, v)
+
+    run = run_of(
+        explicit(force, lambda t, x, v: np.diag(-1 - 3 * x**2), lambda *_: -0.1 * np.eye(1)), [1.0], [0.3], 2.0
+    )
+    if raised is ZeroDivisionError:
+        with pytest.raises(ZeroDivisionError):
+            run(CompiledSteps)
+        return
+    assert_same(run, StepOutcome.INTERRUPTED)
+
+
+class Kernels:
+    """Kernels of a model as a source has them."""
+
+    def __init__(self, kernels: StepKernels) -> None:
+        self.chosen = kernels
+
+    def kernels(self, model: Any) -> StepKernels:
+        return self.chosen
+
+    def learn(self, statistics: StepStatistics) -> None:
+        pass
+
+
+@pytest.mark.parametrize("always", [False, True], ids=["virtual machine", "machine code"])
+def test_rod_that_a_tendon_moves(always: bool, tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inputs change, arguments are written in place, and machine code is called without Python."""
+    monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path))
+    model = moving(arm())
+    kernels = MotionCompiler(always=always).kernels(model)
+    assert kernels.stepper is CompiledSteps
+    simulation = model.scene.simulation
+    assert simulation is not None
+    ends = []
+    for chosen in (kernels, replace(kernels, stepper=None)):
+        history = Simulator(model, simulation, started(model, simulation, None), source=Kernels(chosen)).controlled(
+            1e-5
+        )
+        assert history.completed
+        ends.append((history.statistics, history.end))
+    (in_c, at), (plain, expected) = ends
+    assert (in_c.steps, in_c.rejected, in_c.jacobians) == (plain.steps, plain.rejected, plain.jacobians)
+    assert_allclose(at.x, expected.x, rtol=0, atol=1e-8)
+    assert_allclose(at.v, expected.v, rtol=0, atol=1e-6)
+
+
+def test_without_a_compiler_python_takes_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_from_dict(arm())
+    in_c = simulate(scene)
+    monkeypatch.setenv("CC", "no-compiler-of-this-name")
+    plain = simulate(scene)
+    assert plain.outcome is in_c.outcome is MotionOutcome.COMPLETED
+    assert_allclose(plain.x, in_c.x, rtol=0, atol=1e-4)
