@@ -43,7 +43,7 @@ OUTCOMES = (
     StepOutcome.SINGULAR,
     StepOutcome.INTERRUPTED,
 )
-"""What the numbers that C returns mean; None where it would go on."""
+"""Outcomes by the numbers that C returns; None where it would go on."""
 
 POINTER = ctypes.c_void_p
 CALL = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double)
@@ -141,7 +141,7 @@ def _words() -> dict[str, Any]:
 
 
 class CompiledSteps:
-    """The steps of one integration, taken by C; its run has them, and what a next step takes over.
+    """The steps of one integration, taken by C; its run has them, and the memory for a next step.
 
     Args:
         run: the integration, whose steps are controlled and of Radau's method with three stages.
@@ -200,7 +200,7 @@ class CompiledSteps:
         setattr(self._record, name, array.ctypes.data)
 
     def _called(self, function: Callable[[float], None]) -> Any:
-        """A function as C calls it; what it raises is raised when C has returned."""
+        """A function as C calls it; an exception of it is raised when C has returned."""
 
         def guarded(time: float) -> int:
             try:
@@ -310,7 +310,7 @@ class CompiledSteps:
         return outcome, tried[: record.tries].tolist()
 
     def _taken(self, facts: FloatArray, ends: FloatArray, stages: FloatArray) -> None:
-        """Give the run its new steps, and what a next one takes over."""
+        """Give the run its new steps, and the memory for a next one."""
         run, record = self._run, self._record
         now = run.now
         for fact, end, unknowns in zip(facts.tolist(), ends, stages, strict=False):

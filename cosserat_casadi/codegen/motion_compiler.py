@@ -1,8 +1,8 @@
 """Simulate with the equations of motion in machine code, where that pays.
 
-A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the time
-of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on the same
-modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
+A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the
+time of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on
+the same modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
 """
 
 from __future__ import annotations
@@ -123,18 +123,19 @@ class MotionCompiler:
     def _pays(self, model: Model, name: str) -> bool:
         """Whether machine code saves more time than it takes to compile.
 
-        That is so where the next motions take as long as the last one, or where those of this model, in this process,
-        have taken so long already: what was asked for so often is asked for again.
+        That is foreseen where the next motions would take as long as the last one, or where earlier motions of this
+        model have taken so long in this process: more of them are likely.
         """
         if self.last is None:
             return False
         foreseen = max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), _spent(model)[name])
         at_least, each = TO_COMPILE[name]
-        return SAVED[name] * foreseen > at_least + each * model.inverse_dynamics_in_scalars.n_instructions()
+        instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
+        return SAVED[name] * foreseen > at_least + each * instructions
 
 
 def _spent(model: Model) -> dict[str, float]:
-    """Processor time that the virtual machine has taken for each function of a model and those that share it, s."""
+    """Processor time that the virtual machine has taken for each function of a model, or of models that share it, s."""
     return kept_with(model, "_interpreted_time", lambda: dict.fromkeys(TO_COMPILE, 0.0))
 
 
