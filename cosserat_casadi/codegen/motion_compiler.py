@@ -40,6 +40,9 @@ RESIDUAL = "motion_residual"
 JACOBIANS = "motion_jacobians"
 """Names of the functions in C, and of their files in the cache."""
 
+TIP = "motion_tip_"
+"""Name of the pose of a tip in C, before the number of its rod; it stands in the file of the residual."""
+
 MATRICES = 3
 """Derivatives of inverse dynamics: stiffness, damping, mass."""
 
@@ -93,6 +96,13 @@ class MotionCompiler:
             interpreted_jacobians(model) if jacobians is None else jacobians.matrices,
             self._stepper(),
         )
+
+    def tips(self, model: Model) -> dict[str, ca.Function] | None:
+        """Poses of the tips by rod where the residual is machine code, which they stand beside; else None."""
+        of_model, residual = self.asked.get(RESIDUAL, (None, None))
+        if of_model is not model or residual is None or residual.code is None:
+            return None
+        return {name: ca.external(f"{TIP}{k}", residual.code.path) for k, name in enumerate(model.tip)}
 
     def _stepper(self) -> Stepper | None:
         """The steps in machine code; None where there is no compiler."""
@@ -175,13 +185,13 @@ def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
     """The shared object with a function; arguments as of :func:`_in_machine_code`, and the command of the compiler."""
     made_from = (name, *_equations(model))
-    _, function = WRITTEN[name]
+    _, functions = WRITTEN[name]
     texts = texts_in_cache(name, made_from)
     if texts is None and write:
         # The printer of C is needed here alone, and takes its time to be loaded.
         from cosserat_casadi.codegen.kernel_files import external_sources
 
-        texts = kept_texts(name, made_from, lambda: external_sources([function(model)], name, "long long int"))
+        texts = kept_texts(name, made_from, lambda: external_sources(functions(model), name, "long long int"))
     return None if texts is None else compiled_texts(name, texts, compiler)
 
 
@@ -199,21 +209,27 @@ def _equations(model: Model) -> list[Any]:
     return levels
 
 
-def _residual(model: Model) -> ca.Function:
+def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
-    return ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
+    residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
+    # Paths of tips are computed from every motion.
+    tips = []
+    for number, tip in enumerate(model.tip.values()):
+        at = tip.mx_in()
+        tips.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
+    return [residual, *tips]
 
 
-def _jacobians(model: Model) -> ca.Function:
+def _jacobians(model: Model) -> list[ca.Function]:
     function = model.dynamics_jacobian
     arguments = function.mx_in()
     matrices = [ca.densify(matrix) for matrix in function.call(arguments)[:MATRICES]]
-    return ca.Function(JACOBIANS, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])
+    return [ca.Function(JACOBIANS, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])]
 
 
 WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}
-"""Number of results of each function, and how it is written."""
+"""Number of results of each function, and the functions that are written with it, itself first."""
 
 
 def simulate(

@@ -97,20 +97,17 @@ def _integrals(
     """
     if not history.steps:
         return np.full(len(times), account.dissipated), np.full(len(times), account.work)
-    places = [place for leg, step in history.steps for place in _stage_places(leg, step)]
-    looked_at = places
-    if _powers_are_constant(history.model, working):
-        # A rod on a fixed clamp without damping, say.
-        looked_at = places[:1]
-    of_model = [(leg, history.of_model(instant)) for leg, instant in looked_at]
+    stages = history.steps[0][1].method.stages
+    count = stages * len(history.steps)
+    # Those of a rod on a fixed clamp without damping, say, are the same at all times.
+    of_places = history.steps[:1] if _powers_are_constant(history.model, working) else history.steps
+    places = [place for leg, step in of_places for place in _stage_places(leg, step)]
+    of_model = [(leg, history.of_model(instant)) for leg, instant in places]
     dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, of_model, accelerations=True)
     put_in = working @ of_loads + of_actuators.sum(axis=0) + of_bases[0]
     if history.contacts is not None:
         put_in = put_in + history.contacts.powers([instant for _, instant in places])
-    powers = np.stack([dissipated[0], put_in])
-    if len(looked_at) < len(places):
-        powers = np.tile(powers, (1, len(places)))
-    stages = history.steps[0][1].method.stages
+    powers = np.tile(np.stack([dissipated[0], put_in]), (1, count // len(places)))
     by_step = powers.reshape(2, len(history.steps), stages)
     return _up_to(history, times, by_step, np.array([account.dissipated, account.work]))
 

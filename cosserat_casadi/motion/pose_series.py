@@ -70,15 +70,9 @@ def body_poses(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Po
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
-def tip_frames(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Frames:
-    """Frames of a rod's tip; arguments as in :func:`tip_poses`."""
-    position, _, rotation = evaluated(model.tip[rod], x, inputs)
-    return Frames(position[:, :, 0], rotation)
-
-
-def body_frames(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Frames:
-    """Frames of a rigid body; arguments as in :func:`tip_poses`."""
-    position, _, rotation = evaluated(model.body[body], x, inputs)
+def frames_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Frames:
+    """Frames of a tip or a body from its function of the model; arguments as in :func:`tip_poses`."""
+    position, _, rotation = evaluated(function, x, inputs)
     return Frames(position[:, :, 0], rotation)
 
 

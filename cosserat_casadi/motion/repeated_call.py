@@ -28,6 +28,7 @@ class MachineCode:
         integers: memory of the function.
         scratch: likewise.
         library: that has the function.
+        path: of its file.
     """
 
     address: int
@@ -36,6 +37,7 @@ class MachineCode:
     integers: npt.NDArray[np.longlong]
     scratch: FloatArray
     library: ctypes.CDLL
+    path: str
 
 
 class RepeatedCall:
@@ -97,4 +99,4 @@ class RepeatedCall:
         arguments[: len(self.arguments)] = [array.ctypes.data for array in self.arguments]
         results[: len(self.results)] = [array.ctypes.data for array in self.results]
         integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
-        return MachineCode(address, arguments, results, integers, scratch, loaded)
+        return MachineCode(address, arguments, results, integers, scratch, loaded, library)

@@ -206,7 +206,8 @@ class Simulator:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
         if duration not in history.paths_until:
-            history.paths_until[duration] = paths(history, watched_times(history, duration))
+            tips = None if self.source is None else self.source.tips(self.model)
+            history.paths_until[duration] = paths(history, watched_times(history, duration), tips)
         known: Paths = history.paths_until[duration]
         return known
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import Frames, body_frames, tip_frames
+from cosserat_casadi.motion.pose_series import Frames, frames_of
 from cosserat_casadi.scene.constraint_records import Body
 
 WATCHED = 401
@@ -38,19 +40,26 @@ def watched_times(history: History, duration: float) -> FloatArray:
     return times[times <= history.end.time]
 
 
-def paths(history: History, times: FloatArray) -> Paths:
-    """The paths of all tips and bodies at T times."""
+def paths(history: History, times: FloatArray, tips: Mapping[str, ca.Function] | None = None) -> Paths:
+    """The paths of all tips and bodies at T times.
+
+    Args:
+        history: the motion.
+        times: shape (T,), s.
+        tips: the functions of the tips by rod, where they are at hand in machine code.
+    """
     model = history.model
+    tips = tips or model.tip
     x, inputs = history.rough_positions(times)
     points = []
     section_axes = []
     for name, rod in model.discrete.rods.items():
-        tip = tip_frames(model, name, x, inputs)
+        tip = frames_of(tips[name], x, inputs)
         points.append(tip.position / rod.properties.length)
         section_axes.append(tip.rotation[:, :, :2])
     longest = longest_rod(model)
     for body in model.scene.bodies:
-        frames = body_frames(model, body.name, x, inputs)
+        frames = frames_of(model.body[body.name], x, inputs)
         points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest)]
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
