@@ -4,6 +4,11 @@
    cosserat_casadi/numerics holds the same algorithm in Python, which runs where there is no compiler: time_steps.py,
    step_run.py, step_matrices.py, step_control.py; and stage_newton.c is Newton's method. */
 
+#if defined(__GNUC__) && !defined(__clang__)
+/* Rows of matrices are added two entries at a time. */
+#pragma GCC optimize("O3")
+#endif
+
 #include <math.h>
 #include <string.h>
 
@@ -261,6 +266,20 @@ static void swap(real *a, int stride, real *b, int count) {
   }
 }
 
+/* A row less a multiple of another one. */
+static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
+  for (int j = 0; j < n; j++) row[j] -= factor * other[j];
+}
+
+/* The same of complex numbers, whose imaginary parts are a plane behind. */
+static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
+                                 const real *restrict other, const real *restrict other_imaginary, int n) {
+  for (int j = 0; j < n; j++) {
+    row[j] -= factor * other[j] - factor_imaginary * other_imaginary[j];
+    imaginary[j] -= factor * other_imaginary[j] + factor_imaginary * other[j];
+  }
+}
+
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
 static void eliminate_real(real *a, int k, int n) {
   real *own = a + k * n;
@@ -272,7 +291,7 @@ static void eliminate_real(real *a, int k, int n) {
     const real factor = row[k];
     if (i == k || factor == 0) continue;
     row[k] = 0;
-    for (int j = 0; j < n; j++) row[j] -= factor * own[j];
+    subtract_real_row(row, factor, own, n);
   }
 }
 
@@ -298,10 +317,7 @@ static void eliminate_complex(real *a, int k, int n) {
     if (i == k || (factor == 0 && factor_imaginary == 0)) continue;
     row[k] = 0;
     imaginary[k] = 0;
-    for (int j = 0; j < n; j++) {
-      row[j] -= factor * own[j] - factor_imaginary * own_imaginary[j];
-      imaginary[j] -= factor * own_imaginary[j] + factor_imaginary * own[j];
-    }
+    subtract_complex_row(row, imaginary, factor, factor_imaginary, own, own_imaginary, n);
   }
 }
 
