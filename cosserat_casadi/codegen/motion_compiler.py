@@ -47,7 +47,7 @@ MATRICES = 3
 """Derivatives of inverse dynamics: stiffness, damping, mass."""
 
 INSTRUCTION = 7e-9
-"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 4e-9 to 10e-9, more in three dimensions."""
+"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 4e-9 of few to 10e-9 of many."""
 
 AS_MANY_RESIDUALS = 10.0
 """Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""

@@ -16,12 +16,16 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.numerics.consistent_start import regular_inverse
 
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
 
 MOST_CORRECTIONS = 6
 """Most corrections of a state."""
+
+INDEPENDENT = 1e-8
+"""Eigenvalue of the normal equations of constraints, over the largest, from which they are clearly independent."""
 
 CONTRACTED = 0.01
 """Share of the gaps that a correction may leave before the next one has a new Jacobian."""
@@ -74,6 +78,10 @@ class Closing:
         jacobian, _ = self.model.jacobian(x, inputs)
         moves = self.model.discrete.unknowns.differential
         weighted = np.where(moves, jacobian.full()[self.rows] / self._sizes, 0.0)
+        # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
+        regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
+        if regular is not None:
+            return np.asarray(weighted.T @ regular / self._sizes[:, None])
         # Constraints that repeat each other have singular values of that size, over the largest.
         rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
         return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])

@@ -249,7 +249,11 @@ def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:
     """Pseudo-inverse with rows and columns scaled, and the number of directions it leaves out."""
     rows = _scale(np.abs(matrix).max(axis=1))
     columns = _scale((np.abs(matrix) / rows[:, None]).max(axis=0))
-    left, singular, right = np.linalg.svd(matrix / rows[:, None] / columns)
+    scaled = matrix / rows[:, None] / columns
+    regular = regular_inverse(scaled, RANK)
+    if regular is not None:
+        return regular / columns[:, None] / rows, 0
+    left, singular, right = np.linalg.svd(scaled)
     kept = singular > RANK * singular.max(initial=0.0)
     inverse = (right[kept].T / singular[kept]) @ left[:, kept].T
     missing = len(singular) - int(np.sum(kept))
@@ -259,3 +263,22 @@ def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:
 def _scale(sizes: FloatArray) -> FloatArray:
     """Sizes to divide by; nothing is divided where all is zero."""
     return np.where(sizes > 0.0, sizes, 1.0)
+
+
+def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
+    """Inverse of a matrix whose singular values are all above a share of the largest; None where they may not be.
+
+    It takes a tenth of the time of the singular values. The condition in the norm of sums of columns bounds that of the
+    singular values by the number of columns.
+
+    Args:
+        matrix: square.
+        rank: the share.
+    """
+    try:
+        inverse = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        return None
+    condition = len(matrix) * np.linalg.norm(matrix, 1) * np.linalg.norm(inverse, 1)
+    # A condition that is not a number is not below the bound.
+    return np.asarray(inverse) if condition * rank < 1.0 else None

@@ -7,7 +7,7 @@ from moving import PENDULUM, Top, pendulum_state
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.consistent_start import DEGREE, consistent_start
+from cosserat_casadi.numerics.consistent_start import DEGREE, consistent_start, regular_inverse
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
 
@@ -85,3 +85,16 @@ def test_direction_without_mass_tells_its_balance() -> None:
     assert_allclose((turn.T @ balanced.instant.a)[0], 2.0 / 3.0, rtol=0, atol=1e-14)
     out_of_balance = consistent_start(equations, 0.0, np.zeros(2), np.zeros(2), interval=0.02)
     assert out_of_balance.balance_error > 1.0
+
+
+def test_regular_matrices_are_inverted_and_others_are_not() -> None:
+    random = np.random.default_rng(5)
+    left, _ = np.linalg.qr(random.standard_normal((8, 8)))
+    right, _ = np.linalg.qr(random.standard_normal((8, 8)))
+    for smallest, is_regular in ((1e-6, True), (1e-12, False), (0.0, False)):
+        matrix = left @ np.diag([1.0] * 7 + [smallest]) @ right
+        inverse = regular_inverse(matrix, 1e-9)
+        assert (inverse is not None) == is_regular
+        if inverse is not None:
+            assert_allclose(inverse @ matrix, np.eye(8), rtol=0, atol=1e-9)
+    assert regular_inverse(np.full((2, 2), np.nan), 1e-9) is None
