@@ -97,6 +97,20 @@ def test_results_of_a_call_are_kept_by_the_next_one() -> None:
     assert_array_equal(matrices, copies[1])
 
 
+def test_poses_of_tips_stand_beside_the_residual() -> None:
+    model = moving(arm())
+    compiler = MotionCompiler()
+    compiler.kernels(model)
+    assert compiler.tips(model) is None
+    compiler = MotionCompiler(always=True)
+    compiler.kernels(model)
+    x, _, _, inputs, *_ = somewhere(model)
+    tips = compiler.tips(model)
+    assert tips is not None
+    for found, expected in zip(tips["rod"](x, inputs), model.tip["rod"](x, inputs), strict=True):
+        assert_allclose(found.full(), expected.full(), rtol=1e-12, atol=1e-14)
+
+
 def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> None:
     model = moving(arm())
     compiler = MotionCompiler()
@@ -110,6 +124,22 @@ def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> No
             compiler.learn(last)
         compiler.kernels(model)
         assert (is_compiled(compiler, RESIDUAL), is_compiled(compiler, JACOBIANS)) == expected
+
+
+def test_functions_are_compiled_where_motions_of_a_model_have_taken_long() -> None:
+    model = moving(arm())
+    motions = 0
+    while motions < 100:
+        motions += 1
+        compiler = MotionCompiler()
+        compiler.kernels(model)
+        # A search of its own each time, which begins with no motion to foresee the next ones by.
+        compiler.learn(work(600, 1))
+        compiler.kernels(model)
+        if is_compiled(compiler, RESIDUAL):
+            break
+    assert 3 < motions < 60
+    assert not is_compiled(compiler, JACOBIANS)
 
 
 def nothing_written(*arguments: Any) -> dict[str, str]:
