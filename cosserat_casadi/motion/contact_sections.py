@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import along_curve, distances, surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import along_curve, distance_from, distances, surface
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -79,7 +79,7 @@ class RodFacing(Facing):
     def gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections looked at, over the length, shape (k,)."""
         positions = self._looking @ nodes
-        return np.asarray(distances(self.obstacle, positions) - self._looked_radii) / self.length
+        return (self._looked_distances(positions.ravel()) - self._looked_radii) / self.length
 
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections at which the rod is held where it lies, over the length, shape (k,)."""
@@ -242,6 +242,10 @@ class RodFacing(Facing):
     @cached_property
     def _looking(self) -> FloatArray:
         return np.asarray(self._grid.interpolation_matrix(self.looked_at))
+
+    @cached_property
+    def _looked_distances(self) -> RepeatedCall:
+        return RepeatedCall(distance_from(self.obstacle).map(len(self.looked_at)))
 
     @cached_property
     def _looked_radii(self) -> FloatArray:

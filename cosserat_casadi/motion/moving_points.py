@@ -36,8 +36,9 @@ class MovingPoints:
         weights = ca.MX.sym("weights", positions.shape[0])
         total = ca.dot(weights, positions)
         gradient = ca.densify(ca.gradient(total, x))
-        self.positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]))
-        self.gradient = RepeatedCall(ca.Function("gradient", [x, inputs, weights], [gradient]))
+        # As scalars: they are asked for in every iteration, and before and after every step.
+        self.positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]).expand())
+        self.gradient = RepeatedCall(ca.Function("gradient", [x, inputs, weights], [gradient]).expand())
         self._symbols = [x, inputs, weights]
         self._written = (positions, total, gradient)
 
