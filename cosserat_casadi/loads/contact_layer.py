@@ -73,8 +73,8 @@ class ContactLayer(ObstacleLoadRecord):
 
     @property
     def takes_energy(self) -> bool:
-        """Whether it takes energy in motion; loads on bodies do not know how they move."""
-        return self.body is None and (self.obstacle.damping > 0.0 or self.obstacle.rubs)
+        """Whether it takes energy in motion."""
+        return bool(self.obstacle.damping > 0.0 or self.obstacle.rubs)
 
 
 @final
@@ -183,7 +183,7 @@ class _Drag:
 
 
 def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
-    """How a section has moved; None where nothing rubs: at rest without memory, and on bodies."""
+    """How a section has moved; None where nothing rubs, as at rest without memory."""
     in_motion = load.takes_energy and load.obstacle.rubs and _moves(section)
     if not (in_motion or _remembers(section)):
         return None
@@ -260,8 +260,14 @@ def _touching(load: ContactLayer, section: Section, normal: Matrix) -> Matrix:
     """From the centre of a section, or of a disk, to its point that touches, 3×1, m."""
     if load.at is not None:
         return _support(load, section, normal)[1]
-    touching: Matrix = -section.data[0] * normal
+    touching: Matrix = -_reach(load, section) * normal
     return touching
+
+
+def _reach(load: ContactLayer, section: Section) -> Matrix | float:
+    """Radius of a section or a body, m."""
+    reach: Matrix | float = section.data[0] if load.body is None else load.radius
+    return reach
 
 
 def _energy(load: ContactLayer, section: Section) -> Matrix:
@@ -306,9 +312,7 @@ def push_on_disk(load: ContactLayer) -> ca.Function:
 def _gap(load: ContactLayer, section: Section) -> Matrix:
     """Gap of a section, a disk or a body, m."""
     distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
-    reach = section.data[0] if load.body is None and load.at is None else load.radius
-    if load.at is not None:
-        reach, _ = _support(load, section, _normal(load, section))
+    reach = _reach(load, section) if load.at is None else _support(load, section, _normal(load, section))[0]
     gap: Matrix = distance - reach
     return gap
 

@@ -58,6 +58,17 @@ class TracedLoad:
         return self.member.axes(self.load) == "section"
 
     @property
+    def moving_by_body(self) -> SectionKernel | None:
+        """The kernel in motion of a load that acts on bodies or is seen from one.
+
+        Raises:
+            ValueError: it depends on accelerations, which such loads do not know.
+        """
+        if self.moving is not None and not set(self.moving.rates) <= {"velocity", "angular_velocity"}:
+            raise ValueError(f"{self.load.name!r} depends on accelerations, and loads on bodies do not know them")
+        return self.moving
+
+    @property
     def _data_size(self) -> int:
         """Numbers of :meth:`Load.data` at a section."""
         return int(self.kernel.world_wrench.size1_in(3)) - sum(self.columns)

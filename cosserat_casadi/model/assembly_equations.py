@@ -366,6 +366,8 @@ class Assembly:
                 wrenches[name] = wrenches[name] + load.wrench
         for borne in self._borne_loads:
             wrenches[borne.body] = wrenches[borne.body] + borne.wrench
+        for drag in self.system.drags:
+            wrenches[drag.body] = wrenches[drag.body] + drag.on_body
         return wrenches
 
     def _rod_reaction(self, name: FrameName) -> Matrix:

@@ -16,6 +16,7 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor
 from cosserat_casadi.model.inputs import input_values
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.rod.rod_motion import FrameMotion
 
 
 @dataclass(frozen=True)
@@ -120,8 +121,6 @@ class BodyLoads:
             return None
         values = input_values(self.discrete.layout, load, self.inputs)
         kernel = traced(EFFECTS[load.kind], load, values)
-        if kernel.moving is not None:
-            raise ValueError(f"{load.name!r} depends on rates, and loads on bodies do not know them")
         if not kernel.pose_free:
             return self._pose_dependent(kernel, point)
         given_force, given_moment = kernel.coefficients(values)
@@ -139,16 +138,39 @@ class BodyLoads:
         aligns = given_force is not None and not kernel.follower
         return BodyLoad(point.position, self._arm(point), force, moment, kernel.follower, aligns)
 
-    def _pose_dependent(self, kernel: TracedLoad, point: BodyPoint) -> BodyLoad:
-        """A load that depends on the pose of the point: its kernel, evaluated there."""
-        section_kernel = kernel.kernel
+    def drag(self, load: scenes.LoadRecord, motion: FrameMotion) -> Matrix | None:
+        """What motion adds to a load, [force; moment about the origin], 6×1; None where the load does not feel it.
+
+        Args:
+            load: on the body.
+            motion: of the body, world axes.
+        """
+        point = EFFECTS[load.kind].on_body(load, self.body)
+        kernel = traced(EFFECTS[load.kind], load, input_values(self.discrete.layout, load, self.inputs))
+        moving = kernel.moving_by_body
+        if point is None or moving is None:
+            return None
         arm = self._arm(point)
+        at_point = replace(motion, velocity=motion.velocity + ca.cross(motion.angular_velocity, arm))
+        rates = [getattr(at_point, rate) for rate in moving.rates]
+        force, moment = moving.drag.call([*self._arguments(kernel, arm), *rates])
+        drag: Matrix = point.factor * ca.vertcat(force, moment + ca.cross(arm, force))
+        return drag
+
+    def _arguments(self, kernel: TracedLoad, arm: Matrix) -> list[Matrix]:
+        """Arguments of a kernel at a point of the body."""
         parameters = stored(input_values(self.discrete.layout, kernel.load, self.inputs))
         # Profiles are those of a load per length: at a point they are one.
         profiles = ca.DM.ones(sum(kernel.columns), 1)
         # A body is seen from the world: its base is the origin.
         base = [ca.DM.zeros(3, 1), ca.DM.eye(3)]
-        arguments = [self.position + arm, self.rotation, *base, parameters, profiles]
+        return [self.position + arm, self.rotation, *base, parameters, profiles]
+
+    def _pose_dependent(self, kernel: TracedLoad, point: BodyPoint) -> BodyLoad:
+        """A load that depends on the pose of the point: its kernel, evaluated there."""
+        section_kernel = kernel.kernel
+        arm = self._arm(point)
+        arguments = self._arguments(kernel, arm)
         force, moment = section_kernel.wrench.call(arguments)
         (stiffness,) = section_kernel.stiffness.call(arguments)
         energy = None

@@ -30,7 +30,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
-from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, SeenMotion, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,9 @@ class RodLoads:
         site = self.site(load)
         data_size = member.data(load, site).shape[0]
         kernel = traced(member, load, values, data_size)
-        if not kernel.pose_free or self._feels_motion(kernel):
-            return [self._pose_wrench(kernel, site)]
+        motion = None if member.seen_from(load) is not None or kernel.moving is None else self.motion
+        if not kernel.pose_free or motion is not None:
+            return [self._pose_wrench(kernel, site, motion)]
         # Free of the pose, the load is constant coefficients times profiles: it costs a rotation, not a kernel a node.
         given_force, given_moment = kernel.coefficients(values)
         force = self.base.in_base_axes(given_force, follower=kernel.follower)
@@ -113,6 +114,23 @@ class RodLoads:
         moment_line = self._line_wrench(kernel, site, None, moment)
         lines: list[RodLoad] = [line for line in (force_line, moment_line) if line is not None]
         return [*lines, *self._on_fixed_masses(kernel, force)]
+
+    def seen_in_motion(self, load: scenes.LoadRecord, motion: SeenMotion) -> PoseWrench | None:
+        """A load that a body sees in motion; None where it does not act on the rod, or does not feel motion."""
+        member = EFFECTS[load.kind]
+        if not member.acts_on(load, self.rod):
+            return None
+        site = self.site(load)
+        kernel = traced(member, load, self._values(load), member.data(load, site).shape[0])
+        return None if kernel.moving_by_body is None else self._pose_wrench(kernel, site, motion)
+
+    def base_of(self, load: scenes.LoadRecord) -> RodBase:
+        """The base of the rod as a load sees it: in the world, or from a body."""
+        seen_from = EFFECTS[load.kind].seen_from(load)
+        if seen_from is None:
+            return self.base
+        assert self.body_pose is not None, "what bodies bear is left out without their poses"
+        return self.base.seen_from(self.body_pose(seen_from))
 
     def _values(self, load: scenes.LoadRecord) -> dict[str, Matrix]:
         """Inputs of a load that all its sections share."""
@@ -163,25 +181,19 @@ class RodLoads:
             return LineWrench(None, scaled, profiles, kernel.follower)
         return LineWrench(scaled, None, profiles, kernel.follower)
 
-    def _pose_wrench(self, kernel: TracedLoad, site: Site) -> PoseWrench:
-        """A load that depends on the pose of its sections: its kernel, evaluated at each of them."""
+    def _pose_wrench(self, kernel: TracedLoad, site: Site, motion: RodMotion | SeenMotion | None) -> PoseWrench:
+        """A load that depends on the pose of its sections or on their motion: its kernel, evaluated at each of them."""
         at = kernel.member.abscissa(kernel.load)
         values = self._values(kernel.load)
         section_kernel = kernel.kernel
-        motion = None
-        if self._feels_motion(kernel):
+        if motion is not None:
             assert kernel.moving is not None
             section_kernel = kernel.moving
-            motion = self.motion
         # A load per length of a rod whose length is free acts on that length; a load at a point does not.
         scale: Matrix | float = 1.0
         if at is None and self.ratio is not None:
             scale = self.ratio
-        base = self.base
-        borne_by = kernel.member.seen_from(kernel.load)
-        if borne_by is not None:
-            assert self.body_pose is not None, "what bodies bear is left out without their poses"
-            base = base.seen_from(self.body_pose(borne_by))
+        base = self.base_of(kernel.load)
         return PoseWrench(
             at=at,
             span=kernel.member.span(kernel.load),
@@ -193,12 +205,8 @@ class RodLoads:
             scale=scale,
             motion=motion,
             growth=kernel.member.growth,
-            borne_by=borne_by,
+            borne_by=kernel.member.seen_from(kernel.load),
         )
-
-    def _feels_motion(self, kernel: TracedLoad) -> bool:
-        """Whether the rod moves and the load depends on how."""
-        return self.motion is not None and kernel.moving is not None
 
 
 def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:

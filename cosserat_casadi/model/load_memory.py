@@ -8,28 +8,30 @@ import casadi as ca
 
 from cosserat_casadi.loads.load import Rubbing, Section
 from cosserat_casadi.maths.numbers import as_matrix
+from cosserat_casadi.model.drag_terms import seen_motion
 from cosserat_casadi.model.registry import EFFECTS, remembering
 from cosserat_casadi.model.system import System
 from cosserat_casadi.scene.load_records import LoadRecord
 
 
 def rubbing_at_nodes(system: System) -> list[Rubbing]:
-    """How each load that remembers rubs at the M nodes of its rod, side by side: h×M, 1×M and 3×M."""
+    """How each load that remembers rubs at the M nodes of its rod: h×M and 1×M as it sees them, 3×M in world axes."""
     found = []
     for load in remembering(system.discrete.loads):
-        base, shape = system.base(load.rod), system.shapes[load.rod]
-        rotation = base.rotation
+        body = EFFECTS[load.kind].seen_from(load)
+        base, shape = system.rod_loads(load.rod).base_of(load), system.shapes[load.rod]
+        rotation = base.base_R_world.T
         origin = ca.repmat(ca.MX(base.position), 1, shape.rod.grid.size)
         positions = origin + rotation @ shape.position
         rotations = ca.vertcat(*[rotation @ director for director in shape.directors])
         data = as_matrix(EFFECTS[load.kind].data(load, system.rod_loads(load.rod).site(load)))
         arguments = [positions, rotations, data]
-        motion = system.motions.get(load.rod)
-        if motion is not None:
+        if system.motions:
+            motion = seen_motion(system, load.rod, body)
             arguments += [rotation @ motion.velocity, rotation @ motion.angular_velocity]
-        found.append(
-            Rubbing(*_kernel(load, [field.shape[0] for field in arguments]).map(positions.shape[1])(*arguments))
-        )
+        kernel = _kernel(load, [field.shape[0] for field in arguments])
+        history, slip, friction = kernel.map(positions.shape[1])(*arguments)
+        found.append(Rubbing(history, slip, friction if body is None else system.body(body).rotation @ friction))
     return found
 
 

@@ -93,7 +93,7 @@ class MotionEnergy:
         of_contact = [
             self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
         ]
-        of_contact += [terms.dissipated_power for terms in self.system.pairs if terms.rubs]
+        of_contact += [terms.dissipated_power for terms in self.system.rubbing]
         of_joints = [effort.resistance(rate) * rate for effort, _, rate in self._free_joints if effort.resists]
         return _sum([*of_rods, *of_branches, *of_joints, *of_contact])
 

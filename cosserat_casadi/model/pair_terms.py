@@ -165,6 +165,11 @@ class PairTerms:
     system: System
     pair: ContactPair
 
+    @property
+    def name(self) -> str:
+        """Name of the pair."""
+        return self.pair.name
+
     @cached_property
     def sides(self) -> tuple[ContactSide, ...]:
         """The sections of both rods; of a rod that touches itself once."""

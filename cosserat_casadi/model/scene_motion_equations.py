@@ -121,11 +121,11 @@ class SceneMotionEquations:
 
     @property
     def _by_friction(self) -> tuple[Matrix, Matrix]:
-        """Derivatives with x and v by the change of friction between rods with both.
+        """Derivatives with x and v by the change of friction between rods, and of drag on bodies, with both.
 
         The equations are linear in it, and at fixed friction their derivatives are those of any dead load.
         """
-        rubbing = [terms for terms in self.system.pairs if terms.rubs]
+        rubbing = self.system.rubbing
         size = self.system.discrete.size
         if not rubbing or not is_symbolic(self._velocity):
             return ca.DM(size, size), ca.DM(size, size)
@@ -134,7 +134,7 @@ class SceneMotionEquations:
         symbol = ca.MX.sym("friction", loads.shape[0])
         ends = np.cumsum([0, *(friction.numel() for friction in frictions)]).tolist()
         parts = iter(ca.reshape(part, 6, part.numel() // 6) for part in ca.vertsplit(symbol, ends))
-        given = {terms.pair.name: [next(parts) for _ in terms.frictions] for terms in rubbing}
+        given = {terms.name: [next(parts) for _ in terms.frictions] for terms in rubbing}
         rows = SceneEquations(replace(self.system, friction=given)).residual
         with_x, with_v = (ca.jacobian(loads, argument) for argument in (self.system.arguments.x, self._velocity))
         changes = [ca.jtimes(rows, symbol, ca.densify(change)) for change in (with_x, with_v)]

@@ -24,6 +24,7 @@ from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
+from cosserat_casadi.model.drag_terms import BodyDrag, RodDrag, drags_of
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
@@ -95,8 +96,7 @@ class System:
         discrete: constant matrices of the scene.
         arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
-        friction: [force; moment] on the sections of both sides of pairs of rods that rub, 6×S each, by pair; computed
-            where it is left out.
+        friction: [force; moment] on what rubs, as :attr:`rubbing` tells it, by name; computed where it is left out.
     """
 
     discrete: DiscreteScene
@@ -110,7 +110,8 @@ class System:
         balances = {}
         for name, shape_of_rod in self.shapes.items():
             wrenches = [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
-            loads = [*self._loads(name), *wrenches, *self._pair_wrenches(name), *self._inertia_wrenches(name)]
+            loads = [*self._loads(name), *wrenches, *self._pair_wrenches(name), *self._drag_wrenches(name)]
+            loads += self._inertia_wrenches(name)
             balances[name] = InverseGeometricModel(Statics(shape_of_rod, loads), self.actuators.on_rod(name))
         return balances
 
@@ -146,6 +147,16 @@ class System:
     def pairs(self) -> list[PairTerms]:
         """Pairs of rods that push each other."""
         return [PairTerms(self, pair) for pair in self.discrete.pairs]
+
+    @cached_property
+    def drags(self) -> list[RodDrag | BodyDrag]:
+        """What motion adds to loads that bodies feel; none at rest."""
+        return [] if self.arguments.motion is None else list(drags_of(self))
+
+    @property
+    def rubbing(self) -> list[PairTerms | RodDrag | BodyDrag]:
+        """All whose friction is computed apart."""
+        return [*(terms for terms in self.pairs if terms.rubs), *self.drags]
 
     @cached_property
     def motions(self) -> dict[str, RodMotion]:
@@ -460,11 +471,15 @@ class System:
         wrenches = [load for load in self._loads(rod) if not isinstance(load, PoseWrench)]
         dead = [wrench for wrench in wrenches if not wrench.follower]
         # What inertia is at this instant keeps its direction in the world as well.
-        return [*dead, *self._pair_wrenches(rod), *self._inertia_wrenches(rod)]
+        return [*dead, *self._pair_wrenches(rod), *self._drag_wrenches(rod), *self._inertia_wrenches(rod)]
 
     def _pair_wrenches(self, rod: str) -> list[LineWrench]:
         """Forces of other rods, and of other stretches of the rod, on it, base frame."""
         return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
+
+    def _drag_wrenches(self, rod: str) -> list[Wrench]:
+        """What motion adds to loads on a rod that bodies see, base frame."""
+        return [wrench for drag in self.drags for wrench in drag.wrenches(rod)]
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:
         """Inertia of a rod as a wrench on its sections; none at rest."""

@@ -86,22 +86,23 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
         model: with memory.
         inputs: stacked inputs with the history of the last point.
         before: the last two points, or the first one.
-        longest: most that the unknowns may change by, in their 2-norm.
+        longest: most that shapes and poses may change by, in the 2-norm of their unknowns; forces may jump.
     """
     last = before[-1]
     barriers = SmoothBarriers(model)
+    places = model.discrete.unknowns.differential
     equations = input_path(model, last.x, inputs, inputs).at(1.0)
     found: Solution | None = None
     for start in (2 * last.x - before[0].x, last.x):
         end = newton(equations, start, QUICK)
-        if end.outcome is Outcome.CONVERGED and np.linalg.norm(end.x - last.x) <= longest:
+        if end.outcome is Outcome.CONVERGED and np.linalg.norm((end.x - last.x)[places]) <= longest:
             found = judge(model, inputs, end.x, end.outcome, end.iterations, 1.0, QUICK.tolerance)
             break
     if found is None:
         # A new history leaves the forces as they are: the last point is in balance with it.
         settled = np.where(model.inputs.of_memory, inputs, last.inputs)
         found = solve(model, inputs, start=replace(last, inputs=settled), estimate_error=False)
-    near = np.linalg.norm(found.x - last.x) <= longest
+    near = np.linalg.norm((found.x - last.x)[places]) <= longest
     passes = barriers.any and barriers.are_between(last.x, found.x, (last.inputs, inputs))
     return found if found.converged and near and not passes else None
 

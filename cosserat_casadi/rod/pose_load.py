@@ -81,7 +81,7 @@ class LoadedSections:
     @cached_property
     def frozen(self) -> Wrench:
         """The wrench at this shape as one of fixed direction."""
-        return self._dead(self.force, self.moment)
+        return self.dead(self.force, self.moment)
 
     @cached_property
     def energy(self) -> Matrix | None:
@@ -143,9 +143,9 @@ class LoadedSections:
         forces, moments = ca.vertsplit(variation, 3 * count)
         force = unstack(forces, 3)
         moment = unstack(moments, 3)
-        return self._dead(force if force.nnz() else None, moment if moment.nnz() else None)
+        return self.dead(force if force.nnz() else None, moment if moment.nnz() else None)
 
-    def _dead(self, force: Matrix | None, moment: Matrix | None) -> Wrench:
+    def dead(self, force: Matrix | None, moment: Matrix | None) -> Wrench:
         """A dead wrench on the loaded sections from its values there, 3×k each."""
         at = self.load.at
         if at is not None:
@@ -159,6 +159,12 @@ class LoadedSections:
         size = self.shape.rod.grid.size
         places = ca.Sparsity.triplet(len(self.nodes), size, list(range(len(self.nodes))), self.nodes)
         return part @ ca.DM(places, 1.0)
+
+    @cached_property
+    def drag(self) -> tuple[Matrix, Matrix]:
+        """Forces and moments on the sections less those at rest, 3×k each."""
+        force, moment = (self.load.scale * part for part in self._mapped(self.load.kernel.drag))
+        return force, moment
 
     @cached_property
     def _wrench(self) -> Sequence[Matrix]:

@@ -53,6 +53,15 @@ class SectionKernel:
         return ca.Function("wrench", symbols, results, self.arguments, ["force", "moment"])
 
     @cached_property
+    def drag(self) -> ca.Function:
+        """Force and moment less those at rates of zero, 3×1 each, in the axes of the base."""
+        symbols = self._symbols()
+        still = [*symbols[: len(ARGUMENTS)], *(ca.SX(3, 1) for _ in self.rates)]
+        pairs = zip(self._in_base(symbols), self._in_base(still), strict=True)
+        results = ca.cse([ca.densify(moving - resting) for moving, resting in pairs])
+        return ca.Function("drag", symbols, results, self.arguments, ["force", "moment"])
+
+    @cached_property
     def stiffness(self) -> ca.Function:
         """6×6 derivative of [force; moment] with [δr; δθ], all in the axes of the base."""
         symbols = self._symbols()

@@ -60,6 +60,19 @@ Wrench = WrenchAt | LineWrench
 
 
 @dataclass(frozen=True)
+class SeenMotion:
+    """Motion of the sections of a rod as a body sees it, in the axes of the base of the rod.
+
+    Attributes:
+        velocity: 3×M, m/s.
+        angular_velocity: 3×M, rad/s.
+    """
+
+    velocity: Matrix
+    angular_velocity: Matrix
+
+
+@dataclass(frozen=True)
 class PoseWrench:
     """A wrench that depends on the position or the rotation of its section, in any way but turning with it.
 
@@ -73,7 +86,7 @@ class PoseWrench:
         parameters: what the kernel depends on at run time, p×1.
         data: numbers of the load at its sections, such as values of profiles, shape (d, k).
         scale: factor on force, moment and energy.
-        motion: of the rod; None at rest, and for a kernel that does not depend on rates.
+        motion: of the rod, or as a body sees it; None at rest, and for a kernel that does not depend on rates.
         growth: power of the load factor by which it grows on the way from the unloaded scene.
         borne_by: name of the body that bears the opposite wrench; None where the world does.
     """
@@ -86,7 +99,7 @@ class PoseWrench:
     parameters: Matrix
     data: Numbers
     scale: Matrix | float
-    motion: RodMotion | None = None
+    motion: RodMotion | SeenMotion | None = None
     growth: int = 1
     borne_by: str | None = None
 

@@ -220,22 +220,13 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
         if key in given:
             problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
             yield Fault((key,), problem, f"leave {key} out, or leave body out")
-    if "damping" in given:
-        problem = "contact with an obstacle on a body is not damped"
-        yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
-    if "friction" in given:
-        problem = "contact with an obstacle on a body is without friction"
-        yield Fault(("friction",), problem, "leave it out, or fix the obstacle to the world")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
-    """Bodies that have no radius to keep, and friction on them."""
+    """Bodies that have no radius to keep."""
     bodies = given.get("bodies")
     if not isinstance(bodies, list | tuple):
         return
-    if "friction" in given:
-        problem = "contact of bodies is without friction"
-        yield Fault(("friction",), problem, "give the obstacle twice: with friction for rods, and without for bodies")
     known = scene.named("bodies")
     for i, name in enumerate(bodies):
         # A name that nothing has is refused with the other references.
