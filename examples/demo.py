@@ -82,6 +82,7 @@ MOTIONS = (
     "seaweed",
     "swimmer",
     "snake",
+    "gripper",
     "dropped_rod",
     "bouncing_rod",
     "rod_hits_floor",

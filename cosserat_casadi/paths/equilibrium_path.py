@@ -206,7 +206,8 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
             return 1.0
         # The tip of a held rod does not move, so that its way tells nothing.
         load_name = next(entry.owner for entry, _ in self.model.inputs if entry.name == self.name)
-        load = next(load for load in scene.causes if load.name == load_name)
+        # An input of a rod has no load.
+        load = next((load for load in scene.causes if load.name == load_name), None)
         if getattr(load, "rod", name) != name:
             return 0.5
         return float(getattr(load, "at", 0.5))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -10,8 +11,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, discretise, follow, scene_from_dict, simulate
+from cosserat_casadi import Model, build, discretise, export, follow, load, read_scene, scene_from_dict, simulate
+from cosserat_casadi.codegen.compiled_motion import CompiledMotion, StepState
+from cosserat_casadi.equilibrium.rubbing import friction_between
+from cosserat_casadi.equilibrium.smooth_contact import smooth_layers
 from cosserat_casadi.paths.friction_path import FrictionPath
+from tests.conftest import ROOT
 
 PINCH = 2.0
 """Force on each jaw, N."""
@@ -159,3 +164,46 @@ def test_a_ball_slides_or_rolls_down_an_incline(friction: float) -> None:
     slides, rolls = 9.81 * (np.sin(0.4) - friction * np.cos(0.4)), 5 / 7 * 9.81 * np.sin(0.4)
     assert_allclose(way, max(slides, rolls) * 0.1**2 / 2, rtol=1.5e-2, atol=0)
     assert np.abs(motion.energy.imbalance).max() < 1e-3
+
+
+@pytest.mark.slow  # three paths
+def test_a_gripper_holds_a_ball_by_the_friction_of_its_fingers() -> None:
+    """Where all fingers slip each rubs with the coefficient times its push, and the pin bears what all three hold.
+
+    More tension holds more. What the machine reads falls as the ball leaves the fingers.
+    """
+    model = build(read_scene(ROOT / "examples" / "gripper.toml"))
+    held = []
+    for tension in (4.0, 5.0, 6.0):
+        start = {f"flexor_{number}.tension": tension for number in (1, 2, 3)} | {"pin.base.position": [0, 0, -0.15]}
+        path = follow(model, "pin.base.position", [0, 0, -0.154], start)
+        assert path.converged, path.message
+        assert path.section("pin") == 0.5  # its tip is held, and what moves is no load
+        solutions = [path.solution(row) for row in range(len(path.factor))]
+        pulls = np.array([-found.base_wrench("pin").force[2] for found in solutions])
+        peak = int(pulls.argmax())
+        assert 0 < peak < len(pulls) - 1 and pulls[-1] < pulls[peak]
+        end = solutions[-1]
+        assert all(stretch.slips for stretch in path.rubbing(-1)) and len(end.contacts) == 3
+        assert_allclose(sum(contact.force[2] for contact in end.contacts), -pulls[-1], rtol=1e-2, atol=0)
+        for layer, contact in zip(smooth_layers(end), end.contacts, strict=True):
+            rubbing = friction_between(end.model, layer, end.x, end.inputs, (contact.start, contact.end))
+            pushing = contact.force - rubbing
+            assert_allclose(np.linalg.norm(rubbing) / np.linalg.norm(pushing), 0.5, rtol=2e-2, atol=0)
+        held.append(pulls[peak])
+    assert np.all(np.diff(held) > 0.1)
+
+
+@pytest.mark.slow  # a compilation
+def test_dynamics_in_c_are_those_of_python(tmp_path: Path) -> None:
+    """Balance of a ball that slides on a plane and turns."""
+    model = rolling(0.3)
+    library = load(export(model, tmp_path / "ball", dynamics=True))
+    assert isinstance(library, CompiledMotion)
+    rng = np.random.default_rng(4)
+    x, v, a = (size * rng.standard_normal(model.size) for size in (1e-5, 1e-1, 1.0))
+    inputs = model.pack()
+    still = np.zeros_like(inputs)
+    wanted = np.asarray(model.inverse_dynamics(x, v, a, inputs, still, still)).ravel()
+    found = library.inverse_dynamics(StepState(x, v, a), inputs)
+    assert_allclose(found, wanted, rtol=1e-9, atol=1e-11 * np.abs(wanted).max())
