@@ -139,7 +139,7 @@ class BodyLoads:
         return BodyLoad(point.position, self._arm(point), force, moment, kernel.follower, aligns)
 
     def drag(self, load: scenes.LoadRecord, motion: FrameMotion) -> Matrix | None:
-        """What motion adds to a load, [force; moment about the origin], 6×1; None where the load does not feel it.
+        """The drag of a load, [force; moment about the origin], 6×1; None of a load that does not feel motion.
 
         Args:
             load: on the body.

@@ -1,4 +1,4 @@
-"""What loads that bodies bear, or that act on bodies, gain by motion: damping and friction of their contact.
+"""Drag: the share of motion in loads that bodies bear or that act on bodies, such as damping and friction of contact.
 
 A load on a rod that a body sees hangs on how the rod moves as the body sees it, one on a body on how the body moves.
 What motion adds to its value at rest is its drag. In the world it is a wrench on the sections, and the opposite on the

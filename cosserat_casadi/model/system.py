@@ -150,7 +150,7 @@ class System:
 
     @cached_property
     def drags(self) -> list[RodDrag | BodyDrag]:
-        """What motion adds to loads that bodies feel; none at rest."""
+        """Drags of loads that bodies bear or that act on bodies; none at rest."""
         return [] if self.arguments.motion is None else list(drags_of(self))
 
     @property
@@ -478,7 +478,7 @@ class System:
         return [wrench for terms in self.pairs if rod in terms.pair.rods for wrench in terms.wrenches(rod)]
 
     def _drag_wrenches(self, rod: str) -> list[Wrench]:
-        """What motion adds to loads on a rod that bodies see, base frame."""
+        """Drags of loads on a rod that bodies bear, base frame."""
         return [wrench for drag in self.drags for wrench in drag.wrenches(rod)]
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:
