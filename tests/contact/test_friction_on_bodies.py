@@ -94,6 +94,7 @@ def test_a_ball_that_is_let_go_sticks_where_it_is() -> None:
     assert not all(stretch.slips for stretch in back.rubbing(-1))
 
 
+@pytest.mark.slow
 def test_a_ball_is_pulled_from_between_jaws_as_a_point_mass() -> None:
     """With the pull less what the jaws rub with; that takes force times way, and nothing is missing."""
     motion = simulate(vice(1e-6, True))
