@@ -231,8 +231,8 @@ class Arrangement:
                 # The obstacle sees the rod from its body.
                 body = bodies[obstacle.body]
                 positions = in_axes_of(body, positions)
-                tangents = tangents @ body.rotation[0]
-                bends = bends @ body.rotation[0]
+                tangents = tangents @ body.rotation
+                bends = bends @ body.rotation
             gaps[rod, obstacle.name] = GapsAlong(
                 rod=rod,
                 obstacle=obstacle,
