@@ -61,6 +61,7 @@ class Strand:
         settings: how it steps.
         gauss: whether by Gauss's method, and not by Radau IIA.
         factor: error of the paths over their distance from those of this strand; 0 of the motion itself.
+        impacts: energy that its impacts took more than those of the motion, J.
         resume: where it goes on.
     """
 
@@ -68,6 +69,7 @@ class Strand:
     settings: StepSettings
     gauss: bool
     factor: float
+    impacts: float
     resume: Resume
 
 

@@ -118,7 +118,7 @@ def go_on(
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
             return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
         error += strand.factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
-        companions.append(Companion(told, strand.factor))
+        companions.append(Companion(told, strand.factor, strand.impacts))
     # An error that is not known makes that of the whole unknown.
     total = float(np.maximum(error, checkpoint.error))
     bound = bound_of(scene, asked, tolerance_of(model, asked))

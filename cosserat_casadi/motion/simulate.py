@@ -112,10 +112,12 @@ class Companion:
     Attributes:
         history: the motion.
         factor: error of the other one over the distance of their paths.
+        impacts: energy that its impacts took more than those of the other one before both went on, J.
     """
 
     history: History
     factor: float
+    impacts: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -499,8 +501,9 @@ def motion_of(
     begun = simulator.begun
     energy, account = energies_of(history, times, moving, None if begun is None else begun.energy)
     others = [one for one in companions if one is not None and one.history.completed]
-    strands = [_strand(history, 0.0), *(_strand(one.history, one.factor) for one in others)]
-    spread = max((abs(one.history.lost - history.lost) for one in others), default=float("nan"))
+    strands = [_strand(history, 0.0, 0.0)]
+    strands += [_strand(one.history, one.factor, one.impacts + one.history.lost - history.lost) for one in others]
+    spread = max((abs(strand.impacts) for strand in strands[1:]), default=float("nan"))
     end = Checkpoint(history.end.time, tuple(strands), error, account, _tips(history, history.end.time))
     return Motion(
         model=model,
@@ -524,10 +527,10 @@ def motion_of(
     )
 
 
-def _strand(history: History, factor: float) -> Strand:
+def _strand(history: History, factor: float, impacts: float) -> Strand:
     """A motion as far as it has come."""
     method = history.method.stiffly_accurate
-    return Strand(history.model.discretisation, history.settings, not method, factor, history.resume)
+    return Strand(history.model.discretisation, history.settings, not method, factor, impacts, history.resume)
 
 
 def _tips(history: History, time: float) -> dict[str, list[float]]:

@@ -366,3 +366,6 @@ def test_energy_of_impacts_is_told_with_its_change_by_modes() -> None:
     # The motion on more modes has steps of another tolerance here.
     assert_allclose(few.impacts_spread, change, rtol=0.05, atol=0)
     assert few.to_dict()["energy"]["impacts_spread"] == few.impacts_spread
+    longer = simulate(parse_scene(coarse.replace("duration = 0.08", "duration = 0.081")), start=few)
+    assert not longer.events
+    assert longer.impacts_spread == few.impacts_spread
