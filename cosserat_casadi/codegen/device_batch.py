@@ -167,7 +167,7 @@ class DeviceBatch:
 
         Args:
             dt: length of the step, s.
-            tolerance: as of a step in C, and so the next two; with ``max_parts`` 0 the defaults hold.
+            tolerance: as of a step in C, and so the next two: all three, or none for the defaults.
             max_iterations: of one attempt.
             max_parts: into which a step may be cut.
             stream: address of a CUDA stream.
@@ -175,9 +175,11 @@ class DeviceBatch:
 
         Raises:
             AttributeError: the folder has no motions.
-            ValueError: an array is missing, unknown, or of the wrong type, shape or place.
+            ValueError: an array is missing, unknown, or of the wrong type, shape or place; or a setting is missing.
             ExportError: the device refuses.
         """
+        if not max_parts and (tolerance or max_iterations):
+            raise ValueError("with max_parts 0 the defaults hold: give max_parts beside tolerance and max_iterations")
         real = self._real
         settings = [("dt", real, dt), ("tolerance", real, tolerance)]
         settings += [("max_iterations", ctypes.c_int, max_iterations), ("max_parts", ctypes.c_int, max_parts)]
@@ -203,20 +205,30 @@ class DeviceBatch:
 
         Args:
             inputs: shape (k, m).
-            parameters: shape (k, p).
+            parameters: shape (k, p); None where the scene has none.
+
+        Raises:
+            ValueError: a table is missing, or of the wrong shape.
+            ExportError: the device refuses.
         """
-        given = {"inputs": inputs} if parameters is None else {"inputs": inputs, "parameters": parameters}
+        count = len(inputs)
+        given = {"inputs": inputs, "parameters": np.empty((count, 0)) if parameters is None else parameters}
+        for name, table in given.items():
+            wanted_shape = self._shape(name, count)[::-1]
+            if np.shape(table) != wanted_shape:
+                raise ValueError(f"{name} must be of shape {wanted_shape}, got {np.shape(table)}")
+        given = {name: table for name, table in given.items() if name == "inputs" or table.size}
         tables = {name: np.array(table.T, self.dtype, order="C") for name, table in given.items()}
         wanted = ("x", "status", "iterations", "residual_norm", "error_estimate", "results")
         for name in wanted:
-            tables[name] = np.empty(self._shape(SOLVE_TABLE[name], len(inputs)), self._type(SOLVE_TABLE[name]))
+            tables[name] = np.empty(self._shape(SOLVE_TABLE[name], count), self._type(SOLVE_TABLE[name]))
         addresses: dict[str, int] = {}
         try:
             for name, table in tables.items():
                 addresses[name] = self._allocate(table.nbytes)
             for name in given:
                 self._check(self._function("device_copy")(addresses[name], *_bytes_of(tables[name])))
-            self._call("solve", SOLVE_TABLE, [], addresses, len(inputs), 0)
+            self._call("solve", SOLVE_TABLE, [], addresses, count, 0)
             for name in wanted:
                 address, size = _bytes_of(tables[name])
                 self._check(self._function("device_copy")(address, addresses[name], size))
@@ -494,7 +506,7 @@ def _bytes_of(array: np.ndarray[Any, Any]) -> tuple[int, int]:
 def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
     """Whether numbers stand one after the other; strides of axes of one entry mean nothing."""
     apart = [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
-    return all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
+    return 0 in shape or all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
 
 
 def _tensor_of(capsule: Any) -> _Tensor:

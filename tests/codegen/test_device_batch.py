@@ -217,6 +217,13 @@ def test_arrays_that_are_refused(root: Path) -> None:
         with pytest.raises(ValueError, match=sentence):
             batch.solve(**{**good, **changed})
     batch.solve(**good)
+    batch.solve(**{name: array[..., :0] for name, array in good.items()})
+    with pytest.raises(ValueError, match=r"inputs must be of shape \(2, 3\), got \(2, 2\)"):
+        batch.rows(np.zeros((2, 2)), np.ones((2, 1)))
+    with pytest.raises(ValueError, match=r"parameters must be of shape \(2, 1\), got \(2, 0\)"):
+        batch.rows(np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="give max_parts"):
+        batch.step(1e-3, tolerance=1e-6)
 
 
 def test_what_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
