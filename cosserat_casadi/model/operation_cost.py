@@ -83,9 +83,10 @@ def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None
 
 
 def is_damped(scene: scenes.Scene) -> bool:
-    """Whether a rod of the scene is damped, or contact takes energy."""
+    """Whether a rod of the scene is damped, or contact or a joint takes energy."""
     rods = any(rod.damping is not None for rod in scene.rods)
     rods = rods or any(contact.friction for contact in scene.rod_contacts)
+    rods = rods or any(getattr(joint, key, 0.0) > 0.0 for joint in scene.joints for key in ("damping", "friction"))
     return rods or any(obstacle.damping > 0.0 or obstacle.rubs for obstacle in scene.obstacles)
 
 
@@ -94,11 +95,22 @@ def without_damping(scene: scenes.Scene) -> scenes.Scene:
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
     obstacles = tuple(obstacle.model_copy(update={"damping": 0.0, "friction": 0.0}) for obstacle in scene.obstacles)
     contacts = tuple(contact.model_copy(update={"friction": 0.0}) for contact in scene.rod_contacts)
+    # A joint keeps its coordinate, and gets none by a key that was not given.
+    joints = tuple(
+        joint.model_copy(update=dict.fromkeys(joint.model_fields_set & {"damping", "friction"}, 0.0))
+        for joint in scene.joints
+    )
     # A parameter is named OWNER.FIELD, or OWNER.FIELD.NUMBER; what follows it is of the same kind.
     named = zip(scene.parameters, scene.parameter_names(), strict=True)
     parameters = tuple(entry for entry, name in named if name.split(".")[1] not in ("damping", "friction"))
     return scene.model_copy(
-        update={"rods": rods, "obstacles": obstacles, "rod_contacts": contacts, "parameters": parameters}
+        update={
+            "rods": rods,
+            "obstacles": obstacles,
+            "rod_contacts": contacts,
+            "joints": joints,
+            "parameters": parameters,
+        }
     )
 
 

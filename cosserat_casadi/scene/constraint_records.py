@@ -419,6 +419,13 @@ class AxisJoint(JointRecord):
         if "name" not in given and (cls.coordinate_key in given or cls.effort_key in given):
             yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
 
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """What a joint has by default acts where something acts along its coordinate, and no drive prescribes it."""
+        acts = self.has_coordinate and not self.prescribed
+        if key in ("stiffness", "rest", "damping", "friction", "slip_rate") and not acts:
+            return "is not given in the scene", "give it a value: the parameter's default"
+        return super().parameter_refusal(key)
+
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """A joint has the drive that its table gives it."""

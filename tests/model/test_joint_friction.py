@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Motion, SceneError, build, scene_from_dict, simulate
+from cosserat_casadi.model.operation_cost import is_damped, price, price_of_motion, without_damping
 from tests.model.test_base_joints import link, scene
 from tests.model.test_joint_coordinates import ALONG, HINGE, SLIDE
 from tests.model.test_joint_stops import INERTIA, WEIGHT, lever
@@ -97,3 +98,23 @@ def test_refusals(joint: dict[str, Any], where: str, problem: str) -> None:
     with pytest.raises(SceneError) as refused:
         scene_from_dict(scene([link("a", base=ALONG)], [{**HINGE, **joint}]))
     assert (f"joints[0].{where}", problem) in [(one.where, one.problem) for one in refused.value.problems]
+
+
+@pytest.mark.parametrize("joint", [{}, {"angle": 0.1}], ids=["nothing acts", "drive"])
+def test_friction_that_would_not_act_is_no_parameter(joint: dict[str, Any]) -> None:
+    tables = scene([link("a", base=ALONG)], [{**HINGE, **joint}])
+    with pytest.raises(SceneError, match=r"hinge\.friction.*is not given in the scene"):
+        scene_from_dict({**tables, "parameters": ["hinge.friction"]})
+
+
+def test_joint_that_rubs_costs_in_motion_alone() -> None:
+    rubs = scene_from_dict({**sliding_rod(), "parameters": ["slide.friction"]})
+    bare = without_damping(rubs)
+    assert is_damped(rubs)
+    assert not is_damped(bare)
+    assert bare.joints[0].has_coordinate
+    assert not bare.parameters
+    rubbing, sliding = (build(one, moving=True) for one in (rubs, bare))
+    assert rubbing.size == sliding.size
+    assert price_of_motion(rubbing).inverse_dynamics.number > price_of_motion(sliding).inverse_dynamics.number
+    assert price(rubbing).residual.number == price(sliding).residual.number
