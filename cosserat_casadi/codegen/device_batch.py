@@ -506,7 +506,8 @@ def _bytes_of(array: np.ndarray[Any, Any]) -> tuple[int, int]:
 def _contiguous(shape: tuple[int, ...], strides: list[int]) -> bool:
     """Whether numbers stand one after the other; strides of axes of one entry mean nothing."""
     apart = [int(np.prod(shape[i + 1 :])) for i in range(len(shape))]
-    return 0 in shape or all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
+    placed = all(own == wanted or size == 1 for own, wanted, size in zip(strides, apart, shape, strict=True))
+    return placed or 0 in shape
 
 
 def _tensor_of(capsule: Any) -> _Tensor:

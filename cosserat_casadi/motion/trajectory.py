@@ -179,8 +179,8 @@ class Motion(Result):
         contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
         events: impacts and other changes of contact, and of cables that go slack, in their order.
         end: how far it has come, for a motion that goes on; None where it was not started.
-        impacts_spread: by how much the energy that impacts took since the motion began is another on the other modes and
-            with the other steps that told the error, J; nan where there were no others.
+        impacts_spread: by how much the energy that impacts took since the motion began is another on the other modes
+            and with the other steps that told the error, J; nan where there were no others.
     """
 
     model: Model
