@@ -41,7 +41,7 @@ def with_parameters_behind_inputs(function: ca.Function) -> ca.Function:
     count = function.size1_in(place)
     symbols = function.mx_in()
     inputs = ca.MX.sym("inputs", count + function.size1_in(PARAMETERS))
-    given = [inputs[:count], inputs[count:]]
+    given = [inputs[:count, 0], inputs[count:, 0]]
     outer = [*symbols[:place], inputs, *symbols[place + 2 :]]
     results = function.call([*symbols[:place], *given, *symbols[place + 2 :]], True, False)
     names = [word for word in words if word != PARAMETERS]
@@ -73,7 +73,7 @@ def parameter_rate(path_residual: ca.Function, name: str) -> ca.Function:
     count = inputs.size1() - size
     speed = ca.MX.sym("parameters_rate", size)
     p = ca.MX.sym("p", size)
-    moving = residual.call([x, ca.vertcat(inputs[:count], p), load_factor], True, False)[0]
+    moving = residual.call([x, ca.vertcat(inputs[:count, 0], p), load_factor], True, False)[0]
     at_point = ca.substitute(ca.jtimes(moving, p, speed), p, inputs[count:])
     words = [*residual.name_in(), "parameters_rate"]
     return ca.Function(name, [x, inputs, load_factor, speed], [ca.densify(at_point)], words, ["residual_rate"])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Compiled, ExportError, SceneError, export, load, solve
+from cosserat_casadi import Compiled, ExportError, SceneError, build, discretise, export, load, solve
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer
@@ -361,6 +361,13 @@ def test_a_scene_without_parameters_has_no_word_of_them(export_recipe: Callable[
     for name, text in folder_files(model, "bare").items():
         if name.startswith("bare"):
             assert "parameters" not in text
+
+
+def test_one_parameter_beside_no_inputs() -> None:
+    described = scene(push(), strain="planar", inputs=[], parameters=["rod.stiffness.bending_y"])
+    files = folder_files(build(described, discretise(described, 2, 4)), "one")
+    assert "#define ONE_INPUTS 0\n" in files["one.h"]
+    assert "#define ONE_PARAMETERS 1\n" in files["one.h"]
 
 
 def test_names_that_are_one_in_c_are_refused() -> None:
