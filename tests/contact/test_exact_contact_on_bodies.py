@@ -394,8 +394,9 @@ def test_a_disk_that_slips_off_loses_stability_at_the_limit() -> None:
     assert [event.kind for event in path.events][:2] == ["touch", "limit"]
     turns = int(np.argmax(np.diff(path.factor) < 0.0))
     assert turns > 3
-    assert np.all(path.stable[: turns + 1])
-    assert not path.stable[turns + 2]
+    # The point of the largest factor may be on either side of the limit.
+    assert np.all(path.stable[:turns])
+    assert not path.stable[turns + 1]
 
 
 @pytest.mark.slow
