@@ -30,12 +30,16 @@ class _RodPoints:
 
     def entry(self, index: int) -> dict[str, Any]:
         """The plain data of one point."""
-        tip = {"position": self.tip.position[index], "quaternion": self.tip.quaternion[index]}
-        # A tip that moves is all that is asked for.
-        if self.X == 1.0:
-            return {"tip": tip}
-        section = {"X": self.X, "position": self.positions[index]}
-        return {"tip": tip, "section": section}
+        return _rod_entry(self.tip.position[index], self.tip.quaternion[index], self.X, self.positions[index])
+
+
+def _rod_entry(position: FloatArray, quaternion: FloatArray, X: float, section: FloatArray) -> dict[str, Any]:
+    """The plain data of a rod: of its tip, and of a section that moves where the tip is held."""
+    tip = {"position": position, "quaternion": quaternion}
+    # A tip that moves is all that is asked for.
+    if X == 1.0:
+        return {"tip": tip}
+    return {"tip": tip, "section": {"X": X, "position": section}}
 
 
 def path_result(path: EquilibriumPath) -> dict[str, Any]:
@@ -93,13 +97,12 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
 
 
 def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
-    rods = _rods_at_event(path, event)
     entry = {
         "kind": event.kind,
         "factor": event.factor,
         "multiplicity": event.multiplicity,
         "before": event.position,
-        "rods": {name: points.entry(0) for name, points in rods.items()},
+        "rods": _rods_at_event(path, event),
     }
     if event.contact is not None:
         entry["contact"] = _contact_entry(event.contact)
@@ -135,12 +138,11 @@ def _rods_along(path: EquilibriumPath) -> dict[str, _RodPoints]:
     return rods
 
 
-def _rods_at_event(path: EquilibriumPath, event: PathEvent) -> dict[str, _RodPoints]:
-    """Every rod at one event, as one point."""
-    # An event lies between two points of the path and has a shape of its own.
+def _rods_at_event(path: EquilibriumPath, event: PathEvent) -> dict[str, dict[str, Any]]:
+    """The plain data of every rod at one event, which lies between two points of the path."""
     rods = {}
     for name in path.model.discrete.rods:
         X = path.section(name)
-        position = path.event_position(event, X, name)
-        rods[name] = _RodPoints(path.event_tip(event, name), X, position[None, :])
+        tip = path.event_tip(event, name)
+        rods[name] = _rod_entry(tip.position, tip.quaternion, X, path.event_position(event, X, name))
     return rods

@@ -215,6 +215,9 @@ def test_files_and_figure_name_the_events(lowered: ContactPath) -> None:
     touch, lies_down = data["events"]
     assert touch["contact"] == {"obstacle": "table", "rod": "rod", "from": 1.0, "to": 1.0, "kind": "point"}
     assert lies_down["kind"] == "point_to_line"
+    tip = touch["rods"]["rod"]["tip"]
+    assert_allclose(tip["position"], lowered.event_position(lowered.events[0], 1.0), rtol=0, atol=1e-12)
+    assert len(tip["quaternion"]) == 4
     (contact,) = data["path"][-1]["contacts"]
     assert contact["kind"] == "line"
     assert len(contact["point_forces"]) == 2

@@ -86,6 +86,8 @@ def test_round_column_loses_two_stiffnesses_at_once() -> None:
     assert_allclose(2 * event.factor, 1.0, rtol=1e-9, atol=0)
     assert path.stable is not None
     assert not path.stable[-1]
+    (told,) = path.to_dict()["events"]
+    assert_allclose(told["rods"]["rod"]["tip"]["position"], path.event_position(event, 1.0), rtol=0, atol=1e-12)
 
 
 def test_column_with_unequal_stiffnesses_buckles_about_the_soft_axis_first() -> None:
