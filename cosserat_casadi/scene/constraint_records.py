@@ -420,7 +420,7 @@ class AxisJoint(JointRecord):
             yield Fault(("name",), "missing", "a drive or a motor is an input, which the joint names")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """What a joint has by default acts where something acts along its coordinate, and no drive prescribes it."""
+        """Defaults act where something acts along the coordinate, and no drive prescribes it."""
         acts = self.has_coordinate and not self.prescribed
         if key in ("stiffness", "rest", "damping", "friction", "slip_rate") and not acts:
             return "is not given in the scene", "give it a value: the parameter's default"
