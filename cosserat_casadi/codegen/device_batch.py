@@ -11,6 +11,7 @@ import os
 import shlex
 import shutil
 import sysconfig
+import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -269,8 +270,11 @@ class DeviceBatch:
 
     @cached_property
     def _workspaces(self) -> int:
-        """Address of the workspaces of all threads, which stay until the process ends."""
-        return self._allocate(self.threads * self.workspace_size)
+        """Address of the workspaces of all threads, which stay as long as the batch."""
+        address = self._allocate(self.threads * self.workspace_size)
+        # The process gives back at its end, and the device may be gone by then.
+        weakref.finalize(self, self._function("device_release"), address).atexit = False
+        return address
 
     def _allocate(self, size: int) -> int:
         address = ctypes.c_void_p()

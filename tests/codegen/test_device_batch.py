@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import shlex
 from collections.abc import Callable
 from functools import cache
@@ -161,6 +162,26 @@ def test_rows_depend_on_no_thread(root: Path) -> None:
     one = DeviceBatch(batch.library, batch.manifest, HOST, threads=1).rows(*given)
     for name, answers in batch.rows(*given).items():
         assert_array_equal(answers, one[name])
+
+
+def test_workspaces_go_with_their_batch(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    released = []
+    function = DeviceBatch._function
+
+    def watched(batch: DeviceBatch, word: str) -> Any:
+        called = function(batch, word)
+        if word != "device_release":
+            return called
+        return lambda address: (released.append(address), called(address))
+
+    monkeypatch.setattr(DeviceBatch, "_function", watched)
+    batch, compiled = both("adjustable", root)
+    batch.rows(*cases(compiled))
+    workspaces = batch._workspaces
+    assert workspaces not in released
+    del batch
+    gc.collect()
+    assert released.count(workspaces) == 1
 
 
 def test_single_precision_vs_double(root: Path) -> None:
