@@ -28,8 +28,8 @@ def place(text: str, X: float) -> tuple[FloatArray, FloatArray]:
     """Position and normal of a section where nothing touches, in x and z, m."""
     pose = solve(build(parse_scene(text))).pose(X)
     # The tangent turned by a right angle, upwards.
-    x, _, z = pose.rotation[0][:, 2]
-    return pose.position[0, [0, 2]], np.array([-z, x])
+    x, _, z = pose.rotation[:, 2]
+    return pose.position[[0, 2]], np.array([-z, x])
 
 
 def main(
