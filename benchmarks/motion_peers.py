@@ -187,7 +187,7 @@ def drawn(rows: Sequence[Rival], true: Paths) -> Any:
     axes.set_xlabel("processor time for a second of motion, s")
     axes.set_ylabel("tip error / length")
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=7.5)
+    figure.legend(loc="outside lower center", ncols=4, fontsize=7.5)
     return figure
 
 
