@@ -23,6 +23,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene import Scene
 
 Answer = TypeVar("Answer", bound=Equilibrium[Any])
 
@@ -150,17 +151,33 @@ FRICTION_OF_OBSTACLES = (
 FRICTION_OF_RODS = " Friction between rods acts in motion alone, and is left out."
 """A sentence on equilibria of rods that rub on each other."""
 
+FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out."
+"""A sentence on equilibria of scenes with joints that rub."""
+
+
+def left_out_friction(scene: Scene, *, touching: bool) -> str:
+    """Sentences on friction that acts in motion alone; empty where there is none.
+
+    Args:
+        scene: the scene.
+        touching: whether rods touch each other.
+    """
+    words = ""
+    if touching and any(contact.friction for contact in scene.rod_contacts):
+        words += FRICTION_OF_RODS
+    if any(joint.rubs for joint in scene.joints):
+        words += FRICTION_OF_JOINTS
+    return words
+
 
 def _friction_note(solution: Equilibrium[Any]) -> str:
-    """A sentence for an equilibrium in contact with obstacles that rub; empty for other answers."""
-    if not solution.converged or not isinstance(solution, Solution) or not solution.contacts:
+    """Sentences for an equilibrium of a scene in which something rubs; empty for other answers."""
+    if not solution.converged or not isinstance(solution, Solution):
         return ""
     scene = solution.model.scene
-    if scene.rubs and solution.model.inputs.memory is None:
-        return FRICTION_OF_OBSTACLES
-    if any(contact.friction for contact in scene.rod_contacts):
-        return FRICTION_OF_RODS
-    return ""
+    touching = bool(solution.contacts)
+    of_obstacles = touching and scene.rubs and solution.model.inputs.memory is None
+    return (FRICTION_OF_OBSTACLES if of_obstacles else "") + left_out_friction(scene, touching=touching)
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

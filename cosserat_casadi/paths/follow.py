@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.answer_error import FRICTION_OF_RODS
+from cosserat_casadi.equilibrium.answer_error import left_out_friction
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
@@ -212,9 +212,7 @@ def follow_path(
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
     path = _within_limits(_unless_too_deep(followed.record(traced)))
-    if any(contact.friction for contact in model.scene.rod_contacts):
-        return replace(path, message=path.message + FRICTION_OF_RODS)
-    return path
+    return replace(path, message=path.message + left_out_friction(model.scene, touching=True))
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:

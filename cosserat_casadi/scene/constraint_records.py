@@ -318,6 +318,11 @@ class JointRecord(Oriented, Entry):
         return False
 
     @property
+    def rubs(self) -> bool:
+        """Whether friction opposes what it leaves free."""
+        return False
+
+    @property
     def keeps_place(self) -> bool:
         """Whether the joint, with what acts along it, leaves no motion free: a spring or a drive holds it."""
         return False
@@ -443,6 +448,11 @@ class AxisJoint(JointRecord):
         """Whether a spring or a drive holds the coordinate."""
         # A stiffness that is an expression of parameters is one.
         return self.prescribed or not (isinstance(self.stiffness, float) and self.stiffness == 0.0)
+
+    @property
+    def rubs(self) -> bool:
+        """Whether friction acts along the coordinate."""
+        return not (isinstance(self.friction, float) and self.friction == 0.0)
 
     @property
     def has_stops(self) -> bool:

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Motion, SceneError, build, scene_from_dict, simulate
+from cosserat_casadi import Motion, SceneError, build, follow, scene_from_dict, simulate, solve
 from cosserat_casadi.model.operation_cost import is_damped, price, price_of_motion, without_damping
 from tests.model.test_base_joints import link, scene
 from tests.model.test_joint_coordinates import ALONG, HINGE, SLIDE
@@ -84,6 +84,16 @@ def test_derivatives_vs_ad() -> None:
     for rates in (v, np.zeros(model.size)):
         _, damping, _, _ = model.dynamics_jacobian(x, rates, a, inputs, still, still)
         assert_allclose(damping.full(), ad(rates).full(), rtol=1e-12, atol=1e-13)
+
+
+def test_equilibria_and_paths_say_that_they_have_no_friction() -> None:
+    scene = scene_from_dict(sliding_rod())
+    words = "Friction of joints acts in motion alone"
+    assert words in solve(scene).message
+    smooth = scene_from_dict(sliding_rod(friction=0.0))
+    assert words not in solve(smooth).message
+    forced = sliding_rod(force=0.0)
+    assert words in follow(build(scene_from_dict(forced)), "slide.force", 0.1).message
 
 
 @pytest.mark.parametrize(
