@@ -49,6 +49,7 @@ from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.sweeps.local import available_cores
 
@@ -71,6 +72,7 @@ def estimate_model(
 ) -> Estimate:
     """As :func:`estimate`, of a model on its modes and nodes."""
     report = progress or _ignore
+    refuse_obstacles(model.scene, "an estimate")
     check_unknowns(model.scene)
     model = with_unknown_parameters(model)
     layout = unknown_layout(model)
@@ -263,7 +265,7 @@ def estimate(
 
     Raises:
         SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
-            that is between its bounds.
+            that is between its bounds; or its contact is exact.
         ExportError: there is no C compiler, or it fails.
     """
     if isinstance(subject, Model):
@@ -271,6 +273,7 @@ def estimate(
     scene = subject
     report = progress or _ignore
     refuse_tubes(scene)
+    refuse_obstacles(scene, "an estimate")
     check_unknowns(scene)
     completed = scene.with_unknowns().model_copy(update={"parameters": unknown_parameters(scene)})
     draft = build(completed)
