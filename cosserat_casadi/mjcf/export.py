@@ -655,6 +655,8 @@ class _Robot:
                 self._leave_out(entry.name, "the input has no control, and keeps its value")
         if scene.obstacles:
             self._leave_out("obstacles", "contacts are soft in MuJoCo, and those of the scene are not its contacts")
+        for contact in scene.rod_contacts:
+            self._leave_out(contact.label, "rods pass through each other")
 
 
 def _comment(left_out: Sequence[str]) -> str:
