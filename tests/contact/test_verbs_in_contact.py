@@ -204,7 +204,7 @@ VERBS: dict[str, Verb] = {
     "`export --page`": lambda contact, folder: export_page(rest(contact), folder / "page.html"),
     "`view`": lambda contact, _: opened(rest(contact)),
     "`embedded`": lambda contact, _: embedded(model(contact), rest(contact)),
-    "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).function,
+    "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).equations,
     "`acados_expressions`": lambda contact, _: acados_expressions(model(contact), "robot"),
 }
 """The cheapest use of each row of the table; what it returns has the sentences that the user is told."""
