@@ -37,6 +37,7 @@ from cosserat_casadi.mjcf.export import mjcf_of
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.view.view_session import opened
 from tests.conftest import ROOT
+from tests.page.pages_made import wasm_compiler
 
 Verb = Callable[[str, Path], object]
 """A use of the scene of one column, which may write to a folder."""
@@ -249,6 +250,8 @@ def test_the_table_is_true(verb: str, contact: str, said: str, tmp_path: Path) -
         assert sentence and sentence in str(refused.value)
         assert not list(tmp_path.iterdir())
         return
+    if verb == "`export --page`":
+        wasm_compiler()
     told = VERBS[verb](contact, tmp_path)
     assert answer == ("yes, but" if sentence else "yes")
     assert sentence in str(told)
