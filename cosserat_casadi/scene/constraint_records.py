@@ -319,7 +319,7 @@ class JointRecord(Oriented, Entry):
 
     @property
     def rubs(self) -> bool:
-        """Whether friction opposes what it leaves free."""
+        """Whether friction acts along a coordinate that the joint leaves free."""
         return False
 
     @property
