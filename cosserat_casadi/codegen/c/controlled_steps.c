@@ -418,21 +418,12 @@ static int factorise_step(real size, workspace *work) {
   return invert(whole, 0, work) && invert(of_pair, 1, work);
 }
 
+/* Of stage_newton.c, which asks for what stands here. */
+static real inner_product(const real *a, const real *b, int count);
+
 /* Rows of a matrix times a vector. */
 static void multiply(const real *a, const real *b, real *result, int n) {
-  for (int i = 0; i < n; i++) {
-    const real *row = a + i * n;
-    real sums[4] = {0, 0, 0, 0};
-    int j = 0;
-    for (; j + 4 <= n; j += 4) {
-      sums[0] += row[j] * b[j];
-      sums[1] += row[j + 1] * b[j + 1];
-      sums[2] += row[j + 2] * b[j + 2];
-      sums[3] += row[j + 3] * b[j + 3];
-    }
-    for (; j < n; j++) sums[0] += row[j] * b[j];
-    result[i] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  }
+  for (int i = 0; i < n; i++) result[i] = inner_product(a + i * n, b, n);
 }
 
 /* Corrections of h^2 a, of the values of multipliers. */

@@ -34,7 +34,7 @@ static void velocity_changes(const real *corrections, real *changes, const works
 }
 
 /* Four sums, none of which waits for the others. */
-static real dot_of_stages(const real *a, const real *b, int count) {
+static real inner_product(const real *a, const real *b, int count) {
   real sums[4] = {0, 0, 0, 0};
   int i = 0;
   for (; i + 4 <= count; i += 4) {
@@ -51,12 +51,12 @@ static real dot_of_stages(const real *a, const real *b, int count) {
    Equations, SIAM 1995, section 7.3. */
 static void apply_step_updates(int count, real *corrections, const workspace *work) {
   for (int k = 0; k + 1 < count; k++) {
-    const real share = dot_of_stages(work->duals[k], corrections, STAGED);
+    const real share = inner_product(work->duals[k], corrections, STAGED);
     for (int i = 0; i < STAGED; i++) corrections[i] += share * work->taken[k + 1][i];
   }
   if (count > 0) {
     /* The last update contains what it is applied for. */
-    const real share = 1 - dot_of_stages(work->duals[count - 1], corrections, STAGED);
+    const real share = 1 - inner_product(work->duals[count - 1], corrections, STAGED);
     for (int i = 0; i < STAGED; i++) corrections[i] /= share;
   }
 }
