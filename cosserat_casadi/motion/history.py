@@ -90,8 +90,8 @@ def equations_of(
     return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
-Stops = Callable[[Piece, Instant, CentredCoordinates | None], Guards | None]
-"""(piece, begin, coordinates) ↦ values, positive from the begin on, at whose zeros a motion stops; None for none."""
+Stops = Callable[[Piece, Instant], Guards | None]
+"""(piece, begin) ↦ values, positive from the begin on, at whose zeros a motion stops; None for none."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class History:
             joint hits a stop or leaves it, or contact changes.
         method: of its steps.
         settings: how it steps.
-        coordinates: coordinates of the steps; None for the unknowns of the model.
+        flight: coordinates of the steps, and what keeps their momentum.
         stopped: number of the value that stopped the motion; None for one that was not stopped.
     """
 
@@ -137,7 +137,7 @@ class History:
     legs: tuple[Leg, ...]
     method: Collocation
     settings: StepSettings
-    coordinates: CentredCoordinates | None = None
+    flight: FreeFlight
     stopped: int | None = None
 
     @property
@@ -220,7 +220,7 @@ class History:
         _, step = self.steps[number]
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
-        return self.contacts.at(number, self.beside_forces(instant))
+        return self.contacts.at(number, self.flight.to_model(instant))
 
     @property
     def lost(self) -> float:
@@ -234,15 +234,11 @@ class History:
 
     def of_model(self, instant: Instant) -> Instant:
         """A state of a step in the unknowns of the model, without the forces of contacts."""
-        instant = self.beside_forces(instant)
+        instant = self.flight.to_model(instant)
         size = self.model.size
         if len(instant.x) == size:
             return instant
         return Instant(instant.time, instant.x[:size], instant.v[:size], instant.a[:size])
-
-    def beside_forces(self, instant: Instant) -> Instant:
-        """A state of a step in the unknowns of the model, with the forces of contacts behind them."""
-        return instant if self.coordinates is None else self.coordinates.to_model(instant)
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
@@ -274,7 +270,8 @@ class History:
     def _positions_of_model(self, positions: FloatArray) -> FloatArray:
         """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
         own = positions[:, : self.model.size]
-        return own if self.coordinates is None else self.coordinates.positions_of_model(own)
+        coordinates = self.flight.coordinates
+        return own if coordinates is None else coordinates.positions_of_model(own)
 
     @cached_property
     def paths_until(self) -> dict[float, Any]:
@@ -291,7 +288,7 @@ class History:
             phases = leg.restart.phases
             assert isinstance(phases, ContactPhase), "where rods touch exactly no cable goes slack"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
-        return ContactRecord(self.model, stretches, self.beside_forces)
+        return ContactRecord(self.model, stretches, self.flight.to_model)
 
     @cached_property
     def _closing(self) -> Closing:
@@ -315,7 +312,7 @@ class FreeFlight:
     keeper: MomentumKeeper | None
 
     def to_model(self, instant: Instant) -> Instant:
-        """A state in the unknowns of the model, from one of the steps."""
+        """A state in the unknowns of the model, with the forces of contacts behind them, from one of the steps."""
         return instant if self.coordinates is None else self.coordinates.to_model(instant)
 
     def to_steps(self, instant: Instant) -> Instant:
@@ -335,7 +332,7 @@ class FreeFlight:
 
 
 def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
-    """The helpers for a model; arguments as of :func:`integrated`."""
+    """The coordinates of steps and the keeper of momentum of a model; arguments as of :func:`integrated`."""
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
     coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
     to_model = None if coordinates is None else coordinates.to_model
@@ -413,7 +410,7 @@ def _switched(
     phases: Phases,
 ) -> History:
     """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
-    coordinates, keeper = flight.coordinates, flight.keeper
+    keeper = flight.keeper
     legs: list[Leg] = []
     at = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
     asked = settings
@@ -442,18 +439,20 @@ def _switched(
             phases = restart.phases
             if not legs and resume is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
-                shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if coordinates is None else {}
+                shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if flight.coordinates is None else {}
                 _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest)
-            equations, guards = flight.in_steps(*switching.arranged(plain, piece, phases))
+            equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
             free = keeper is not None and equations.size == model.size
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin)))
-                return History(model, tuple(legs), method, asked, coordinates)
-            ends = None if stops is None else stops(piece, begin, coordinates)
-            guards, changes = _joined(guards, ends, begin)
+                return History(model, tuple(legs), method, asked, flight)
+            in_model = flight.to_model(begin)
+            ends = None if stops is None else stops(piece, in_model)
+            guards, changes = _joined(guards, ends, in_model)
+            equations, guards = flight.in_steps(equations, guards)
             own = _with_forces(settings, equations.size)
             integration = integrate(
                 equations, begin, piece.end, method, own, after_step, guards, settled, memory, kernels.stepper
@@ -462,13 +461,13 @@ def _switched(
             legs.append(Leg(piece, restart, integration))
             if integration.guard is not None and integration.guard >= changes:
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=StepOutcome.COMPLETED))
-                return History(model, tuple(legs), method, asked, coordinates, integration.guard - changes)
+                return History(model, tuple(legs), method, asked, flight, integration.guard - changes)
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
-                return History(model, tuple(legs), method, asked, coordinates)
+                return History(model, tuple(legs), method, asked, flight)
             if _chatters(legs, pieces[-1].end):
                 ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
-                return History(model, tuple(legs), method, asked, coordinates)
+                return History(model, tuple(legs), method, asked, flight)
             at = integration.end
             guard = integration.guard
             first = integration.next_size
@@ -480,7 +479,7 @@ def _switched(
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
-    return History(model, tuple(legs), method, asked, coordinates)
+    return History(model, tuple(legs), method, asked, flight)
 
 
 def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tuple[Guards | None, int]:

@@ -17,7 +17,6 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.centred_coordinates import CentredCoordinates
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.moving_inputs import Piece
@@ -62,13 +61,12 @@ class EventWatch:
     model: Model
     events: Sequence[MotionEvent]
 
-    def guards(self, piece: Piece, begin: Instant, coordinates: CentredCoordinates | None) -> Guards | None:
+    def guards(self, piece: Piece, begin: Instant) -> Guards | None:
         """Values of the events that stop a motion, positive where a stretch of it begins; None where none does.
 
         Args:
             piece: of the inputs.
-            begin: of the stretch, in the coordinates of the steps.
-            coordinates: those of the steps; None for the unknowns of the model.
+            begin: of the stretch, in the unknowns of the model.
         """
         numbers = self._stopping
         if self.events:
@@ -78,8 +76,7 @@ class EventWatch:
             return None
 
         def values(instant: Instant) -> FloatArray:
-            at = instant if coordinates is None else coordinates.to_model(instant)
-            return self.values(at.x[: self.model.size], piece.at(instant.time).value)[numbers]
+            return self.values(instant.x[: self.model.size], piece.at(instant.time).value)[numbers]
 
         first = values(begin)
         ahead = Instant(begin.time + AHEAD, begin.x + AHEAD * begin.v, begin.v, begin.a)

@@ -371,8 +371,8 @@ def largest_residual(history: History) -> float:
     largest = 0.0
     for leg, step in history.steps:
         equations = equations_of(history.model, leg.piece)
-        if history.coordinates is not None:
-            equations = history.coordinates.equations(equations)
+        if history.flight.coordinates is not None:
+            equations = history.flight.coordinates.equations(equations)
         stages = step.stages
         rows = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = max(largest, float(np.abs(rows).max()))
