@@ -327,8 +327,10 @@ class FreeFlight:
         """Equations and guards as the steps have them, from those in the unknowns of the model."""
         if self.coordinates is None:
             return equations, guards
-        seen = None if guards is None else lambda instant: guards(self.to_model(instant))
-        return self.coordinates.equations(equations), seen
+        of_steps = self.coordinates.equations(equations)
+        if guards is None:
+            return of_steps, None
+        return of_steps, lambda instant: guards(self.to_model(instant))
 
 
 def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
@@ -449,9 +451,9 @@ def _switched(
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin)))
                 return History(model, tuple(legs), method, asked, flight)
-            in_model = flight.to_model(begin)
-            ends = None if stops is None else stops(piece, in_model)
-            guards, changes = _joined(guards, ends, in_model)
+            begin_in_model = flight.to_model(begin)
+            ends = None if stops is None else stops(piece, begin_in_model)
+            guards, changes = _joined(guards, ends, begin_in_model)
             equations, guards = flight.in_steps(equations, guards)
             own = _with_forces(settings, equations.size)
             integration = integrate(
