@@ -30,6 +30,12 @@ STRAIGHT_BESIDE_INTERVALS = 9_000
 Loops take half as long again there, or twice: they gather what the intervals take and give.
 """
 
+STRAIGHT_IN_SHARES = 25_000
+"""The same for functions of each rod of an assembly, of which rods that compute alike share one.
+
+Six legs in loops take half as long again, and their C is longer (docs/theory.md).
+"""
+
 MOST_IN_COLUMNS = 50_000
 """Statements up to which a Jacobian is written by columns, four at a time; a longer one is written in loops.
 

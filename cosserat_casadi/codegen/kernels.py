@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import casadi as ca
 
-from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS
+from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
@@ -27,9 +27,6 @@ PARTED = ("path_residual", "path_jacobian")
 
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
-
-STRAIGHT_IN_SHARES = 25_000
-"""Instructions up to which functions of each rod are straight-line code, which rods that compute alike share."""
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.accuracy.cost import STRAIGHT, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen.numbered import Program, function_of
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
@@ -74,24 +74,26 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         name: what the kernels are called, before their numbers.
 
     Returns:
-        the parts as straight-line code; where one is too long for that, long ones in loops. A function that is not
-        known as a program is a single part then.
+        the parts as straight-line code, which may be longer where some compute alike; where one is too long for that,
+        long ones in loops. A function that is not known as a program is a single part then.
     """
     if chooses(function):
         return _whole(function, f"{name}_0")
     places = places_by_owner(owners)
     programs = _programs(function, places)
+    groups = [] if programs is None else alike(programs)
+    limit = STRAIGHT if len(groups) == len(places) else STRAIGHT_IN_SHARES
     # A scene without inputs has no derivative by them, and no part.
     longest = 0.0 if programs is None else max((program.foreseen for program in programs), default=0.0)
-    if longest <= FORESEEN_WITHIN * STRAIGHT:
+    if longest <= FORESEEN_WITHIN * limit:
         straight = _straight(function, places, name)
-        if all(kernel.n_instructions() <= STRAIGHT for kernel in straight.kernels):
+        if all(kernel.n_instructions() <= limit for kernel in straight.kernels):
             return straight
     if programs is None:
         return _whole(function, f"{name}_0")
     kernels = list[ca.Function]()
     parts = list[Part]()
-    for number, group in enumerate(alike(programs)):
+    for number, group in enumerate(groups):
         program, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
         kernels.append(_short_or_in_loops(program))
         for i, constants in zip(group, constants_of_each, strict=True):
