@@ -201,16 +201,16 @@ class MotionTangent:
             return 1.0
         return float(known(mass).max()) or 1.0
 
-    def _gram_of(self, rows: list[int] | None, columns: list[int] | None, times: int = 1) -> Matrix:
-        """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
+    def _pulled(self, rows: list[int] | None, columns: list[int] | None, fields: Matrix) -> Matrix:
+        """Some rows and columns of the Gram matrix times each component of fields that stand beneath each other."""
         part = self._gram
         if rows is not None:
             part = part[rows, :]
         if columns is not None:
             part = part[:, columns]
-        if is_symbolic(part):
-            return ca.kron(ca.DM.eye(3 * times), part)
-        return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), known(part))))
+        gram = part if is_symbolic(part) else ca.DM(known(part))
+        # Transposed: the printer's sums then run along the columns of the unknowns, as in the products around this one.
+        return ca.horzcat(*[component @ gram.T for component in ca.horzsplit(fields.T, gram.shape[1])]).T
 
     # Variations at all nodes, in the order of the coordinates: loads that depend on rates act anywhere.
 
@@ -258,8 +258,7 @@ class MotionTangent:
     @cached_property
     def _wrenches(self) -> Matrix:
         """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns, 9m×turning columns."""
-        gram = self._gram_of(self._nodes, self._nodes, ORDERS)
-        forces = gram @ self._accelerations
+        forces = self._pulled(self._nodes, self._nodes, self._accelerations)
         levers = ca.diagcat(*[self._levers] * ORDERS)
         if not self.inertia.masses.second_moments:
             return levers @ forces
@@ -283,9 +282,8 @@ class MotionTangent:
         if others is None:
             return MotionMatrices(stiffness, damping, mass)
         of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
-        gram = self._gram_of(self._nodes, None)
         columns = [others.stiffness, others.damping, others.mass]
-        by_others = [turned @ (self._levers @ (gram @ field)) for field in columns[:2]]
+        by_others = [turned @ (self._levers @ self._pulled(self._nodes, None, field)) for field in columns[:2]]
         by_others.append(of_turning[2].T)
         of_others = [self._others_on_others @ field for field in columns]
         blocks = zip((stiffness, damping, mass), by_others, of_turning, of_others, strict=True)
@@ -302,14 +300,14 @@ class MotionTangent:
     def _others_on_turning(self) -> Matrix:
         """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
         assert self._stretch is not None, "asked for with other columns"
-        pulled = self._gram_of(self._nodes, None) @ self._stretch.mass
+        pulled = self._pulled(self._nodes, None, self._stretch.mass)
         return (self._mass * self.inertia.ratio) * pulled.T
 
     @cached_property
     def _others_on_others(self) -> Matrix:
         """The same, at accelerations of all nodes."""
         assert self._stretch is not None, "asked for with other columns"
-        pulled = self._gram_of(None, None) @ self._stretch.mass
+        pulled = self._pulled(None, None, self._stretch.mass)
         return (self._mass * self.inertia.ratio) * pulled.T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
