@@ -28,6 +28,9 @@ PARTED = ("path_residual", "path_jacobian")
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
+SELDOM = ("igm", "energies", "momentum")
+"""Functions that no iteration calls: where they are long, they are in loops, whose C is shorter."""
+
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
@@ -95,8 +98,9 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
             return columned
     elif not _literal(model):
         straight = scalar(entry.function, entry.kernel)
+        longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
         # Without calls of intervals there is nothing to make together.
-        if straight.find_functions(0) and straight.n_instructions() <= STRAIGHT_BESIDE_INTERVALS:
+        if straight.find_functions(0) and straight.n_instructions() <= longest:
             with suppress(UnknownOperationError):
                 return scalars_in_c(straight, dense(entry.function, entry.kernel))
     return kernel(model, entry.function, entry.kernel)
