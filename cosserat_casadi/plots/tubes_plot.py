@@ -189,17 +189,9 @@ def plot_tube_path(path: TubePath) -> Any:
 
 
 def animate_tube_path(path: TubePath, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Draw the equilibria of a path one after the other into a file; a tube is dashed where they are unstable.
+    """Draw the equilibria of a path as :func:`cosserat_casadi.plots.path_plot.animate_path` does.
 
-    Args:
-        path: what to show.
-        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
-        progress: receives the share of the frames that are drawn.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS, or the path has no point.
-        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
-        WriteError: the file cannot be written, as on a full disk.
+    A tube is dashed where they are unstable.
     """
     shown = shown_points(len(path.solutions))
     check_animation_path(file)

@@ -109,11 +109,6 @@ class ContactEquilibrium:
             return float(np.concatenate([X, sections])[forces.argmin()])
         raise ValueError("no contact of this state")
 
-    @property
-    def worst_pull(self) -> float:
-        """The largest of them."""
-        return max((pull for _, pull in self.pulls()), default=0.0)
-
     def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
         """Stretches and bodies that are inside an obstacle by more than a tolerance."""
         for rod, obstacle in pairs(self.placed.model.scene):
