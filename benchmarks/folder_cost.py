@@ -1,4 +1,4 @@
-"""What the exported folder of every example costs: instructions, bytes of C and of objects, time of gcc and of a solve.
+"""What the exported folders of examples cost: instructions, bytes of C and of objects, time of gcc and of a solve.
 
 Time of gcc is processor time of all sources of the library at the default flags. Rows go to build/folders.csv one by
 one: the same command goes on where it was stopped. `--write` puts what is there into docs/c-interface.md.
@@ -27,6 +27,13 @@ PAGE = ROOT / "docs" / "c-interface.md"
 FILE = ROOT / "build" / "folders.csv"
 BEGIN, END = "<!-- folders: written by benchmarks/folder_cost.py -->", "<!-- end of folders -->"
 HEAD = ["example", "instructions", "C, kB", "objects, kB", "gcc, s", "cold solve, µs", "warm solve, µs"]
+SHOWN = (
+    "dropped_rod", "euler_column", "fishing_rod_cast", "follower_reissner", "helical_tendon", "magnet_catheter",
+    "needle_in_tissue", "nitinol_wire", "planar_strip", "shaken_platform", "six_rod_platform", "soft_arm",
+    "tendon_robot_move", "two_section_robot",
+)  # fmt: skip
+"""Examples of each kind: rods and platforms, statics and motion, the shortest and the longest."""
+
 NAME = "folder"
 """What every library here is called."""
 
@@ -109,12 +116,12 @@ def folders(example: str) -> list[Folder]:
 
 
 def main(
-    examples: Annotated[list[str] | None, typer.Argument(help="Names of examples; all where none is given.")] = None,
+    examples: Annotated[list[str] | None, typer.Argument(help="Names of examples; those of SHOWN by default.")] = None,
     write: Annotated[bool, typer.Option(help="Put the table into docs/c-interface.md.")] = False,
 ) -> None:
     """Measure the folders of examples."""
     done = {row["example"] for row in read(FILE)}
-    for name in examples or sorted(file.stem for file in (ROOT / "examples").glob("*.toml")):
+    for name in examples or SHOWN:
         try:
             found = [] if name in done else folders(name)
         except CosseratError as error:

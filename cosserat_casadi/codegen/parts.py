@@ -14,7 +14,7 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen.numbered import Program, function_of
-from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
+from cosserat_casadi.codegen.programs import PartialProgram, alike, foreseen, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
 from cosserat_casadi.maths.calls import chooses
@@ -80,22 +80,27 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     if chooses(function):
         return _whole(function, f"{name}_0")
     places = places_by_owner(owners)
-    programs = _programs(function, places)
-    groups = [] if programs is None else alike(programs)
-    limit = STRAIGHT if len(groups) == len(places) else STRAIGHT_IN_SHARES
-    # A scene without inputs has no derivative by them, and no part.
-    longest = 0.0 if programs is None else max((program.foreseen for program in programs), default=0.0)
-    if longest <= FORESEEN_WITHIN * limit:
+    program = _program(function)
+    programs = list[PartialProgram]()
+    # A single part shares nothing: the function is printed as it is.
+    if program is not None and len(places) > 1:
+        programs = [partial_program(program, own) for own in places]
+    groups = alike(programs)
+    limit = STRAIGHT if len(groups) == len(programs) else STRAIGHT_IN_SHARES
+    lengths = [foreseen(part.steps) for part in programs]
+    if program is not None and not programs:
+        lengths = [foreseen(program.steps)]
+    if max(lengths, default=0.0) <= FORESEEN_WITHIN * limit:
         straight = _straight(function, places, name)
         if all(kernel.n_instructions() <= limit for kernel in straight.kernels):
             return straight
-    if programs is None:
+    if not programs:
         return _whole(function, f"{name}_0")
     kernels = list[ca.Function]()
     parts = list[Part]()
     for number, group in enumerate(groups):
-        program, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
-        kernels.append(_short_or_in_loops(program))
+        one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
+        kernels.append(_short_or_in_loops(one))
         for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
     return Parted(kernels, parts)
@@ -120,15 +125,14 @@ def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> 
     return Parted(kernels, parts)
 
 
-def _programs(function: ca.Function, places: Sequence[list[int]]) -> list[PartialProgram] | None:
-    """The steps of each part; None of a function that is not known as a program."""
+def _program(function: ca.Function) -> Program | None:
+    """The steps of a function; None where it is not known as a program."""
     if function.is_a("SXFunction"):
         return None
     try:
-        program = program_of(function)
+        return program_of(function)
     except UnknownInstructionError:
         return None
-    return [partial_program(program, own) for own in places]
 
 
 def _short_or_in_loops(program: Program) -> ca.Function:
@@ -221,7 +225,7 @@ def _calling(
 def _whole(function: ca.Function, name: str) -> Parted:
     """The function as one part, in loops."""
     symbols = function.mx_in()
-    result = function.call(symbols)[0].nz[:]
+    result = function.call(symbols, function.is_a("MXFunction"), False)[0].nz[:]
     no_constants = ca.MX(0, 1)
     kernel = ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"])
     part = Part(

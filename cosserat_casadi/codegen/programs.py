@@ -46,17 +46,6 @@ class PartialProgram:
     output_constants: tuple[float, ...]
 
     @property
-    def foreseen(self) -> float:
-        """Instructions without loops, roughly: a long function that is called counts as what it reads and gives."""
-        total = 0.0
-        for step in self.steps:
-            if np.isfinite(step.instructions):
-                total += step.instructions
-            else:
-                total += step.function.nnz_in() + step.function.nnz_out()
-        return total
-
-    @property
     def key(self) -> tuple[object, ...]:
         """What programs share that compute alike."""
         lines = []
@@ -64,6 +53,17 @@ class PartialProgram:
             operands = tuple((_layout(operand.pattern), operand.numbers.tobytes()) for operand in step.operands)
             lines.append((_identity(step), operands))
         return tuple(map(len, self.reads)), tuple(lines), self.outputs.tobytes()
+
+
+def foreseen(steps: Sequence[Step]) -> float:
+    """Instructions without loops, roughly: a long function that is called counts as what it reads and gives."""
+    total = 0.0
+    for step in steps:
+        if np.isfinite(step.instructions):
+            total += step.instructions
+        else:
+            total += step.function.nnz_in() + step.function.nnz_out()
+    return total
 
 
 def _layout(pattern: ca.Sparsity) -> tuple[object, ...]:
