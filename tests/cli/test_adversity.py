@@ -183,7 +183,8 @@ UNREADY = {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE":
 SMALLEST_FILE = 150
 """Bytes that fit on the full disk: less than any result."""
 
-PROGRAM = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()"]
+PROGRAM = [sys.executable, "-B", "-c", "from cosserat_casadi.cli.main import main; main()"]
+"""No compiled modules are kept: where the disk is full Python leaves them cut off beside the sources."""
 
 
 @pytest.fixture
