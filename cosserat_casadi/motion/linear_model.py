@@ -22,12 +22,15 @@ from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import column_indices
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
+from cosserat_casadi.motion.eigenproblem import NOTHING, natural_shift, undamped_modes
 from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
+from cosserat_casadi.motion.motions_in_contact import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.motion.relaxing_rows import integrated
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
 from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
+
+QUICK = 1e-10
+"""Share of the square of a frequency, to that of the slowest motions, from which on it has no modal coordinate."""
 
 UNHELD = 1e-7
 """Share of what an input moves a constraint by that may be left open, as rounding."""
@@ -136,12 +139,14 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
             all tips, of rods whose tip is held those of the middle.
 
     Raises:
-        SolveError: the solution is no equilibrium.
+        SolveError: the solution is no equilibrium, or a contact is neither pressed nor open.
         SceneError: an output is unknown, nothing that may move has mass, or constraints leave no room for an input.
     """
-    refuse_obstacles(solution.model.scene, "a linear model")
     if not solution.converged:
         raise SolveError(solution.message)
+    marginal = marginal_contact(solution)
+    if marginal:
+        raise SolveError(f"No linear model: {marginal}")
     watched = outputs_of(solution, outputs)
     equations = _Equations.about(solution)
     check_mass(equations.motions)
@@ -156,16 +161,19 @@ class _Equations:
         model: the scene.
         motions: the equations without inputs.
         by_inputs: derivatives of the residual with the inputs, their rates and accelerations, (size, inputs) each.
+        contacts: contacts that press.
     """
 
     model: Model
     motions: SmallMotions
     by_inputs: tuple[FloatArray, FloatArray, FloatArray]
+    contacts: PressingContacts
 
     @staticmethod
     def about(solution: Solution) -> _Equations:
         """The equations about an equilibrium at rest."""
-        motions = small_motions(solution.model, solution.x, solution.inputs)
+        contacts = pressing_contacts(solution)
+        motions = small_motions(solution.model, solution.x, solution.inputs, contacts=contacts)
         model = solution.model.in_motion
         symbols = [ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration")]
         rest = ca.DM.zeros(model.size, 1)
@@ -173,8 +181,9 @@ class _Equations:
         derivatives = ca.Function("by_inputs", symbols, [ca.jacobian(residual, symbol) for symbol in symbols])
         held = np.zeros(model.inputs.size)
         matrices = [matrix.full() for matrix in derivatives(solution.inputs, held, held)]
+        matrices[0] += contacts.stiffness_by_inputs
         by_value, by_rate, by_acceleration = integrated(motions.branches, matrices)
-        return _Equations(model, motions, (by_value, by_rate, by_acceleration))
+        return _Equations(model, motions, (by_value, by_rate, by_acceleration), contacts)
 
     @cached_property
     def carried(self) -> FloatArray:
@@ -187,6 +196,7 @@ class _Equations:
         gradients = motions.constraints
         opened = np.zeros((len(gradients), self.model.inputs.size))
         opened[: motions.holding.size] = self.by_inputs[0][motions.holding]
+        opened[len(opened) - len(self.contacts.held) :] = self.contacts.held_by_inputs
         if not np.any(opened):
             return np.zeros((motions.moving.size, self.model.inputs.size))
         carried = -np.linalg.pinv(gradients, rcond=DEPENDENT) @ opened
@@ -214,8 +224,8 @@ class _Equations:
 
     @cached_property
     def used(self) -> tuple[list[int], list[int], list[int]]:
-        """Indices of the inputs whose values, rates and accelerations enter; all values do."""
-        values = list(range(self.model.inputs.size))
+        """Indices of the inputs whose values, rates and accelerations enter; all values of the scene's inputs do."""
+        values = self.contacts.given.tolist()
         rates = np.flatnonzero(np.any(self.forces[1], axis=0) | np.any(self.by_inputs[1], axis=0))
         accelerations = np.flatnonzero(np.any(self.forces[2], axis=0) | np.any(self.by_inputs[2], axis=0))
         return values, rates.tolist(), accelerations.tolist()
@@ -252,7 +262,9 @@ class _Coordinates:
 
 def _coordinates(motions: SmallMotions) -> _Coordinates:
     symmetric = (motions.free_stiffness + motions.free_stiffness.T) / 2
-    _, modal = undamped_modes(symmetric, motions.free_mass)
+    squares, modal = undamped_modes(symmetric, motions.free_mass)
+    # What is so quick is known to few digits, and follows as what has no mass.
+    modal = modal[:, np.abs(squares) * QUICK < natural_shift(motions.free_mass)]
     # What has no mass is orthogonal to M Φ.
     left, _, _ = np.linalg.svd(motions.free_mass @ modal)
     massless = left[:, modal.shape[1] :]
@@ -338,15 +350,17 @@ def _first_order(
 
 
 def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
-    """The model in the unknowns: coordinates, their rates, then multipliers and tensions."""
+    """The model in the unknowns: coordinates, their rates, then multipliers and tensions, those of contacts last."""
     motions = equations.motions
+    contacts = equations.contacts
     moving = motions.moving
     algebraic = motions.algebraic
     count = moving.size
-    size = 2 * count + algebraic.size
+    size = 2 * count + algebraic.size + len(contacts.held)
     positions = slice(0, count)
     rates = slice(count, 2 * count)
-    held = slice(2 * count, size)
+    held = slice(2 * count, 2 * count + algebraic.size)
+    pressed = slice(held.stop, size)
 
     E = np.zeros((size, size))
     E[positions, positions] = np.eye(count)
@@ -358,8 +372,13 @@ def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
     A[rates, held] = -motions.stiffness[np.ix_(moving, algebraic)]
     A[held, positions] = -motions.stiffness[np.ix_(algebraic, moving)]
     A[held, held] = -motions.stiffness[np.ix_(algebraic, algebraic)]
+    gradients = contacts.held[:, moving]
+    A[rates, pressed] = (gradients / motions.roots**2).T
+    A[pressed, positions] = gradients
     by_inputs = -equations.joined(equations.by_inputs)
-    B = np.vstack([np.zeros((count, by_inputs.shape[1])), by_inputs[moving], by_inputs[algebraic]])
+    nothing = np.zeros_like(contacts.held_by_inputs)
+    opened = equations.joined([contacts.held_by_inputs, nothing, nothing])
+    B = np.vstack([np.zeros((count, by_inputs.shape[1])), by_inputs[moving], by_inputs[algebraic], opened])
     C = np.zeros((len(watched.names), size))
     C[:, positions] = watched.by_x[:, moving]
     C[:, held] = watched.by_x[:, algebraic]
@@ -367,6 +386,7 @@ def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
     D = equations.joined([watched.by_inputs, nothing, nothing])
     names = np.array(_unknown_names(equations.model))
     states = [*names[moving], *(f"{name}.rate" for name in names[moving]), *names[algebraic]]
+    states += [f"contact {number}" for number in range(1, len(contacts.held) + 1)]
     return DescriptorModel(E, A, B, C, D, tuple(states), equations.input_names, watched.names)
 
 

@@ -39,7 +39,8 @@ class SmallMotions:
         mass: M = ∂ residual/∂a, shape (size, size), s².
         units: energy that each row is divided by, shape (size,), J.
         differential: whether an unknown is a coordinate that moves, shape (size,).
-        unseen: directions of the unknowns that move nothing, such as the norms of quaternions, shape (j, size).
+        held: gradients of what else stays as it is: norms of quaternions, which move nothing, then gaps of contacts
+            that press, shape (j, size).
         branches: rows that are integrated once in time (motion/relaxing_rows.py).
     """
 
@@ -48,7 +49,7 @@ class SmallMotions:
     mass: FloatArray
     units: FloatArray
     differential: npt.NDArray[np.bool_]
-    unseen: FloatArray
+    held: FloatArray
     branches: tuple[BranchRows, ...] = ()
 
     @cached_property
@@ -109,8 +110,8 @@ class SmallMotions:
 
         Coordinates that move nothing are held too, by equations that are not mechanical ones.
         """
-        held = self.stiffness[np.ix_(self.holding, self.moving)]
-        gradients = np.vstack([held, self.unseen[:, self.moving]])
+        by_multipliers = self.stiffness[np.ix_(self.holding, self.moving)]
+        gradients = np.vstack([by_multipliers, self.held[:, self.moving]])
         return np.asarray(gradients / self.roots)
 
     @cached_property

@@ -18,6 +18,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
 from cosserat_casadi.equilibrium.solution import Solution
@@ -26,11 +27,11 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
+from cosserat_casadi.motion.motions_in_contact import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -56,6 +57,10 @@ ROUNDING = 1e-13
 """Floor of every estimate."""
 
 
+WHILE_PRESSED = "So long as every contact presses, and nothing else touches: larger motions lift off and strike."
+"""Sentence on small motions of rods in exact contact."""
+
+
 class ModesOutcome(Enum):
     """Every way a search for modes can end; the value is the sentence."""
 
@@ -66,6 +71,7 @@ class ModesOutcome(Enum):
     )
     NOT_ESTIMATED = "Modes of the discrete model: how far the rods have others is not estimated."
     NO_EQUILIBRIUM = "No modes: there is no equilibrium to move about."
+    MARGINAL_CONTACT = "No modes: a contact is neither pressed nor open, and only one side of each motion meets it."
 
     @property
     def label(self) -> str:
@@ -189,6 +195,7 @@ def small_motions(
     inputs_rate: FloatArray | None = None,
     inputs_acceleration: FloatArray | None = None,
     p: FloatArray | None = None,
+    contacts: PressingContacts | None = None,
 ) -> SmallMotions:
     """The linear equations of small motions about unknowns that do not change.
 
@@ -201,6 +208,7 @@ def small_motions(
         inputs_rate: their rate, as of a base that spins steadily; zero where it is left out.
         inputs_acceleration: their acceleration, likewise.
         p: stacked parameters; those of a model that has some.
+        contacts: contacts that press, whose forces are among the inputs.
     """
     x = model.with_flows(x)
     model = model.in_motion
@@ -211,6 +219,10 @@ def small_motions(
     parameters = [] if p is None else [p]
     arguments = [x, rest, rest, inputs, *parameters, rate, acceleration]
     matrices = [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
+    held_gradients = _quaternion_growth(model, x)
+    if contacts is not None:
+        matrices[0] = matrices[0] + contacts.stiffness
+        held_gradients = np.vstack([held_gradients, contacts.held])
     unknowns = model.discrete.unknowns
     branches = branch_rows(model.discrete, *matrices[1:])
     stiffness, damping, mass = integrated(branches, matrices)
@@ -220,7 +232,7 @@ def small_motions(
         mass,
         unknowns.units,
         unknowns.differential,
-        _quaternion_growth(model, x),
+        held_gradients,
         tuple(branches),
     )
 
@@ -247,13 +259,15 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
     Raises:
         SceneError: nothing that may move has mass.
     """
-    refuse_obstacles(solution.model.scene, "an analysis of modes")
     if not solution.converged:
-        return _no_equilibrium(solution)
+        return _without_modes(solution, ModesOutcome.NO_EQUILIBRIUM, solution.message)
     model = solution.model
+    marginal = marginal_contact(solution)
+    if marginal:
+        return _without_modes(solution, ModesOutcome.MARGINAL_CONTACT, marginal)
     tell = report or _untold
     tell(f"equations of motion of {model.size} unknowns")
-    motions = small_motions(model, solution.x, solution.inputs)
+    motions = small_motions(model, solution.x, solution.inputs, contacts=pressing_contacts(solution))
     check_mass(motions)
     tell(f"eigenvalues of {model.size} unknowns")
     pairs = eigenpairs(
@@ -320,12 +334,11 @@ def modes_of(
     refuse_tubes(subject)
     scene = subject
     count = DEFAULT_COUNT if count is None else count
-    refuse_obstacles(scene, "an analysis of modes")
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
     equilibrium = solve_rods(scene, values, progress=progress, report=report)
     if not equilibrium.converged:
-        return _no_equilibrium(equilibrium)
+        return _without_modes(equilibrium, ModesOutcome.NO_EQUILIBRIUM, equilibrium.message)
     if scene.accuracy.fixed:
         return _on_fixed(equilibrium, count, report)
     return _to_tolerance(equilibrium, count, report)
@@ -344,7 +357,7 @@ def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> M
     # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
     first = max(ceil(count / 2) + SPARE_MODES, signal_modes(scene), _most_modes(equilibrium))
     coarser = modes_at(_on_level(equilibrium, first, report), count, report=report)
-    while coarser.solution.converged:
+    while coarser.converged:
         more = ceil((LEVEL_FACTOR - 1.0) * _most_modes(coarser.solution))
         finer = modes_at(_finer_equilibrium(coarser.solution, more, report), count, report=report)
         judged = _judged(finer, coarser)
@@ -360,17 +373,23 @@ def _finer_equilibrium(coarser: Solution, more: int, report: Report | None) -> S
 
 def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Solution:
     """The same equilibrium with so many polynomials for each strain and element."""
-    scene = coarser.model.scene
+    scene = without_contacts(coarser.model.scene)
     nodes = nodes_for_turn(polynomials, largest_turn(coarser)) + SPARE_NODES
     transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
     model = build(scene, discretise(scene, polynomials, nodes, transport))
     if report is not None:
         report(f"equilibrium of {model.size} unknowns, {nodes} intervals")
+    values = coarser.model.inputs.unpack(coarser.inputs)
     newton = ContinuationSettings().newton
-    corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
-    if corrected is None:
-        return solve(model, model.inputs.unpack(coarser.inputs), estimate_error=False)
-    solution = judge(model, coarser.inputs, corrected.x, corrected.outcome, corrected.iterations, 1.0, newton.tolerance)
+    if scene.touches_exactly:
+        given = {name: values[name] for name in model.inputs.names}
+        solution = solve(model, given, start=coarser, estimate_error=False)
+    else:
+        corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
+        if corrected is None:
+            return solve(model, values, estimate_error=False)
+        x, ended = corrected.x, corrected.outcome
+        solution = judge(model, coarser.inputs, x, ended, corrected.iterations, 1.0, newton.tolerance)
     # What is known of the coarser solution holds for the finer one all the more.
     return replace(
         solution,
@@ -386,9 +405,9 @@ def _most_modes(solution: Solution) -> int:
 
 def _judged(modes: Modes, witness: Modes) -> Modes:
     """Modes with the errors that those of another discretisation give them."""
-    if not witness.solution.converged:
+    if not witness.converged:
         return witness
-    if not modes.solution.converged:
+    if not modes.converged:
         return modes
     errors = _distances(modes.eigenvalues, witness.eigenvalues)
     estimated = tuple(
@@ -437,9 +456,8 @@ def check_mass(motions: SmallMotions) -> None:
         raise SceneError(Problem("rods", fault, remedy))
 
 
-def _no_equilibrium(solution: Solution) -> Modes:
-    outcome = ModesOutcome.NO_EQUILIBRIUM
-    return Modes(solution, outcome, solution.message, (), np.zeros(0, dtype=complex))
+def _without_modes(solution: Solution, outcome: ModesOutcome, why: str) -> Modes:
+    return Modes(solution, outcome, why, (), np.zeros(0, dtype=complex))
 
 
 def stability_sentences(values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution) -> str:
@@ -473,6 +491,8 @@ def stability_sentences(values: ComplexArray, believed: npt.NDArray[np.bool_], s
         sentences.append(f"{count} no resistance: rigid, or neutral.".capitalize())
     if not sentences:
         sentences.append(_settled(values))
+    if solution.contacts and solution.model.scene.touches_exactly:
+        sentences.append(WHILE_PRESSED)
     return " ".join(sentences)
 
 

@@ -141,11 +141,21 @@ class Placed:
     @cached_property
     def gaps(self) -> ca.Function:
         """(x, inputs) ↦ what the contacts ask to be zero, without unit, and its derivative with x."""
+        x, inputs, gaps = self._written_gaps
+        return ca.Function("gaps", [x, inputs], [gaps, ca.jacobian(gaps, x)])
+
+    @cached_property
+    def gaps_by_inputs(self) -> ca.Function:
+        """(x, inputs) ↦ its derivative with the inputs, of which some move bases."""
+        x, inputs, gaps = self._written_gaps
+        return ca.Function("gaps_by_inputs", [x, inputs], [ca.jacobian(gaps, inputs)])
+
+    @cached_property
+    def _written_gaps(self) -> tuple[ca.MX, ca.MX, Matrix]:
         x = ca.MX.sym("x", self.model.size)
         inputs = ca.MX.sym("inputs", self.model.inputs.size)
         system = System(self.model.discrete, Arguments(x, inputs))
-        gaps = gap_rows(system, self.state, self.modes)
-        return ca.Function("gaps", [x, inputs], [gaps, ca.jacobian(gaps, x)])
+        return x, inputs, gap_rows(system, self.state, self.modes)
 
     def obstacle(self, name: str) -> scenes.ObstacleRecord:
         """The obstacle of a name."""

@@ -8,7 +8,8 @@ section 3.1, for the least value over a parameter.)
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -122,34 +123,66 @@ def _resultant(
     return total
 
 
-def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
-    """Eigenvalues of the second variation over the motions that contacts admit."""
-    placed = found.placed
-    model = placed.model
-    inputs = found.solution.inputs
-    jacobian = model.path_jacobian(found.x, inputs, 1.0).full()
-    rows = placed.gaps(found.x, inputs)[1].full()
-    held: list[FloatArray] = []
+@dataclass(frozen=True)
+class Pressing:
+    """What contacts that press do to small variations at fixed places.
+
+    Attributes:
+        held: rows of the gaps that stay zero, in their order.
+        sliding: by the row of the slope of a point that slides, N / d″ in the unit of each balance, shape (n,).
+    """
+
+    held: list[int]
+    sliding: Mapping[int, FloatArray]
+
+    def stiffness(self, by_x: FloatArray, by_others: FloatArray) -> FloatArray:
+        """What sliding adds to the derivative of the balance with m arguments, shape (n, m).
+
+        Args:
+            by_x: derivative of all gap rows with the unknowns, shape (rows, n).
+            by_others: with the arguments, shape (rows, m).
+        """
+        added = np.zeros((by_x.shape[1], by_others.shape[1]))
+        for row, weights in self.sliding.items():
+            added += np.outer(weights * by_x[row], by_others[row])
+        return added
+
+
+def pressing(found: ContactEquilibrium) -> Pressing:
+    """The rows of a state that small variations keep, and the points that slide meanwhile."""
+    model = found.placed.model
+    held: list[int] = []
+    sliding = {}
     first = 0
     for touch, carried, line in found.parts():
         count = len(carried) + len(touch.moving) + len(line)
-        own = rows[first : first + count]
+        rows = range(first, first + count)
         first += count
         if touch.is_line:
-            held.extend(own)
+            held.extend(rows)
             continue
         if carried[0] <= PRESSING * found.largest_force:
             continue
-        held.append(own[0])
+        held.append(rows[0])
         if touch.moving:
             bend = _gap_curvature(found, touch)
             if bend <= FLAT:
-                held.append(own[1])
+                held.append(rows[1])
             else:
                 # Every row of the Jacobian is in a unit of its own.
                 unit = model.discrete.rods[touch.owner].energy_unit / model.discrete.unknowns.units
-                jacobian = jacobian + carried[0] / bend * np.outer(unit * own[1], own[1])
-    return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
+                sliding[rows[1]] = carried[0] / bend * unit
+    return Pressing(held, sliding)
+
+
+def _eigenvalues(found: ContactEquilibrium) -> FloatArray:
+    """Eigenvalues of the second variation over the motions that contacts admit."""
+    model = found.placed.model
+    inputs = found.solution.inputs
+    rows = found.placed.gaps(found.x, inputs)[1].full()
+    contacts = pressing(found)
+    jacobian = model.path_jacobian(found.x, inputs, 1.0).full() + contacts.stiffness(rows, rows)
+    return admissible_eigenvalues(*restricted(jacobian, list(rows[contacts.held]), variations(model)))
 
 
 def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
@@ -17,7 +18,15 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR, instead_of_pulling, met, otherwise
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, Placed
 from cosserat_casadi.equilibrium.contact.contact_newton import sought
-from cosserat_casadi.equilibrium.contact.contact_state import BASE, TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    BASE,
+    TIP,
+    ContactState,
+    Touch,
+    load_sections,
+    state_in,
+    without_contacts,
+)
 from cosserat_casadi.equilibrium.contact.gaps import (
     DENSE,
     body_gap,
@@ -87,12 +96,26 @@ class ContactEquilibrium:
     def pulls(self) -> Iterator[tuple[Touch, float]]:
         """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
         for touch, carried, line in self.parts():
-            least = float(carried.min())
-            if touch.is_line:
-                _, pressure = self.pressure(touch, line)
-                # Per length, over the whole of it.
-                least = min(least, float(pressure.min()) * (touch.end - touch.start))
+            least = min(float(carried.min()), self._least_along(touch, line))
             yield touch, max(-least, 0.0) / self.largest_force
+
+    def pushes(self) -> Iterator[tuple[Touch, float]]:
+        """How much each contact pushes where it would open first, relative to the largest force.
+
+        At the tip and inside a line sections may carry nothing.
+        """
+        for touch, carried, line in self.parts():
+            opens = [force for force, moves in zip(carried, touch.carriers_move, strict=True) if moves]
+            if not touch.is_line:
+                opens = carried.tolist()
+            yield touch, min([*opens, self._least_along(touch, line)]) / self.largest_force
+
+    def _least_along(self, touch: Touch, line: FloatArray) -> float:
+        """Least force per length of a line, over the whole of it, without unit; infinite for a point."""
+        if not touch.is_line:
+            return inf
+        _, pressure = self.pressure(touch, line)
+        return float(pressure.min()) * (touch.end - touch.start)
 
     def pressure(self, touch: Touch, line: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Abscissae along a line of contact and the force per length there, without unit."""
@@ -273,6 +296,18 @@ def contact_equilibrium(equations: ContactEquations, z: FloatArray, given: Float
     norm = relative_norm(placed.residual(x, forces), np.concatenate([x, forces]))
     solution = Solution(placed.model, placed.inputs(forces), x, outcome, outcome.value, norm, iterations=0)
     return ContactEquilibrium(placed, x, forces, solution)
+
+
+def equilibrium_in(solution: Solution) -> ContactEquilibrium:
+    """The contacts among the loads of a solution's scene, with their forces."""
+    model = solution.model
+    scene = without_contacts(model.scene)
+    modes = Grids(model.discretisation).bending_modes(scene)
+    placed = Placed(model, state_in(model.scene), np.zeros(0), modes)
+    others = np.setdiff1d(np.arange(model.inputs.size), placed.force_entries)
+    placed = replace(placed, given=solution.inputs[others])
+    forces = solution.inputs[placed.force_entries] / placed.force_units
+    return ContactEquilibrium(placed, solution.x, forces, solution)
 
 
 def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:

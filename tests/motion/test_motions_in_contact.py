@@ -1,0 +1,145 @@
+"""Small motions of rods in exact contact: a pinned beam, solves at other inputs, and the motion itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Scene, SolveError, build, linearise, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.linear_model import DescriptorModel, LinearModel
+from cosserat_casadi.motion.vibration_modes import WHILE_PRESSED, ModesOutcome
+
+STIFFNESS = 0.02
+DENSITY = 0.1
+PINNED = np.array([3.926602312047919, 7.068582745628732])
+"""βℓ of a beam that is clamped at one end and pinned at the other: tan βℓ = tanh βℓ."""
+
+
+def touching(obstacle: dict[str, Any], modes: int = 5, weight: float = 9.81, **tables: Any) -> Scene:
+    """A heavy rod along x, a metre long, and an obstacle."""
+    rod = {
+        "name": "rod",
+        "length": 1.0,
+        "strain": tables.pop("strain", "planar"),
+        "stiffness": {"bending_x": STIFFNESS, "bending_y": STIFFNESS, "torsion": STIFFNESS},
+        "linear_density": DENSITY,
+        "base": {"tangent": [1, 0, 0]},
+    }
+    loads = [
+        {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -weight]},
+        {"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.15, "force": [0, 0, 0]},
+    ]
+    described = {
+        "schema": 1,
+        "rods": [rod],
+        "loads": loads,
+        "obstacles": [{"name": "obstacle", **obstacle}],
+        "inputs": ["push.force"],
+        "accuracy": {"modes": modes, "nodes": 2 * modes},
+        **tables,
+    }
+    return scene_from_dict(described)
+
+
+def floor(depth: float) -> dict[str, Any]:
+    return {"kind": "plane", "point": [0, 0, -depth], "normal": [0, 0, 1]}
+
+
+BAR = {"kind": "capsule", "from": [0.4, -0.5, -0.12], "to": [0.5, 0.5, -0.12], "radius": 0.1}
+
+# A light rod bends by 1e-3 of its length at most: a beam, but for the square of that.
+LIGHT = 8e-3 * STIFFNESS / DENSITY
+
+
+def test_a_rod_whose_tip_lies_on_a_support_swings_as_a_pinned_beam() -> None:
+    scene = touching(floor(7e-4), 7, weight=LIGHT)
+    found = modes_of(scene, count=2)
+    (contact,) = found.solution.contacts
+    assert contact.start == 1.0
+    assert WHILE_PRESSED in found.message
+    wanted = PINNED**2 * np.sqrt(STIFFNESS / DENSITY)
+    assert_allclose(found.angular_frequencies, wanted, rtol=2e-5, atol=0)
+    errors = [mode.error_estimate or 0.0 for mode in found.modes]
+    assert np.all(np.abs(found.angular_frequencies / wanted - 1.0) < np.array(errors) + 2e-6)
+
+
+def gain(linear: LinearModel | DescriptorModel) -> FloatArray:
+    """Outputs at rest for each input."""
+    states, *_ = np.linalg.lstsq(linear.A, linear.B, rcond=1e-12)
+    return np.asarray(linear.D - linear.C @ states)
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "kind", "strain"),
+    [pytest.param(BAR, "point", "kirchhoff", id="askew-bar"), pytest.param(floor(0.05), "line", "planar", id="table")],
+)
+def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(
+    obstacle: dict[str, Any], kind: str, strain: str
+) -> None:
+    """Of a push and of a base that moves: the place of contact slides, a line becomes longer."""
+    scene = touching(obstacle, weight=2.0, strain=strain, inputs=["push.force", "rod.base.position"])
+    model = build(scene)
+    rest = solve(model, estimate_error=False)
+    (contact,) = rest.contacts
+    assert contact.kind == kind and contact.start < 1.0
+    linear = linearise(rest, [("rod", 0.2), "rod.tip.position"])
+    assert not any(name.startswith("contact") for name in linear.inputs)
+    change = np.array([0.002, 0.0, -0.005, 0.03, 0.01, 0.05])
+    if strain == "planar":
+        change[4] = 0.0
+    step = 3e-3
+    ends = []
+    for moved in (step * change, -step * change):
+        values = {"push.force": moved[:3], "rod.base.position": moved[3:]}
+        end = solve(model, values, start=rest, estimate_error=False)
+        assert end.converged
+        ends.append(np.concatenate([end.pose(0.2).position, end.tip().position]))
+    wanted = (ends[0] - ends[1]) / (2 * step)
+    assert_allclose(gain(linear)[:, :6] @ change, wanted, rtol=0, atol=2e-7)
+    assert_allclose(gain(linear.descriptor)[:, :6] @ change, wanted, rtol=0, atol=2e-7)
+
+
+def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
+    """A push that comes and goes leaves a sum of the modes, over a swing and a half of the slowest."""
+    simulation = {"duration": 0.9, "start": "equilibrium", "tolerance": 1e-4, "frames": 91}
+    push = {"input": "push.force", "times": [0, 0.1, 0.2], "values": [[0, 0, 0], [0, 0, -5e-4], [0, 0, 0]]}
+    scene = touching(floor(0.05), 2, weight=0.3, simulation=simulation, motions=[push])
+    model = build(scene, moving=True)
+    rest = solve(model, estimate_error=False)
+    motion = simulate(model)
+    assert motion.converged and not motion.events
+    left = motion.times > 0.2
+    moved = motion.x[left] - rest.x
+
+    def unexplained(frequencies: FloatArray) -> float:
+        angles = np.outer(motion.times[left], frequencies)
+        waves = np.hstack([np.cos(angles), np.sin(angles)])
+        fitted, *_ = np.linalg.lstsq(waves, moved, rcond=None)
+        return float(np.linalg.norm(moved - waves @ fitted) / np.linalg.norm(moved))
+
+    frequencies = modes_of(rest).angular_frequencies
+    print([(k, unexplained(k * frequencies)) for k in (0.98, 0.99, 0.995, 1, 1.005, 1.01, 1.02)])
+    assert unexplained(frequencies) < 2e-3 < 1e-2 < unexplained(1.02 * frequencies)
+
+
+@pytest.mark.parametrize("depth", [0.0, 1e-12])
+def test_a_contact_that_hardly_presses_has_no_modes(depth: float) -> None:
+    """A straight rod without weight on a ball, and just above it."""
+    ball = {"kind": "sphere", "centre": [0.9, 0, -0.05 - depth], "radius": 0.05}
+    rest = solve(build(touching(ball, 2, weight=0.0)), estimate_error=False)
+    found = modes_of(rest)
+    assert found.outcome is ModesOutcome.MARGINAL_CONTACT and not found.modes
+    assert "'rod' is" in found.message
+    with pytest.raises(SolveError, match="No linear model: 'rod' is"):
+        linearise(rest)
+
+
+def test_a_quick_torsion_spoils_no_linear_model() -> None:
+    """A rod without rotary inertia, bent by its weight: its torsion has next to no mass."""
+    rest = solve(build(touching(floor(10.0), 6, strain="kirchhoff")), estimate_error=False)
+    linear = linearise(rest)
+    assert_allclose(gain(linear), gain(linear.descriptor), rtol=0, atol=1e-9)
