@@ -19,7 +19,6 @@ from cosserat_casadi import (
     discretise,
     follow,
     inverse,
-    modes_of,
     parse_scene,
     read_scene,
     solve,
@@ -246,7 +245,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution) -> None:
     scene = parse_scene(TABLE)
     uses: list[Callable[[], object]] = [
         lambda: inverse(scene),
-        lambda: modes_of(scene),
         lambda: stability_margin(table.model),
         lambda: estimate(scene),
         lambda: make_plan(scene, None, None, None, quick=True),

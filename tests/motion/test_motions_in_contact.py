@@ -106,7 +106,7 @@ def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(
 def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
     """A push that comes and goes leaves a sum of the modes, over a swing and a half of the slowest."""
     simulation = {"duration": 0.9, "start": "equilibrium", "tolerance": 1e-4, "frames": 91}
-    push = {"input": "push.force", "times": [0, 0.1, 0.2], "values": [[0, 0, 0], [0, 0, -5e-4], [0, 0, 0]]}
+    push = {"input": "push.force", "times": [0, 0.1, 0.2], "values": [[0, 0, 0], [0, 0, -2e-3], [0, 0, 0]]}
     scene = touching(floor(0.05), 2, weight=0.3, simulation=simulation, motions=[push])
     model = build(scene, moving=True)
     rest = solve(model, estimate_error=False)
@@ -122,8 +122,8 @@ def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
         return float(np.linalg.norm(moved - waves @ fitted) / np.linalg.norm(moved))
 
     frequencies = modes_of(rest).angular_frequencies
-    print([(k, unexplained(k * frequencies)) for k in (0.98, 0.99, 0.995, 1, 1.005, 1.01, 1.02)])
-    assert unexplained(frequencies) < 2e-3 < 1e-2 < unexplained(1.02 * frequencies)
+    others = min(unexplained(0.99 * frequencies), unexplained(1.01 * frequencies))
+    assert unexplained(frequencies) < 5e-3 < 4e-2 < others
 
 
 @pytest.mark.parametrize("depth", [0.0, 1e-12])
